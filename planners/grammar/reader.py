@@ -20,7 +20,7 @@ from .parsing import Refusal, first_words, parse, trees
 from .restating.corrections import corrected, takes_back
 from .restating.elision import about, topic_of
 from .restating.impossible import cannot_be
-from .restating.remarks import is_remark, subject_of
+from .restating.remarks import is_remark, says_how_far, subject_of
 from .restating.restating import restatements
 from .tagging.non_edits import FORBIDDEN, STATEMENT, empty_refusal, is_chat, refuse_non_edit
 from .tagging.tagger import clauses
@@ -118,7 +118,10 @@ class Reader:
             refusal = error
         after = self._saved()
         new = len(self._serious()) - sum(not is_chat(r) for r in before.said)
-        if refusal is None and not new:
+        done = len(after.ops) > len(before.ops)
+        said = [r for r in after.said[len(before.said) :] if not is_chat(r)]
+        remarked = done and all(r.remark for r in said) and not says_how_far([w.text for w in sentence])
+        if refusal is None and (not new or remarked):
             return
         final = refusal if refusal is not None and refusal.firm else None
         if final is None and depth < _DEEPEST:
@@ -208,11 +211,12 @@ class Reader:
             except Refusal as refusal:
                 if refusal.verdict != "not_an_edit" or (self._serious() and not is_chat(refusal)):
                     raise
-                refusal.remark = is_remark([w.text for w in sentence])
+                words = [w.text for t in clause.tags for w in t.words]
+                refusal.remark = is_remark(words)
                 state.said = (*state.said, refusal)
                 state.stated_first = not state.ops
-                state.topic = _topic(clause, refusal)
-                self._name([w.text for t in clause.tags for w in t.words])
+                topic, named = _topic(clause, refusal), self._name(words)
+                state.topic = named if refusal.remark and named is not None else topic
                 if clause.negated and state.topic is not None and state.topic.text:
                     self.phrases.antecedent, self.phrases.colors = state.topic.text, ()
                 continue

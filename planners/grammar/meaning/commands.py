@@ -13,7 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 from ....gaussians.language.query.nested import with_queries
-from ....gaussians.language.query.query import Query, Region
+from ....gaussians.language.query.query import Query, Region, Relation
 from ....gaussians.world import kinds
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tokens, trees
@@ -39,20 +39,27 @@ def operations_of(phrases: Phrases, tree: Node) -> list[Fields]:
     for group in excluded:
         out = union(phrases.group(group))
         ops = [{**op, "target": _except(_all_of(op.get("target"), out, simple), out)} for op in ops]
-    ops = [_with_others(op) for op in ops]
+    ops = [_with_others(op, not phrases.before) for op in ops]
     phrases.before = ops
     return ops
 
 
-def _with_others(op: Fields) -> Fields:
-    """An operation in which "the other one" leaves out its own target: "make the silver lamp like the other one"."""
+def _with_others(op: Fields, first: bool) -> Fields:
+    """An operation in which "the other one" leaves out its own target: "make the silver lamp like the other one".
+
+    Where nothing was said before (`first`), "move the vase to the other table" leaves out the table that it is on.
+    """
     target = op.get("target")
     if not isinstance(target, Query) or target.last:
         return op
 
     def named(query: Query) -> Query:
-        if Query(last=True) not in query.exclude or query.text != target.text:
+        if Query(last=True) not in query.exclude:
             return query
+        if query.text != target.text:
+            under = Relation(name="below", anchors=(target,))
+            with_it = query.model_copy(update={"exclude": (), "relations": (*query.relations[:3], under)})
+            return query.model_copy(update={"exclude": (with_it,)}) if first and target.pick != "all" else query
         rest = tuple(target if q == Query(last=True) else q for q in query.exclude)
         colors = () if query.colors == target.colors else query.colors
         return query.model_copy(update={"exclude": rest, "colors": colors})
@@ -144,7 +151,9 @@ def drop(phrases: Phrases, node: Node) -> list[Fields]:
     far = [t for d in trees(node, "distance") for t in tokens(d, "LENGTH")]
     if len(far) == len(trees(node, *MOTIONS)) == 1:
         return phrases.targeted(node, "move", direction="down", distance=length(far[0].value))
-    if any(p.kind == "related" and p.value in ("on", "inside") for p in found[-1].modifiers) and not trees(node, *MOTIONS):
+    if any(p.kind == "related" and p.value in ("on", "inside") for p in found[-1].modifiers) and not trees(
+        node, *MOTIONS
+    ):
         return moved(phrases, found, node, "PUT")  # "drop it in the box"
     if trees(node, *MOTIONS) or any(n.modifiers or n.article == "all" for n in found):
         raise Refusal("say put or delete", "drop")
@@ -226,6 +235,13 @@ def fade(phrases: Phrases, node: Node) -> list[Fields]:
     if share is None:
         return phrases.targeted(node, **changes.opacity(changes.CLEARER[changes.degree_of(node)]))
     return phrases.targeted(node, **changes.opacity(share if tokens(node, "TO") else 1 - share))
+
+
+def fade_to(phrases: Phrases, node: Node) -> list[Fields]:
+    """ "fade the board to 30 % opacity", "make it 60 % transparency"."""
+    share = changes.share_of(node) or 0.0
+    solid = tokens(node, "OPACITYWORD")[0].value
+    return phrases.targeted(node, **changes.opacity(share if solid else 1 - share))
 
 
 def switch(phrases: Phrases, node: Node) -> list[Fields]:
@@ -381,6 +397,6 @@ def _except(target: Query | None, out: Query) -> Query:
 
 _RULES = (
     merge, split, split_into, delete, clear, drop, take, keep, select, isolate, hide, crop, crop_away,
-    crop_space, fade, switch, paint, paint_like, give_color, change_from, tint, tint_more, give_shade, coat_on,
+    crop_space, fade, fade_to, switch, paint, paint_like, give_color, change_from, tint, tint_more, give_shade, coat_on,
     adjust, change_opacity, make, it_becomes, put,
 )  # fmt: skip

@@ -47,11 +47,23 @@ def moved(phrases: Phrases, found: list[NounPhrase], node: Node, verb: str) -> l
             raise Refusal("say where to: left, 30 cm up, onto the desk, next to the sofa")
         if motion.distance is not None:
             raise Refusal("a distance needs a direction")
-    ops = [{"op": "move", "target": existing(found), **motion.fields()}]
+    target = existing(found)
+    if target.last and motion.place is not None:
+        motion.place = _named_before(phrases, motion.place)
+    ops = [{"op": "move", "target": target, **motion.fields()}]
     if second:
         more = places.read_motion(second, phrases, found[0])
         ops.append({"op": "move", "target": Query(last=True), **more.fields()})
     return ops
+
+
+def _named_before(phrases: Phrases, place: Fields) -> Fields:
+    """A place relative to "it" as one relative to the goal of the move before: "no, put it beside it"."""
+    before = phrases.before[0].get("place") if len(phrases.before) == 1 else None
+    anchors = before.get("anchors", ()) if isinstance(before, dict) else ()
+    if len(anchors) != 1 or tuple(place.get("anchors", ())) != (Query(last=True),):
+        return place
+    return {**place, "anchors": tuple(anchors)}
 
 
 def _each_to_its_place(found: list[NounPhrase], verb: str) -> list[Fields]:

@@ -116,6 +116,9 @@ class Phrases:
             conjoined = False
         if headless and modifiers and modifiers[0].kind == "part":
             return self._chosen(head, modifiers)
+        if modifiers and _is_content(head, modifiers[0]):
+            text = f"{head.query.text} of {modifiers[0].anchors[0].said}"  # "the sacks of flour"
+            head, modifiers = replace(head, query=updated(head.query, text=text)), modifiers[1:]
         return replace(head, modifiers=(*head.modifiers, *modifiers))
 
     def _chosen(self, head: NounPhrase, modifiers: list[PostModifier]) -> NounPhrase:
@@ -257,6 +260,21 @@ class Phrases:
         if len(numbers) > 1 or value != int(value) or not 1 <= value <= 1000:
             raise Refusal("that is not a number of things", *(t.text for t in numbers))
         return int(value)
+
+
+_HOLDING = bag(
+    "sack bag box jar bottle can tin bowl cup mug glass pot bucket stack pile bunch pair set roll bale basket crate "
+    "tub "
+    "packet carton vase plate tray loaf jug barrel case chest pack bundle heap"
+)
+
+
+def _is_content(head: NounPhrase, post: PostModifier) -> bool:
+    """Whether a phrase says what a container or a pile is of, which is part of its name: "sacks of flour"."""
+    if post.kind != "part" or not head.query.text or head.query.text.split()[-1] not in _HOLDING or head.is_new:
+        return False
+    of = post.anchors[0]
+    return of.article == "bare" and bool(of.said) and not (of.query.colors or of.query.relations or of.number)
 
 
 def _each(colors: Sequence[str], fields: dict[str, Any], plural: bool) -> dict[str, Any]:

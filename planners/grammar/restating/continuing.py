@@ -72,7 +72,8 @@ _TRIED = re.compile(
     r"was better))*$"
 )
 _SAFER = re.compile(
-    r"^(?:no |wait |actually |not there |not that one |rather |or |maybe |, )*(?P<place>\S.*?)(?: (?:would|might|will|could) (?:be|look|work|feel) "
+    r"^(?:no |wait |actually |not there |not that one |rather |or |maybe |, )*(?P<place>\S.*?)(?: (?:would|might|"
+    r"will|could) (?:be|look|work|feel) "
     r"(?:a bit |a little |much |far |even )?(?:\w+er|best|good|great|fine|ideal|perfect)| instead| rather| please)*$"
 )
 _ONE_MORE = re.compile(

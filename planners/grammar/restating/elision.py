@@ -11,7 +11,7 @@ from ..tagging.words import bag
 from ..vocabulary import lexicon, quantities
 from .chunks import DOING, chunks, is_thing
 from .judgements import is_judged
-from .states import states
+from .states import begins_state, states
 
 _PRONOUNS = bag("it them they those these this that him her both")
 _PRONOUN_PHRASES = (("this", "one"), ("that", "one"), ("these", "ones"), ("those", "ones"), ("all", "of", "them"),
@@ -77,9 +77,13 @@ def about(thing: Sequence[str], clause: Sequence[str]) -> Iterator[list[str]]:
             return  # it has an object of its own
         yield [*clause[: start + verb[1]], *thing, *clause[start + verb[1] :]]
         return
-    for command in states(" ".join(thing), clause):
-        yield command.split()
+    if begins_state(clause, 0) or ahead.preposition_at(0) or clause[0] in _OPENS_STATE:
+        for command in states(" ".join(thing), clause):
+            yield command.split()
     yield [*thing, *clause]
+
+
+_OPENS_STATE = ("can", "could", "may", "should", "must", "all", "both", "each")
 
 
 def _noun_of(thing: Sequence[str]) -> str:
@@ -99,7 +103,7 @@ def gapped(said: Sequence[str]) -> Iterator[list[str]]:
     """Readings with the verb of the first part repeated in the later ones: "move A left and B right"."""
     ahead = Lookahead(said)
     start, _ = ahead.skip_polite(0)
-    if (verb := ahead.verb(start)) is None:
+    if (verb := ahead.verb(start)) is None or verb[0][0] == "ISOLATE":
         return
     spoken = list(said[start : start + verb[1]])
     joints = [i for i, w in enumerate(said) if w in (",", "and") and i > start and _opens_thing(said, i + 1)]
@@ -165,15 +169,12 @@ def terse(said: Sequence[str]) -> Iterator[str]:
     ahead = Lookahead(said)
     alone = said[0] in ("all", "both", "that", "this") and not ahead.noun_at(1)
     if (
-        len(said) > (_LONGEST_LIST if "," in said or "and" in said else _VERBLESS)
+        len(said) > _VERBLESS
         or not DOING.isdisjoint(said)
         or alone
         or said[0] in ("everything", "it", "they", "them")
         or ahead.verb(0) is not None
     ):
-        return
-    if (listed := _listed(said)) is not None:
-        yield listed
         return
     colored = color_at(said, 0)
     if colored and said[colored[1] : colored[1] + 1] in (["for"], ("for",)):
@@ -186,8 +187,10 @@ def terse(said: Sequence[str]) -> Iterator[str]:
             yield from states(" ".join(said[:i]), said[i:])
 
 
-def _listed(said: Sequence[str]) -> str | None:
+def listed(said: Sequence[str]) -> str | None:
     """The parts of a list of orders as sentences: "vase on the shelf, lamp on the desk"; None for anything else."""
+    if Lookahead(said).verb(0) is not None:
+        return None
     parts: list[list[str]] = [[]]
     for word in said:
         if word in (",", "and", "then"):
@@ -195,7 +198,7 @@ def _listed(said: Sequence[str]) -> str | None:
         else:
             parts[-1].append(word)
     parts = [p for p in parts if p]
-    if len(parts) < 2 or any(len(p) > _VERBLESS or not _is_order(p) for p in parts):
+    if len(said) > _LONGEST_LIST or len(parts) < 2 or any(len(p) > _VERBLESS or not _is_order(p) for p in parts):
         return None
     noun = _noun_of([w for w in parts[0] if w not in ("one", "ones")])
     named = [[noun if noun and w == "one" and i else w for w in part] for i, part in enumerate(parts)]

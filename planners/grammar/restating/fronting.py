@@ -124,7 +124,10 @@ def _spared(said: str) -> Iterator[str]:
             yield f"{found['edit']} except {found['one']}"
 
 
-_WITH = re.compile(r"^(?P<edit>\S.*?)(?: ,)? (?:and )?with (?P<thing>(?:the|that|this|my|our|both|all) [^,]+?) (?P<state>\w+(?:ed|ne|en|ung|ut)(?: .*)?)$")
+_WITH = re.compile(
+    r"^(?P<edit>\S.*?)(?: ,)? (?:and )?with (?P<thing>(?:the|that|this|my|our|both|all) [^,]+?) "
+    r"(?P<state>\w+(?:ed|ne|en|ung|ut)(?: .*)?)$"
+)
 
 
 def _with_participle(said: str) -> Iterator[str]:

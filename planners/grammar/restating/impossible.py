@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 from ..tagging.lookahead import Lookahead
 from ..tagging.words import bag
@@ -42,13 +43,18 @@ _SERVED = re.compile(
     r"the )?"
     r"(?:\w+ )?(?:coffee|tea|cuppa|sandwich|drink|beer|dinner|lunch|breakfast|snack|pizza|meal|discount|refund)\b"
 )
+
+
 def _made_to(command: Sequence[str]) -> bool:
     """Whether a thing shall be made to do what things do: "make the basket smell of rolls", "make it stop raining"."""
     if len(command) < 3 or command[0] not in ("make", "get", "have", "let", "keep", "stop"):
         return False
-    return any(w in doings.plain() or w in doings.ongoing() for w in command[2:6])
+    does = [w for before, w in pairwise(command[1:7]) if before not in _ARTICLES and w not in _SEEMING]
+    return command[1] in _OBJECT and any(w in doings.plain() or w in doings.ongoing() for w in does)
 
 
+_ARTICLES = bag("the a an my our your that this")
+_SEEMING = bag("like mean feel look seem appear match fit suit stand sit hang lie show stick visit open close")
 _OBJECT = bag("the a an my our your his her its that this those these some something it them me us all both up")
 
 

@@ -38,6 +38,7 @@ _ASKING = re.compile(
     r"unless|could do "
     r"with|(?:needs?|wants?) \w+ing)\b"
 )
+_NEGATED = re.compile(r"\b(?:can|do|does|did|will|would|could|is|are|was|were|has|have|had|am) not\b")
 _COAT = re.compile(r"\b(?:coat|lick|layer|splash|touch)s? of paint\b")
 
 
@@ -48,12 +49,11 @@ def is_remark(said: Sequence[str]) -> bool:
         return True
     return (
         len(said) > 1
+        and said[0] not in ("whatever", "whichever", "what", "which", "who")
         and Lookahead(said).verb(0) is None
         and (said[0] in _SUBJECTS or said[1] in _REMARKING or finite_at(said, 1))
         and any(finite_at(said, i) for i in range(1, len(said)))
-        and not _ASKING.search(
-            _COAT.sub("", text).replace("can not", "cannot").replace("do not", "").replace("does not", "")
-        )
+        and not _ASKING.search(_NEGATED.sub("cannot", _COAT.sub("", text)))
     )
 
 
@@ -68,10 +68,10 @@ def _judged(said: Sequence[str]) -> list[str] | None:
 def finite_at(said: Sequence[str], i: int) -> bool:
     """Whether the word at `i`, which is not the first, says what is, was or is done by what stands before it."""
     word, before = said[i], said[i - 1]
-    if i == 1 and before in ("it", "that", "this", "he", "she") and word.endswith("s") and len(word) > 3:
-        return word not in ("goes", "needs", "wants", "belongs", "this")
     if word in _REMARKING:
         return True
+    if i == 1 and before in ("it", "that", "this", "he", "she") and word.endswith("s") and len(word) > 3:
+        return word not in ("belongs", "this")
     if before in _OPENING_NOUNS or (word not in doings.said_of_one() and not (word in doings.plain() and _many(said))):
         return False
     return said[0] in _NOBODY or not nouns.is_known(word)
@@ -127,6 +127,11 @@ _HUE_WISH = re.compile(
 _FAR_FROM = re.compile(r"\btoo (?:far|close)(?: away)? (?:from|to) (?P<goal>(?:the|that|this|my|our) \S.*)$")
 
 
+def says_how_far(said: Sequence[str]) -> bool:
+    """Whether words say that a thing is too far from another, so that "closer" behind them means to that one."""
+    return _FAR_FROM.search(" ".join(said).partition(" , ")[0]) is not None
+
+
 def _of_whom(thing: Sequence[str]) -> Sequence[str]:
     """The thing whose colour a phrase names: "the red of the rug" is about the rug."""
     of = "of" in thing and color_at(thing, 1) is not None
@@ -152,8 +157,10 @@ def _trimmed(said: Sequence[str]) -> list[str]:
 _THERE_IS = re.compile(r"^there (?:is|are) (?:a|an|some|one|two|three|four|this|that|these|those) (?P<thing>\S.*)$")
 # What the speaker wants to do, not to have done: "I want to have a closer look".
 _LOOKING = re.compile(
-    r"^(?:so )?(?:i|we|she|he|they) (?:just |only )?(?:wants?|needs?|would like|wish|am going|are going|have|has|am trying|are trying|plan|intend) "
-    r"to (?:have a|take a|get a|look|see (?!\S+ \S+ (?:gone|moved|painted))|check|inspect|compare|study|admire|read|count|photograph|think|focus|"
+    r"^(?:so )?(?:i|we|she|he|they) (?:just |only )?(?:wants?|needs?|would like|wish|am going|are going|have|has|am "
+    r"trying|are trying|plan|intend) "
+    r"to (?:have a|take a|get a|look|see (?!\S+ \S+ (?:gone|moved|painted))|check|inspect|compare|study|admire|read|"
+    r"count|photograph|think|focus|"
     r"concentrate|work|sleep|sit|cook|play|eat|dance|practise|film|get (?:past|through|by|in|out|to)|walk|reach)\b"
 )
 _COLOR_OF = re.compile(
@@ -162,7 +169,8 @@ _COLOR_OF = re.compile(
     r"feels|seems|hurts|jars|goes|bothers|annoys) "
 )
 _NEEDING = re.compile(
-    r"^(?:(?:i|we|you|it|this room|the room) )?(?:need|needs|want|wants|could use) (?:(?:more|some|the|that|a bit more|a "
+    r"^(?:(?:i|we|you|it|this room|the room) )?(?:need|needs|want|wants|could use) (?:(?:more|some|the|that|a bit "
+    r"more|a "
     r"bit of|a little more) "
     r"(?:light|space|room|storage|seating|colou?r|air|warmth|privacy|order|variety)|(?:somewhere|something|someone|"
     r"a place|space|room|"
@@ -199,6 +207,8 @@ def subject_of(said: Sequence[str]) -> list[str] | None:
                 return subject
             break
     for i in range(len(words) - 1, 0, -1):
+        if words[i + 1 : i + 2] and words[i + 1] in nouns.EVERYWHERE:
+            continue  # of "the bike off the floor" the floor is not what it is about
         if words[i] in ("the", "that", "this", "those", "these", "my", "our") and is_thing(tuple(words[i:])):
             return list(words[i:])
         if words[i] in ("two", "three", "four", "five", "both") and is_thing(tuple(words[i:])):

@@ -8,7 +8,7 @@ from itertools import chain
 
 from ..tagging.words import bag
 from .continuing import continued, following
-from .elision import about, gapped, splits, terse, topics
+from .elision import about, gapped, listed, splits, terse, topics
 from .fronting import fronted
 from .materials import in_materials
 from .phrasings import phrasings
@@ -59,6 +59,8 @@ def _readings(said: str, mark: str) -> Iterator[str]:
     for text in dict.fromkeys((said, plain, shortest)):
         yield from in_materials(text)
         yield from phrasings(text)
+    if (orders := listed(shortest.split())) is not None:
+        yield orders
     for text in dict.fromkeys((said, plain)):
         yield from (" ".join(r) for r in topics(text.split()))
     yield from (plain, shorter, shortest, shortest.removesuffix(" more"))

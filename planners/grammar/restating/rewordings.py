@@ -20,22 +20,48 @@ REWORDED = tuple(
         (rf"half again as {_SIZED}(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
         (rf"(?:as {_SIZED} again)", r"2 times as \g<size>"),
         (r"no one", "nobody"),
+        (
+            r", (?:just )?all (?:of (?:them|those|these) )?(?:but|except|except for|apart from|bar|save) (?=(?:the|"
+            r"that|this|my|one))",
+            "except ",
+        ),
         (r"(?P<have>has|have) got to", "has to"),
         (r"(?P<p>size|height|width|length|depth) (?:that )?(?:it|they) (?:is|are)(?: now)?", r"\g<p>"),
         (r"(?:together |along |there )?with the (?:other one|others|rest|other)(?= [,.;!?]|$)", ""),
         (
-            r"(?:cut|chop|trim|bring|take|saw|reduce) (?P<x>(?:the|that|this|my|our) [^,.;!?]+?|it|them) (?:back |down )?to "
-            r"(?=(?:half|a third|a quarter|two thirds|three quarters|\d+ ?%|\d+ percent)(?: of)?(?: (?:its|their|the)| |$))",
+            r"(?:cut|chop|trim|bring|take|saw|reduce) (?P<x>(?:the|that|this|my|our) [^,.;!?]+?|it|them) (?:back |"
+            r"down )?to "
+            r"(?=(?:half|a third|a quarter|two thirds|three quarters|\d+ ?%|\d+ percent)(?: of)?(?: (?:its|their|"
+            r"the)| |$))",
             r"scale \g<x> to ",
         ),
-        (r"(?:like|bout|circa|something like|maybe) (?=\d+ ?(?:cm|m|mm|in|inch|inches|ft|feet|foot|deg|degrees|%))", ""),
-        (r"(?P<n>\d\S*(?: (?:cm|m|mm|inches|feet|centimet\w+|met\w+|degrees))?) (?:or so|ish|give or take|or thereabouts)",
-         r"\g<n>"),
-        (r"(?:over|along|across) (?=(?:a (?:wee |tiny |little |small )?(?:bit|tad|touch|smidge|little|notch)|\d\S*|half|slightly|by) )", ""),
-        (r"(?P<to>to the (?:left|right)|left|right|back|forward|up|down) (?P<some>a (?:smidge|bit|touch|tad|little|notch))(?= [,.;!?]|$)",
-         r"\g<some> \g<to>"),
         (
-            r"(?:and |, )*(?:then )?(?:once|when|after|as soon as) (?:that is|that has been|this is|it is|you have|you are|all that is|"
+            r"(?:like|bout|circa|something like|maybe) (?=\d+ ?(?:cm|m|mm|in|inch|inches|ft|feet|foot|deg|degrees|%))",
+            "",
+        ),
+        (
+            r"(?P<n>\d\S*(?: (?:cm|m|mm|inches|feet|centimet\w+|met\w+|degrees))?) (?:or so|ish|give or take|or "
+            r"thereabouts)",
+            r"\g<n>",
+        ),
+        (
+            r"(?P<to>to the (?:left|right)|left|right|back|forward|up|down) (?P<some>a (?:smidge|bit|touch|tad|little|"
+            r"notch))(?= [,.;!?]|$)",
+            r"\g<some> \g<to>",
+        ),
+        (
+            r"(?:over|along|across) (?=(?:a (?:wee |tiny |little |small )?(?:bit|tad|touch|smidge|little|notch)|\d\S*|"
+            r"half|slightly|by) )",
+            "",
+        ),
+        (
+            r"(?P<n>\d\S*|two|three|five|ten|twenty|thirty) (?:more|further) (?=degrees|deg|cm|centimet|met|inch|feet|"
+            r"foot|mm)",
+            r"\g<n> ",
+        ),
+        (
+            r"(?:and |, )*(?:then )?(?:once|when|after|as soon as) (?:that is|that has been|this is|it is|you have|"
+            r"you are|all that is|"
             r"that) (?:done|finished|sorted|through)(?: that| with that| it)?(?: ,)?",
             ", then",
         ),
@@ -89,9 +115,13 @@ REWORDED = tuple(
             r"point|points) the (?:other|opposite) (?:way|direction)(?: round| around)?",
             r"turn \g<x> around",
         ),
-        (r"(?:to |so (?:that )?it (?:is )?)?(?:face|faces|facing) the (?:other|opposite) (?:way|direction)", "turn around"),
+        (r"to face the (?:other|opposite) (?:way|direction)", "to turn around"),
+        (r"(?:so (?:that )?it (?:is )?)?(?:face|faces|facing) the (?:other|opposite) (?:way|direction)", "turn around"),
         (r"(?:cut|chop|reduce|bring|take|slash) (?P<x>\S.*?) (?:in|by|to|down to|down by) half", r"halve \g<x>"),
-        (r"scale (?:down )?(?P<x>(?!up)\S.*?) (?:down |to |down by |down to )half", r"halve \g<x>"),
+        (
+            r"scale (?:down )?(?P<x>(?!up)\S.*?) (?:down |to |down by |down to )half(?! (?:of )?(?:its|their|the))",
+            r"halve \g<x>",
+        ),
         (r"whatever (?:is|are) (?:sitting|standing|lying|placed|resting|currently|now|there) ", "whatever is "),
         (r"(?:only|just) the (?=\S.* (?:should|can|may|must) (?:stay|remain|be left))", "only the "),
         (r"'s (?:got to|have to|gotta)", "has to"),
@@ -123,7 +153,8 @@ REWORDED = tuple(
         ),
         (r", (?:but )?not (?P<x>the [^,.;!?]+?)(?: though)?(?= [.;!?]|$)", r"except \g<x>"),
         (
-            r"(?:empty|clear) (?:out |off )?(?P<x>the [^,.;!?]+?)(?: ,)? (?P<but>except for|except|apart from|but "
+            r"(?:empty|clear) (?:out |off )?(?P<x>the [^,.;!?]*?[^ s,.;!?])(?: ,)? (?P<but>except for|except|apart "
+            r"from|but "
             r"for|but not|bar|save for|"
             r"but leave|but keep) ",
             r"delete everything on \g<x> except ",

@@ -116,9 +116,11 @@ _REASON = (
     r"starts?|ends?|has|have|does|do|can|will|would|leaves?|see|sees|visits?|moves?)(?= |$)|"
     r"otherwise|or else|while (?:i|we|you|it)|"
     r"for (?:the|my|our|a) (?:party|guests|wedding|visit|photo|photos|shoot|summer|winter|christmas|kids|children|baby|"
-    r"evening|meeting|presentation|concert|show)|for (?:(?:the|my|our|your) )?(?:people|customers|clients|visitors|punters|"
+    r"evening|meeting|presentation|concert|show)|for (?:(?:the|my|our|your) )?(?:people|customers|clients|visitors|"
+    r"punters|"
     r"guests|kids|children|staff|everyone|everybody)(?: (?:who|that|to) [^,.;!?]*)?|"
-    r"(?<=, )where (?:\S+ )+?\S+|(?<=, )not (?:out |over |there |up )*where (?:\S+ )+?\S+|to match the (?:rest|mood)|to brighten (?:things|the place|it) up|"
+    r"(?<=, )where (?:\S+ )+?\S+|(?<=, )not (?:out |over |there |up )*where (?:\S+ )+?\S+|to match the (?:rest|"
+    r"mood)|to brighten (?:things|the place|it) up|"
     r"until (?:i|we|you))"
 )
 _TRAILING_REASON = re.compile(rf"(?<=\S)(?: ,)* {_REASON}(?= |$)[^.;!?]*(?= [.;!?]|$)")
@@ -175,10 +177,17 @@ def smooth(texts: Sequence[str]) -> list[str]:
 
 # When it shall be done, which nobody can choose here.
 _TIMES = re.compile(
-    r"(?<=\S)(?: ,)? (?:(?:by|before|until|for|from|on|in time for|this|next|every|first thing) (?:(?:the|this|next) )?(?:monday|tuesday|"
-    r"wednesday|thursday|friday|saturday|sunday|tomorrow|tonight|today|noon|midnight|christmas|easter|weekend|summer|winter|"
+    r"(?<=\S)(?: ,)? (?:(?:by|before|until|for|from|on|in time for|this|next|every|first thing) (?:(?:the|this|"
+    r"next) )?(?:monday|tuesday|"
+    r"wednesday|thursday|friday|saturday|sunday|tomorrow|tonight|today|noon|midnight|christmas|easter|weekend|"
+    r"summer|winter|"
     r"morning|evening|afternoon)s?(?: morning| evening| night)?|tomorrow|tonight|today|asap)(?= [,.;!?]|$)"
 )
+
+
+def _is_command(words: Sequence[str]) -> bool:
+    ahead = Lookahead(words)
+    return ahead.verb(ahead.skip_polite(0)[0]) is not None
 
 
 def _joined_amounts(said: str) -> str:
@@ -186,7 +195,12 @@ def _joined_amounts(said: str) -> str:
     words = said.split(" ")
     kept: list[str] = []
     for i, word in enumerate(words):
-        if word == "," and kept and "," not in kept and Lookahead(kept).verb(Lookahead(kept).skip_polite(0)[0]) is not None:
+        if (
+            word == ","
+            and kept
+            and "," not in kept
+            and Lookahead(kept).verb(Lookahead(kept).skip_polite(0)[0]) is not None
+        ):
             rest = words[i + 1 :]
             amount = quantities.read(rest)
             if amount is not None and amount.kind in ("LENGTH", "ANGLE", "PERCENT"):
@@ -313,11 +327,21 @@ def unopened(said: str) -> str:
     return _OPENING_MARKS.sub("", said)
 
 
+_OWNING = ("the", "my", "our", "your", "any", "people")
+
+
 def _without_event(said: str) -> str:
     """A sentence without what happens before or when somebody does something: "before the neighbours complain"."""
     words = said.split()
     for i in range(2, len(words) - 2):
-        if words[i] in ("before", "when", "whenever", "while") and words[i + 1] in ("the", "my", "our", "your", "any", "people"):
+        if words[i] in ("before", "when", "whenever", "while") and words[i + 1] in (
+            "the",
+            "my",
+            "our",
+            "your",
+            "any",
+            "people",
+        ):
             end = next((j for j in range(i, len(words)) if words[j] in (",", ".", ";")), len(words))
             if any(w in doings.plain() or w in doings.said_of_one() for w in words[i + 3 : end]):
                 return " ".join([*words[:i], *words[end:]]).replace(" , ,", " ,")

@@ -17,7 +17,8 @@ BETTER = (
     r"(?:a (?:lot|bit|little|touch|good deal) |much |far |so much |way |even |somewhat )?"
     r"(?:better|nicer|handier|comfier|safer|neater|smarter|best|great|good|nice|lovely|cooler|prettier|perfect|fab|"
     r"fantastic|smarter|cosier|happier|safer|"
-    r"(?!(?:bigg|larg|small|tall|short|wid|narrow|dark|light|bright|high|low|clos|near|furth|long|warm|cool|pal)er)\w{2,}er|"
+    r"(?!(?:bigg|larg|small|tall|short|wid|narrow|dark|light|bright|high|low|clos|near|furth|long|warm|cool|"
+    r"pal)er)\w{2,}er|"
     r"more at home|more (?:sensible|fun|modern|elegant))"
 )
 # Before a thing and the state that it is to have.
@@ -49,7 +50,8 @@ MODAL = re.compile(
     rf"would {REALLY}(?:be|look|fit|go|do|feel|work|stand|sit|suit|make more sense) {BETTER}(?: off)?(?: if it "
     rf"(?:were|was|"
     rf"is))?|"
-    rf"needs to|need to|wants to|want to|is to|are to|was to|were to|will|would|had better|gets?|is getting|are getting|is supposed to|"
+    rf"needs to|need to|wants to|want to|is to|are to|was to|were to|will|would|had better|gets?|is getting|are "
+    rf"getting|is supposed to|"
     rf"are supposed to|is meant to|are meant to|is going to|are going to|is due to|deserves to|cries out to|would "
     rf"be {BETTER} off|"
     rf"would like to|was supposed to|is ready to|is dying to|needs|should all|must all|should both|"
@@ -85,7 +87,8 @@ KEPT = tuple(
         r"^(?:only|just|nothing but) (?P<thing>\S.*?) (?:should|must|can|may|shall|is to|are to) (?:stay|remain|be "
         r"left|be kept|"
         r"be visible|be shown|survive|be there|be in the (?:scene|room))$",
-        r"^(?:keep|leave|show(?: me)?|i want to see|i want|i need)? ?(?P<thing>\S.*?)(?: ,)* (?:and )?(?:nothing|"
+        r"^(?:keep|leave|show(?: me)?|i want to see|i want|i need)? ?(?:only |just )?(?P<thing>\S.*?)(?: ,)* (?:and "
+        r")?(?:nothing|"
         r"no thing|not "
         r"anything) (?:else|more|other)$",
         r"^(?:everything|all|anything|the lot) (?:but|except|except for|apart from|other than|bar|besides) "
@@ -115,7 +118,8 @@ UNWANTED = tuple(
         rf"this|my|our|those|these|both|all) \S.*?) (?:taken )?(?:down|off the wall|down off the wall|off)$",
         rf"^(?P<thing>\S.*?) (?:goes|go|is going|are going|belongs?|can go|has to go|have to go|should go|must go|"
         rf"needs to go) {_IN_THE_BIN}$",
-        r"^(?P<thing>(?!(?:it|that|this|there|he|she|they|which|anything|what|here|everything)\b)[^,;:]*?\w) (?:goes|is going|are going|"
+        r"^(?P<thing>(?!(?:it|that|this|there|he|she|they|which|anything|what|here|everything)\b)[^,;:]*?\w) "
+        r"(?:goes|is going|are going|"
         r"comes (?:off|out|down)|goes away|has had it|must die)$",
         r"^(?:so |and |then )?(?:out|away|off) (?P<thing>(?:it|they|the \S.*?)) (?:goes|go)$",
         rf"^(?:none|not one|not a single one|not any|not a one) of (?P<thing>(?:the|those|these|my|our) \S.*?) {REALLY}"

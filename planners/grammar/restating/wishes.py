@@ -162,7 +162,7 @@ def _replacing(said: str) -> Iterator[str]:
 
 
 def _is_amount(new: Sequence[str]) -> bool:
-    """Whether words that look like a new thing are a colour or an amount: "a dark red", "one and a half times as tall"."""
+    """Whether words that look like a new thing are a colour or an amount: "a dark red", "twice as tall"."""
     amount = quantities.read(new)
     stated = amount is not None and amount.kind not in ("NUMBER", "ORDINAL")
     return stated or color_at(new, 1) is not None

@@ -18,8 +18,11 @@ from ..vocabulary.verbs import Entry
 from .words import bag
 
 # Colour names that are nouns as well ("delete the orange").
-NOUN_COLORS = bag("orange rose peach apricot olive lime tomato salmon plum chocolate snow sand coral orchid wine mint "
-                  "lavender lilac violet sage mustard lemon cherry honey heather hyacinth iris jade amber fern heliotrope")
+NOUN_COLORS = bag(
+    "orange rose peach apricot olive lime tomato salmon plum chocolate snow sand coral orchid wine mint "
+    "lavender lilac violet sage mustard lemon cherry honey heather hyacinth iris jade amber fern "
+    "heliotrope"
+)
 _OPENERS = frozenset({"DET", "PRON", "EVERYTHING", "NUMBER", "OTHERS"})
 _PARTICLES = frozenset({"up", "down", "out", "away", "off", "over"})
 

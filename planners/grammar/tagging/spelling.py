@@ -79,7 +79,7 @@ def _noun_expected(texts: Sequence[str], i: int) -> bool:
     j = i - 1
     while j > 0 and (texts[j] in colors.BASIC or (texts[j],) in lexicon.ATTRIBUTE_PHRASES):
         j -= 1
-    if i and texts[i - 1] in (*colors.BASIC, "grey"):
+    if i and texts[i - 1] in (*colors.BASIC, "grey", "of"):
         return True  # a colour and its noun: "the grey lounger 80 cm to the right"
     ends = behind in _BEHIND_NOUN or behind[0].isdigit() or (behind,) in lexicon.CLOSED_PHRASES
     return i > 0 and texts[j] in _ARTICLES and (behind in _BEHIND_NOUN if j == i - 1 else ends)

@@ -182,9 +182,18 @@ def _tag_color(state: TaggerState, i: int, length: int) -> int | None:
     if follows_det and taken == 1 and name in NOUN_COLORS and not _indefinite_hue(state, i):
         return state.emit("NOUN", name, i, 1)
     changed = state.clause.verb in _CHANGING and state.ahead.hue_follows(_behind_joint(state.texts, i + taken))
+    changed = changed or (state.clause.verb in _CHANGING and _changes_at(state, i + taken))
     if state.last_type == "EVERYTHING" and (changed or state.clause.verb in _CHOOSING):
         state.emit("REL", None, i, 0)  # "everything red" is everything that is red
     return state.emit("HUE", name, i, taken)
+
+
+def _changes_at(state: TaggerState, i: int) -> bool:
+    """Whether a change other than to a colour is at `i`: "make everything brown a shade lighter"."""
+    phrase = state.ahead.phrase(i) if i < len(state.texts) else None
+    amount = quantities.read(state.texts[i:])
+    said = phrase is not None and phrase[0][0] in ("DEGREE", "LIGHT", "GROWN", "CLEARLY", "MORE", "LESS", "OPAQUE")
+    return said or (amount is not None and amount.kind != "NUMBER")
 
 
 def _thing_then_hue(state: TaggerState, i: int, taken: int) -> int:
