@@ -97,10 +97,13 @@ class Judge:
         """As receipts name it."""
         return "built-in" if self.vision is None else f"built-in, {self.vision.backend.name}"
 
-    def carry_out(self, scene: Scene, op: EditOp, context: Context, instruction: str = "") -> Done:
+    def carry_out(
+        self, scene: Scene, op: EditOp, context: Context, selection: Selection | None = None, instruction: str = ""
+    ) -> Done:
         """As `execute.carry_out`, and judged; the receipt holds what was measured and repaired.
 
         Args:
+            selection: what to apply it to, instead of resolving the operation's own query.
             instruction: the user's words, if they ask for this operation alone; without it no vision model is asked.
 
         Raises:
@@ -110,12 +113,12 @@ class Judge:
         from ...tools import execute
         from ...tools.receipt import Judgement, Repair
 
-        done = execute.carry_out(scene, op, context, seen=False)
+        done = execute.carry_out(scene, op, context, selection, seen=False)
         started = time.perf_counter()
-        found = self._findings(scene, done.scene, op, _Try(context, None, ""), instruction)
+        found = self._findings(scene, done.scene, op, _Try(context, selection, ""), instruction)
         repairs: list[Repair] = []
         while not found.passed and len(repairs) < REPAIRS:
-            again = next(_ways(scene, op, context, found, tuple(r.tried for r in repairs)), None)
+            again = next(_ways(scene, op, context, found, tuple(r.tried for r in repairs), selection), None)
             if again is None:
                 break
             repairs.append(Repair(failed=found.failed, tried=again.told))
@@ -181,26 +184,29 @@ def _with_judgement(receipt: Receipt, judgement: Judgement) -> Receipt:
     return receipt.model_copy(update={"judged": judgement, "notes": notes, "seconds": seconds})
 
 
-def _ways(scene: Scene, op: EditOp, context: Context, findings: Findings, tried: tuple[str, ...]) -> Iterator[_Try]:
-    """What may repair the failure and was not tried yet, the likeliest first."""
+def _ways(
+    scene: Scene, op: EditOp, context: Context, findings: Findings, tried: tuple[str, ...], bound: Selection | None = None
+) -> Iterator[_Try]:
+    """What may repair the failure and was not tried yet, the likeliest first; `bound` is what it is about, if that was
+    settled before."""
     failed = {check.name for check in findings.failed}
     if failed & _LEFT and len(findings.residue) and not tried:
-        yield _grown(scene, op, context, findings.residue)
+        yield _grown(scene, op, context, findings.residue, bound)
     if op.op in ("insert", "replace") and failed & _SPOT:
         told = "another design" + (" and spot" if len(tried) else "")
         seeded = replace(context, seed=context.seed + _NEXT_SEED * (len(tried) + 1))
         if told not in tried:
-            yield _Try(seeded, None, told)
-    elif failed & _UNNAMED and (other := _other_candidate(scene, op, context)) is not None:
+            yield _Try(seeded, bound, told)
+    elif bound is None and failed & _UNNAMED and (other := _other_candidate(scene, op, context)) is not None:
         told = f"the other candidate, {other.candidates[0].describe()}" if other.candidates else "the other candidate"
         if told not in tried:
             yield _Try(context, other, told)
     told = "carried out again"
     if told not in tried and any(name not in _LEFT | _UNNAMED and not name.startswith(SEEN) for name in failed):
-        yield _Try(context, None, told)
+        yield _Try(context, bound, told)
 
 
-def _grown(scene: Scene, op: EditOp, context: Context, residue: Tensor) -> _Try:
+def _grown(scene: Scene, op: EditOp, context: Context, residue: Tensor, bound: Selection | None = None) -> _Try:
     """The operation on its target together with what was left behind."""
     import torch
 
@@ -208,7 +214,7 @@ def _grown(scene: Scene, op: EditOp, context: Context, residue: Tensor) -> _Try:
 
     query = op.query()
     assert query is not None
-    meant = context.resolve(scene, query).require()
+    meant = context.resolve(scene, query).require() if bound is None else bound
     told = f"selected {len(residue):,} more Gaussians that were left behind"
     if (filed := refiled(scene, meant, residue)) is not None:
         return _Try(context, None, told, filed)

@@ -17,6 +17,7 @@ from .refusal import open_verdict, with_message
 if TYPE_CHECKING:
     from ...planners.plan import EditPlan
     from ...tools.operation import Context
+    from ...gaussians.language.query.query import Query
     from ...tools.receipt import Receipt
     from .judge import Judge
 
@@ -59,19 +60,28 @@ def run_plan(
         PlanFailed: an operation cannot be done, failed its own check, or was judged a failure.
     """
     from ...tools import execute
+    from ...tools.binding import bound_targets, exchanged_likes
     from ...tools.completing import completed
     from ...tools.ops.reframe import of_everything
 
     words = plan.instruction if len(plan.ops) == 1 else ""
     carry_out = execute.carry_out if judge is None else partial(judge.carry_out, instruction=words)
 
+    def before(query: Query, it: Selection | None) -> Selection:
+        return context_of(it).resolve(start.scene, query)
+
     scene, last = start.scene, start.last
+    bound = bound_targets(plan.ops, before, start.last)
+    early = exchanged_likes(plan.ops, before, start.last)
     receipts: list[Receipt] = []
     for step, op in enumerate(plan.ops):
         context = context_of(last)
         try:
             op = of_everything(op)
-            scene, receipt, last = completed(scene, op, context, carry_out(scene, op, context))
+            if step in early:
+                op = op.settled(start.scene, context_of(start.last))
+            done = carry_out(scene, op, context, selection=bound[step])
+            scene, receipt, last = completed(scene, op, context, done)
         except ScenewrightError as error:
             raise PlanFailed(_in_plan(error, plan, step), _question(plan, step, error, scene, context)) from error
         receipts.append(

@@ -6,12 +6,13 @@ No scene is built or edited. impossible.py refuses steps that sizes make impossi
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ...gaussians.errors import UserError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
+from ...tools.binding import bound_targets, exchanged_likes
 from ...tools.operation import EditOp
 from ..impossible import Step, StepRefused, metres, refuse_above, refuse_impossible
 from ..plan import EditPlan, Observation, Planner, Verdict
@@ -90,9 +91,12 @@ def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) ->
         return Resolved(plan.verdict, (), (), plan.reason, plan)
     play = _Play(stage, last)
     steps: list[Step] = []
+    bound = bound_targets(plan.ops, stage.find, last)
+    early = exchanged_likes(plan.ops, stage.find, last)
     for number, op in enumerate(plan.ops, start=1):
         try:
-            steps.append(play.step(op))
+            settled = _Play(stage, last).settled(op) if number - 1 in early else op
+            steps.append(play.step(settled, bound[number - 1]))
         except (StepRefused, UserError) as error:
             where = f"step {number} of {len(plan.ops)} ({op.op}): " if len(plan.ops) > 1 else ""
             verdict: Verdict = error.verdict if isinstance(error, StepRefused) else "not_understood"
@@ -164,17 +168,24 @@ class _Play:
         self.gone |= away
         self.stage = self.stage.without(away)
 
-    def step(self, op: EditOp) -> Step:
+    def step(self, op: EditOp, bound: Selection | None = None) -> Step:
         """The operation with what it would touch.
+
+        Args:
+            bound: what it is about, if that was found before the first step.
 
         Raises:
             StepRefused: something is absent, ambiguous or cannot be.
             UserError: a word is unknown.
         """
-        op = self._settled(op)
+        op = self.settled(op)
         query = op.query()
         about_fresh = query is not None and query.last and bool(self.fresh)
-        chosen = None if query is None or about_fresh else self._found(query)
+        there = None if bound is None else tuple(g for g in bound.groups if g not in self.gone)
+        if bound is not None and there:
+            chosen: Selection | None = replace(bound, groups=there)
+        else:
+            chosen = None if query is None or about_fresh else self._found(query)
         anchors = self._anchors(op)
         targets = self.fresh if about_fresh else self.stage.names(chosen.groups) if chosen is not None else ()
         step = Step(op, targets, self.stage.names(g for a in anchors for g in a.groups), metres(op))
@@ -184,7 +195,7 @@ class _Play:
         self._after(op, chosen)
         return step
 
-    def _settled(self, op: EditOp) -> EditOp:
+    def settled(self, op: EditOp) -> EditOp:
         """The operation with the colour of the thing that it is to be like."""
         like: Query | None = getattr(op, "like", None)
         if like is None:

@@ -136,6 +136,8 @@ class Resolver:
         outs = []
         for other in query.exclude:
             out = self.select(other.model_copy(update={"pick": "all"}) if other.pick == "one" else other)
+            if not out.chosen and self._is_gone(other) and query.text not in ALL:
+                continue  # "now both of the others", behind a deletion
             if not out.chosen:
                 rest = other.last and query.text in ALL
                 why = _REST if rest else f"cannot leave out what is not there: {out.reason}"
@@ -238,6 +240,10 @@ class Resolver:
         if self.last is None or not len(there):
             return nothing(query, "there is nothing that 'it' could mean (any more); name the object")
         return replace(self.last, query=query, ids=there)
+
+    def _is_gone(self, query: Query) -> bool:
+        """Whether a query is "it", and what that means was deleted since: there is nothing left to leave out."""
+        return query == Query(last=True) and self.last is not None and not len(self.members.present(self.last.ids))
 
     def _floaters(self, query: Query) -> Selection:
         """The Gaussians that lie apart from every surface."""

@@ -160,6 +160,15 @@ def swap(phrases: Phrases, node: Node) -> list[Fields]:
     return [{"op": "exchange", "target": both}]
 
 
+def swap_colors(phrases: Phrases, node: Node) -> list[Fields]:
+    """ "swap the colours of the chair and the table": each takes the colour that the other has."""
+    found = [n for i in range(len(trees(node, "targets"))) for n in phrases.things(node, i)]
+    if len(found) != 2 or any(n.plural for n in found):
+        raise Refusal("say which two things exchange colours", tokens(node, "SWAP")[0].text)
+    one, other = (n.full() for n in found)
+    return [{"op": "recolor", "target": one, "like": other}, {"op": "recolor", "target": other, "like": one}]
+
+
 def duplicate(phrases: Phrases, node: Node) -> list[Fields]:
     found = phrases.things(node)
     motion = places.read_motion(trees(node, *MOTIONS), phrases)
@@ -207,4 +216,4 @@ def _counted(times: int | None) -> Fields:
     return {"count": times} if times and times > 1 else {}
 
 
-RULES = (insert, make_new, more_like, more_like_that, replace_, substitute, swap, duplicate, copies)
+RULES = (insert, make_new, more_like, more_like_that, replace_, substitute, swap, swap_colors, duplicate, copies)

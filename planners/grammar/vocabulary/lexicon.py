@@ -300,7 +300,7 @@ CLOSED: dict[str, Entry] = {
     **same(("PROP", "height"), "height, in height"),
     **same(("PROP", "width"), "width, length, in width, in length"),
     **same(("PROP", "depth"), "depth, in depth"),
-    **same(("COLORWORD", None), "colour, color, paint, hue, shade, colored, coloured, tint"),
+    **same(("COLORWORD", None), "colour, color, colours, colors, paint, hue, shade, colored, coloured, tint"),
     **same(("ASHADE", None), "a shade of, a nice shade of, a coat of, a lick of, a dash of, a nice coat of, a fresh "
             "coat of, a new coat of, some, a fresh lick of, a layer of, a splash of, a touch of"),
     **same(("OPACITYWORD", True), "opacity, alpha"),
