@@ -39,7 +39,13 @@ def bound_targets(ops: Sequence[EditOp], find: Find, last: Selection | None = No
     for i, op in enumerate(ops):
         query = op.query()
         found = None
-        if (i or pointed) and query is not None and query != _IT and (known or not _points(query)) and not _is_made(query, ops[:i]):
+        if (
+            (i or pointed)
+            and query is not None
+            and query != _IT
+            and (known or not _points(query))
+            and not _is_made(query, ops[:i])
+        ):
             found = _found(find, query, last)
         bound.append(None if i == 0 or any(e.op in _RENAMING for e in ops[:i]) else found)
         if op.op in _MAKING:
@@ -65,7 +71,9 @@ def exchanged_likes(ops: Sequence[EditOp], find: Find, last: Selection | None = 
         if target is not None and model is not None:
             pairs[i] = (frozenset(target.groups), frozenset(model.groups))
     return frozenset(
-        i for i, (target, model) in pairs.items() if any((model, target) == other for j, other in pairs.items() if j != i)
+        i
+        for i, (target, model) in pairs.items()
+        if any((model, target) == other for j, other in pairs.items() if j != i)
     )
 
 

@@ -185,7 +185,12 @@ def _with_judgement(receipt: Receipt, judgement: Judgement) -> Receipt:
 
 
 def _ways(
-    scene: Scene, op: EditOp, context: Context, findings: Findings, tried: tuple[str, ...], bound: Selection | None = None
+    scene: Scene,
+    op: EditOp,
+    context: Context,
+    findings: Findings,
+    tried: tuple[str, ...],
+    bound: Selection | None = None,
 ) -> Iterator[_Try]:
     """What may repair the failure and was not tried yet, the likeliest first; `bound` is what it is about, if that was
     settled before."""

@@ -15,9 +15,9 @@ from .history import State
 from .refusal import open_verdict, with_message
 
 if TYPE_CHECKING:
+    from ...gaussians.language.query.query import Query
     from ...planners.plan import EditPlan
     from ...tools.operation import Context
-    from ...gaussians.language.query.query import Query
     from ...tools.receipt import Receipt
     from .judge import Judge
 
@@ -80,7 +80,8 @@ def run_plan(
             op = of_everything(op)
             if step in early:
                 op = op.settled(start.scene, context_of(start.last))
-            done = carry_out(scene, op, context, selection=bound[step])
+            about = bound[step]
+            done = carry_out(scene, op, context, *(() if about is None else (about,)))
             scene, receipt, last = completed(scene, op, context, done)
         except ScenewrightError as error:
             raise PlanFailed(_in_plan(error, plan, step), _question(plan, step, error, scene, context)) from error

@@ -159,7 +159,8 @@ _THERE_IS = re.compile(r"^there (?:is|are) (?:a|an|some|one|two|three|four|this|
 _LOOKING = re.compile(
     r"^(?:so )?(?:i|we|she|he|they) (?:just |only )?(?:wants?|needs?|would like|wish|am going|are going|have|has|am "
     r"trying|are trying|plan|intend) "
-    r"to (?:have a|take a|get a|look|see (?:it|them|what|how|whether|if|\S.* by (?:itself|themselves))|check|inspect|compare|study|admire|read|"
+    r"to (?:have a|take a|get a|look|see (?:it|them|what|how|whether|if|\S.* by (?:itself|themselves))|check|"
+    r"inspect|compare|study|admire|read|"
     r"count|photograph|think|focus|"
     r"concentrate|work|sleep|sit|cook|play|eat|dance|practise|film|get (?:past|through|by|in|out|to)|walk|reach)\b"
 )
