@@ -39,6 +39,7 @@ _SKIRT = 0.02  # of the thing's extent: how near a wall the floor is not looked 
 _PART = 0.3  # of a gap in a surface: where the thing hid as much of it, all of it is the hole
 _ENCLOSED = 0.8  # of such a gap's border that must be of the surface
 _FAR = 1.0  # of the thing's extent: a surface farther from it was seen past it
+_NEAR = 6  # cells from a hole within which a group must be that is continued into it
 _GROUP = 0.1  # of a surface's cells from which a group is part of it
 _SAMPLE = 60_000  # points of the surroundings
 _WIDE = 8_000  # large Gaussians of which further points are taken
@@ -105,8 +106,8 @@ def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = No
     for plane in planes:
         clips = [p for p in planes if p is not plane and p.last]
         patch = _patch(scene.replace(cloud=made), rows, thing, plane, clips, (low, high, size))
-        if patch is not None:
-            patches.append(patch)
+        if patch is not None and (plane.last or len(patch.cloud) or len(patch.shaded)):
+            patches.append(patch)  # that a surface among others ends before the thing is nothing to tell
     return patches
 
 
@@ -209,7 +210,7 @@ def _shadow(thing: GaussianCloud, surface: Surface, within: Mask, size: float) -
     if not footprint.any():
         return None
     zone = zone_of(footprint, surface.chart, size) & within
-    return estimated(surface.shown.rgb, surface.covered, footprint, zone)
+    return estimated(surface.shown.rgb, _same(surface.shown, surface.covered, footprint), footprint, zone)
 
 
 def continue_into(
@@ -241,7 +242,7 @@ def continue_into(
 def _filled(
     scene: Scene, slab: Tensor, plane: Plane, chart: Chart, shown: Seen, covered: Mask, hole: Mask, support: float
 ) -> Patch:
-    known = covered & ~hole
+    known = _same(shown, covered & ~hole, hole)
     result: Continued = continued(shown.rgb, known, hole)
     solid = known & (shown.alpha > 0.9) if (known & (shown.alpha > 0.9)).any() else known
     height = harmonic(shown.height[..., None], solid, hole | (known & ~solid))[..., 0]
@@ -265,6 +266,15 @@ def _of_surface(shown: Seen) -> Mask:
     names, count = np.unique(shown.group[there], return_counts=True)
     main = names[(count >= _GROUP * count.sum()) | (names < 0)]
     return np.asarray(np.isin(shown.group, main))
+
+
+def _same(shown: Seen, known: Mask, place: Mask) -> Mask:
+    """The known cells of the groups that are in or near a place: a picture on the wall beside it is left out."""
+    near = known & ndimage.binary_dilation(place, iterations=_NEAR)
+    if not near.any():
+        return known
+    names, count = np.unique(shown.group[near], return_counts=True)
+    return np.asarray(known & np.isin(shown.group, names[count >= _GROUP * count.sum()]))
 
 
 def _before(points: F64, clips: Sequence[Plane], margin: float) -> Mask:

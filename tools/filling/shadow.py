@@ -15,16 +15,18 @@ from ...gaussians.cloud import GaussianCloud
 from ...gaussians.harmonics import SH_C0
 from .charts import Chart
 from .planes import F64, Mask
-from .texture import continued
+from .texture import continued_far
 
 REACH = 0.3  # of the thing's extent: how far a contact shadow reaches beyond what it covers
 _DARKEST = 0.25  # ratio of colours that a contact shadow goes down to
 _SEEN = 0.96  # ratio above which nothing is changed
 _PART = 0.2  # of the cells near a thing, its darkest, that tell whether there is a shadow: it may stand on legs
 _CLEAR = 0.9  # ratio there above which there is none
+_GLOW = 1.05  # of the brightest of the surface around: what nothing may exceed
+_TINT = 0.3  # difference of two colours of the same mean from which they are two materials
 _SMOOTH = 1.5  # cells over which the ratio is averaged at least
-_COARSE = 0.2  # of the shadow's reach: further cells, where the texture is not predictable
-_OUTSIDE = 0.12  # how far from one the ratio may be where the shadow has ended; more is no shadow but another surface
+_COARSE, _COARSEST = 0.1, 2.5  # of the shadow's reach, and cells at most: by how much more
+_OUTSIDE = 0.2  # how far from one the ratio may be where the shadow ends, which then counts as one
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,19 +68,21 @@ def estimated(rgb: F64, known: Mask, footprint: Mask, zone: Mask) -> Shadow | No
         return None
     away = ndimage.distance_transform_edt(~footprint)
     end = float(away[zone].max())
-    clear = continued(rgb, outside, zone)
-    # A texture that cannot be predicted is averaged over more of it.
-    sigma = _SMOOTH + min(_COARSE * end, 6.0) * min(clear.error / max(clear.spread, 1e-9), 1.0)
-    ratio = _ratio(rgb, np.minimum(clear.picture, _brightest(rgb, outside)), inside, sigma)
+    clear = continued_far(rgb, outside, zone)
+    ratio = _ratio(rgb, np.minimum(clear, _brightest(rgb, outside)), inside, _SMOOTH + min(_COARSE * end, _COARSEST))
+    rim = inside & (away > 0.7 * end)
+    base = float(np.median(ratio[rim])) if rim.any() else 1.0
+    if abs(base - 1) > _OUTSIDE:
+        return None  # what does not fade outward is another surface, or the light of the room
+    ratio = np.where(inside, ratio / base, 1.0)
     close = inside & (away <= max(1.0, 0.25 * end))
     if not close.any() or float(np.quantile(ratio[close], _PART)) > _CLEAR:
         return None
-    rim = inside & (away > 0.7 * end)
-    if rim.any() and abs(float(np.median(ratio[rim])) - 1) > _OUTSIDE:
-        return None  # what does not fade outward is another surface, or the light of the room
     fade = np.clip((end - away) / max(0.3 * end, 1e-9), 0.0, 1.0)
     ratio = 1 - fade * (1 - np.clip(ratio, _DARKEST, 1.0))
-    ratio = np.where(inside & (ratio < _SEEN), ratio, 1.0)
+    # Nothing becomes brighter than the surface is elsewhere: a bright board beside a dark picture keeps its colour.
+    ratio = np.maximum(ratio, rgb.max(axis=2) / (_GLOW * max(float(_brightest(rgb, outside).max()), 1e-3)))
+    ratio = np.where(inside & (ratio < _SEEN) & _grey(rgb, clear), ratio, 1.0)
     return Shadow(ratio, float(1 - ratio[close].mean()))
 
 
@@ -95,6 +99,13 @@ def _alike(rgb: F64, outside: Mask, inside: Mask) -> Mask:
     usual = 1.48 * float(np.median(np.abs(tint[inside] - typical).max(axis=1)))
     other = np.abs(tint - typical).max(axis=2) > max(4 * usual, 0.2)
     return np.asarray(outside & ~far & ~other)
+
+
+def _grey(rgb: F64, clear: F64) -> Mask:
+    """Where a picture has the hue that it would have without the shadow."""
+    soft = [ndimage.gaussian_filter(p, (_SMOOTH, _SMOOTH, 0)) for p in (rgb, clear)]
+    tints = [p / np.maximum(p.mean(axis=2, keepdims=True), 0.02) for p in soft]
+    return np.asarray(np.abs(tints[0] - tints[1]).max(axis=2) < _TINT)
 
 
 def _brightest(rgb: F64, outside: Mask) -> F64:

@@ -8,7 +8,7 @@ under which the border near it agrees best.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,15 @@ from .smooth import F64, Mask, averaged, harmonic
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 SHIFTS = 48  # shifts that are tried in each cell
+_WIDE = 0.15  # of the picture's shorter side: standard deviation of the low-pass that tells shading from texture
+_MOST = 6  # shifts that are used in one hole
+_PATCHED = 1.5  # how much worse a shift may meet the border that reaches all of the hole at once
 _APART = 2  # cells between two shifts that are tried
 _OVERLAP = 0.25  # of the border: what a shift must map onto known cells at least
 _FLAT = 2.5e-3  # standard deviation of a texture that is not worth copying, display space
+_DARK = 0.03  # added to colours before the logarithm
+_RING = 6  # cells around the hole, at most, on which ways to fill it are tried
+_PALE, _SMEARED = 1.1, 1.25  # how much worse a fill counts that loses broad texture, or all of it
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +35,9 @@ class Continued:
 
     Attributes:
         picture: `[H, W, C]`.
-        error: root mean square by which the copied texture disagrees with the border, display space.
-        spread: standard deviation of the surface's texture around the hole, display space.
+        error: root mean square by which known cells around the hole, filled in the same way from beyond them, differ
+            from what they are; display space.
+        spread: standard deviation of the surface around the hole, display space.
     """
 
     picture: F64
@@ -38,69 +45,113 @@ class Continued:
     spread: float
 
 
-def continued(picture: F64, known: Mask, hole: Mask, lit: F64 | None = None) -> Continued:
-    """The picture with a hole filled from its known cells.
+class _Way(NamedTuple):
+    """One way to fill: the low-pass that tells shading from texture, cells; and whether texture is copied."""
+
+    sigma: float
+    copies: bool
+    price: float = 1.0  # by which its error counts more
+
+
+def continued(picture: F64, known: Mask, hole: Mask) -> Continued:
+    """The picture with a hole filled from its known cells, in that of several ways that fills the known cells around
+    the hole best.
+
+    Light and pigment multiply, so shading and texture are told apart in logarithms.
 
     Args:
         picture: `[H, W, C]`, valid where known.
         known: `[H, W]`.
         hole: `[H, W]`, disjoint from `known`.
-        lit: `[H, W]` weight of known cells for the shading; less than one where a shadow lies. None: all the same.
     """
-    weight = known.astype(np.float64) * (1.0 if lit is None else np.clip(lit, 0.0, 1.0))
     depth = max(1.0, float(ndimage.distance_transform_edt(hole).max()))
-    sigma = float(np.clip(depth / 2, 2.0, 12.0))
-    low = averaged(picture, weight, sigma)
-    trusted = known & (weight > 0.5) if (weight > 0.5).any() else known
-    smooth = harmonic(low, trusted, hole | (known & ~trusted))
-    detail = np.where(known[..., None], picture - averaged(picture, known.astype(np.float64), sigma), 0.0)
-    border = ndimage.binary_dilation(hole, iterations=max(3, int(depth))) & known
-    spread = float(detail[border].std()) if border.any() else 0.0
-    out = picture.astype(np.float64, copy=True)
-    out[hole] = smooth[hole]
-    if spread < _FLAT:
-        return Continued(out, spread, spread)
-    taken, error = _copied(detail, known, hole, border)
-    out[hole] += taken[hole]
-    return Continued(out, min(error, spread * 1.5), spread)
+    ring = ndimage.binary_dilation(hole, iterations=int(np.clip(depth / 2, 2, _RING))) & known
+    logs = np.log(np.maximum(picture, 0.0) + _DARK)
+    spread = float(picture[ring].std(axis=0).mean()) if ring.any() else 0.0
+    broad = float(np.clip(max(depth, _WIDE * min(hole.shape)), 4.0, 24.0))
+    narrow = float(np.clip(depth / 2, 2.0, 12.0))
+    ways = (_Way(broad, True), _Way(narrow, True, _PALE), _Way(narrow, False, _SMEARED))
+    beyond = known & ~ring
+    if spread < _FLAT or beyond.sum() < ring.sum() or not ring.any():
+        return Continued(_shown(picture, _filled(logs, known, hole, ways[-1]), hole), spread, spread)
+    errors = []
+    for way in ways:
+        tried = np.exp(_filled(logs, beyond, hole | ring, way)) - _DARK
+        errors.append(float(np.sqrt(((tried - picture)[ring] ** 2).mean())) * way.price)
+    best = int(np.argmin(errors))
+    return Continued(_shown(picture, _filled(logs, known, hole, ways[best]), hole), errors[best], spread)
 
 
-def _copied(detail: F64, known: Mask, hole: Mask, border: Mask) -> tuple[F64, float]:
-    """`[H, W, C]` detail in the hole, copied by the best shifts, and its error along the border."""
+def continued_far(picture: F64, known: Mask, hole: Mask) -> F64:
+    """The picture with a large hole filled by its texture alone, `[H, W, C]`: what to compare a shadow with."""
+    logs = np.log(np.maximum(picture, 0.0) + _DARK)
+    depth = max(1.0, float(ndimage.distance_transform_edt(hole).max()))
+    broad = float(np.clip(max(depth, _WIDE * min(hole.shape)), 4.0, 24.0))
+    return _shown(picture, _filled(logs, known, hole, _Way(broad, True)), hole)
+
+
+def _shown(picture: F64, logs: F64, hole: Mask) -> F64:
+    """The picture with the colours of a hole taken from logarithms."""
+    return np.where(hole[..., None], np.exp(logs) - _DARK, picture)
+
+
+def _filled(logs: F64, known: Mask, hole: Mask, way: _Way) -> F64:
+    """`[H, W, C]` logarithms of colours with the hole filled in one way."""
+    weight = known.astype(np.float64)
+    low = averaged(logs, weight, way.sigma)
+    out = np.where(hole[..., None], harmonic(low, known, hole), logs)
+    if not way.copies:
+        return out
+    detail = np.where(known[..., None], logs - low, 0.0)
+    depth = max(1.0, float(ndimage.distance_transform_edt(hole).max()))
+    border = ndimage.binary_dilation(hole, iterations=max(4, int(depth))) & known
+    out[hole] += _copied(detail, known, hole, border)[hole]
+    return out
+
+
+def _copied(detail: F64, known: Mask, hole: Mask, border: Mask) -> F64:
+    """`[H, W, C]` detail in the hole, copied by few shifts.
+
+    Shifts are taken one after another: that which meets the border near what is left best, and reaches most of it.
+    """
     shifts = _shifts(detail, known, hole, border)
     taken = np.zeros_like(detail)
     if not len(shifts):
-        return taken, float(detail[border].std()) if border.any() else 0.0
-    best, cost = np.full(hole.shape, -1), np.full(hole.shape, np.inf)
+        return taken
     width = max(2.0, float(ndimage.distance_transform_edt(hole).max()) * 0.7)
-    for number, (dy, dx) in enumerate(shifts):
-        there, valid = moved(detail, dy, dx), moved(known, dy, dx)
-        both = border & valid
-        wrong = (((detail - there) ** 2).mean(axis=2)) * both
-        near = ndimage.gaussian_filter(wrong, width, mode="constant")
-        share = ndimage.gaussian_filter(both.astype(np.float64), width, mode="constant")
-        # A shift that only a few border cells speak for is worth less.
-        price = (near + 1e-5) / np.maximum(share, 1e-9)
-        better = hole & valid & (price < cost)
-        best[better], cost[better] = number, price[better]
-    best = _settled(best, hole)
-    for number, (dy, dx) in enumerate(shifts):
-        here = hole & (best == number)
-        if here.any():
-            taken[here] = moved(detail, dy, dx)[here]
-    found = hole & (best >= 0)
-    error = float(np.sqrt(np.median(cost[found]))) if found.any() else float(detail[border].std())
-    return taken, error
+    prices = np.stack([_price(detail, known, hole, border, shift, width) for shift in shifts])  # [S, H, W]
+    left = hole.copy()
+    for _ in range(_MOST):
+        reached = np.isfinite(prices) & left
+        count = reached.sum(axis=(1, 2))
+        if not count.max(initial=0):
+            break
+        mean = np.where(reached, prices, 0.0).sum(axis=(1, 2)) / np.maximum(count, 1)
+        share = count / max(int(left.sum()), 1)
+        best = int(np.argmin(np.where(count > 0, mean * (1 + _PATCHED * (1 - share)) + 1e-4 * (1 - share), np.inf)))
+        here = reached[best]
+        taken[here] = moved(detail, *shifts[best])[here]
+        left &= ~here
+    return _blended(taken, hole, left)
 
 
-def _settled(best: NDArray[np.int64], hole: Mask) -> NDArray[np.int64]:
-    """The label of each hole cell after a vote among its neighbours; cells without a label stay without one."""
-    labels = np.unique(best[hole & (best >= 0)])
-    if len(labels) < 2:
-        return best
-    votes = np.stack([ndimage.uniform_filter((best == k).astype(np.float32), 5) for k in labels])
-    winner = labels[votes.argmax(axis=0)]
-    return np.where(hole & (best >= 0), winner, best)
+def _price(detail: F64, known: Mask, hole: Mask, border: Mask, shift: tuple[int, int], width: float) -> F64:
+    """`[H, W]` mean squared disagreement of a shift with the border near each cell; infinite where it has no source."""
+    valid = moved(known, *shift)
+    both = border & valid
+    wrong = ((detail - moved(detail, *shift)) ** 2).mean(axis=2) * both
+    near = ndimage.gaussian_filter(wrong, width, mode="constant")
+    share = ndimage.gaussian_filter(both.astype(np.float64), width, mode="constant")
+    # A shift that only a few border cells speak for is worth less.
+    return np.where(hole & valid, (near + 1e-5) / np.maximum(share, 1e-9), np.inf)
+
+
+def _blended(taken: F64, hole: Mask, left: Mask) -> F64:
+    """The detail with the cells that no shift reaches averaged from their neighbours."""
+    if not left.any():
+        return taken
+    weight = (hole & ~left).astype(np.float64)
+    return np.where(left[..., None], averaged(taken, weight, 2.0) if weight.any() else 0.0, taken)
 
 
 def moved(values: NDArray[Scalar], dy: int, dx: int) -> NDArray[Scalar]:
