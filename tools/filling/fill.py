@@ -16,13 +16,15 @@ import torch
 from scipy import ndimage
 from torch import Tensor
 
+from ...gaussians.camera import Camera
 from ...gaussians.cloud import GaussianCloud, concat
+from ...gaussians.harmonics import color_to_dc, to_color
 from ...gaussians.rotations import to_matrix
 from ...gaussians.scene import Scene
 from .charts import COVERED, Chart, Seen, chart_of, rows_in_slab, seen
 from .hidden import VOXELS as HIDING
 from .hidden import hidden, space_of
-from .new_rows import gaussians_of
+from .new_rows import Look, gaussians_of
 from .planes import F64, VOXELS, Mask, Plane, planes_near
 from .shadow import Shadow, estimated, multiplied, rows_and_factors, zone_of
 from .smooth import harmonic
@@ -171,7 +173,7 @@ def _patch(
     coarse = chart_of(plane, *window, float((window[1] - window[0]).max()) / 100)
     slab = rows_in_slab(scene.cloud, rows, coarse, thick, thick)
     chart = chart_of(plane, *window, spacing_of(coarse, scene.cloud, slab))
-    shown = seen(chart, scene.cloud[slab])
+    shown = seen(chart, as_photographed(scene, slab, plane))
     own = _of_surface(shown)
     within = _before(chart.points(), clips, 0.0)
     # Skirting boards and the like are in front of a wall and none of the floor.
@@ -186,7 +188,7 @@ def _patch(
         hole = (was & (filled > 0.5)) | _gaps(was, empty, covered, within)
         hole = _large(hole, _LEAST * size**2 / chart.cell**2)
         rim = ndimage.binary_dilation(hole, iterations=2) & ~hole
-        told = (covered | open_) & rim if plane.last else rim
+        told = (covered | open_) & rim if plane.last or plane.carries else rim
         support = float((covered & rim).sum()) / max(int(told.sum()), 0.2 * int(rim.sum()), 1)
     shadow = _shadow(thing, surface, within, size)
     if not hole.any() and shadow is None:
@@ -224,7 +226,7 @@ def continue_into(
     """
     chart, shown = surface.chart, surface.shown
     nothing = scene.cloud[torch.zeros(0, dtype=torch.int64)]
-    least = _SUPPORT if chart.plane.last else _SURROUNDED
+    least = _SUPPORT if chart.plane.last or chart.plane.carries else _SURROUNDED
     if not reason and support < least and hole.any():
         reason = "too little of it is seen around the hole"
     rows, factor = torch.zeros(0, dtype=torch.int64), torch.zeros(0)
@@ -248,7 +250,9 @@ def _filled(
     height = harmonic(shown.height[..., None], solid, hole | (known & ~solid))[..., 0]
     edge = ndimage.binary_dilation(hole) & known & (shown.alpha < 0.9)
     cells = hole | edge
-    cloud = gaussians_of(chart, result.picture, height, cells, _groups(shown, known), scene.cloud, slab)
+    points = torch.from_numpy(chart.points(height)[cells].astype(np.float32))
+    look = Look(points, result.picture[cells], _groups(shown, known)[cells], gaze(scene.cameras, plane, points))
+    cloud = gaussians_of(chart, look, scene.cloud, slab)
     return Patch(plane, chart, hole, cloud, support, result.error, result.spread)
 
 
@@ -266,6 +270,29 @@ def _of_surface(shown: Seen) -> Mask:
     names, count = np.unique(shown.group[there], return_counts=True)
     main = names[(count >= _GROUP * count.sum()) | (names < 0)]
     return np.asarray(np.isin(shown.group, main))
+
+
+def as_photographed(scene: Scene, rows: Tensor, plane: Plane) -> GaussianCloud:
+    """Some Gaussians with the colour that photographs show of them, the same from all sides.
+
+    View-dependent colour holds where it was seen from. Seen along the normal of a surface it may be anything.
+    """
+    cloud = scene.cloud[rows]
+    if not cloud.degree or not len(cloud):
+        return cloud
+    rgb = to_color(cloud.sh, gaze(scene.cameras, plane, cloud.means)).clamp(0, 1)
+    return cloud.replace(sh=color_to_dc(rgb)[:, None])
+
+
+def gaze(cameras: Sequence[Camera], plane: Plane, points: Tensor) -> Tensor:
+    """`[M, 3]` unit directions in which the photographs look at points of a surface, on average; against its normal
+    where there are none."""
+    eyes = [c.position for c in cameras if (c.position - plane.origin) @ plane.normal > 0]
+    ahead = torch.from_numpy(-plane.normal.astype(np.float32)).to(points.device)
+    if not eyes:
+        return ahead.expand(len(points), 3)
+    eye = torch.from_numpy(np.mean(eyes, axis=0).astype(np.float32)).to(points.device)
+    return torch.nn.functional.normalize(points - eye, dim=1)
 
 
 def _same(shown: Seen, known: Mask, place: Mask) -> Mask:

@@ -9,7 +9,7 @@ from torch import Tensor
 
 from ...gaussians.scene import Scene
 from .charts import COVERED, chart_of, rows_in_slab, seen
-from .fill import OPAQUE, Patch, Surface, continue_into, points_of, rows_between, spacing_of, spread
+from .fill import OPAQUE, Patch, Surface, as_photographed, continue_into, points_of, rows_between, spacing_of, spread
 from .planes import F64, Mask, plane_through
 
 _LARGEST = 0.35  # of the surface: a larger gap is no hole in it
@@ -42,7 +42,7 @@ def patches_in(scene: Scene, rows: Tensor) -> list[Patch]:
     coarse = chart_of(plane, first, last, float((last - first).max()) / 100)
     slab = rows_in_slab(scene.cloud, every, coarse, thick, thick)
     chart = chart_of(plane, first, last, spacing_of(coarse, scene.cloud, slab))
-    shown = seen(chart, scene.cloud[slab])
+    shown = seen(chart, as_photographed(scene, slab, plane))
     covered = shown.alpha > COVERED
     around = seen(chart, scene.cloud[rows_in_slab(scene.cloud, every, chart, _FILLED * size, _FILLED * size)])
     through = seen(chart, scene.cloud[rows_in_slab(scene.cloud, every, chart, size, -2 * thick)]).alpha > COVERED

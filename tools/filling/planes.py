@@ -6,23 +6,28 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 F64 = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 VOXELS = 28  # along the longest side of the thing: the surroundings are thinned to one point in each
-_TRIED = 360  # planes through random points
+_TRIED = 500  # planes through random points
+_LOCAL = 150  # nearest points among which the other points of such a plane are
 _POINTS, _BODY = 3000, 300  # points of the surroundings and of the thing that planes are tried on
 _ROUNDS = 9  # planes that are looked at for these
 _FEWEST = 40  # voxels of a surface
 _MOST = 6  # surfaces of one thing
-_BEYOND = 0.08  # of the thing's extent along the normal that may lie behind a surface
-_ENDS = 0.01  # share of its points that are strays at either end
+_BEYOND = 0.1  # of the thing's extent along the normal that may lie behind a surface
+_ENDS = 0.05  # share of its points that are strays at either end
 _FACING = -0.35  # upward part of a normal below which a surface faces down: only a ceiling is seen from below
+_CARRIES = 0.85  # upward part of the normal of what things stand on
 _REACHES = 0.12  # of the thing's extent: how near it comes to a surface that is neither floor nor wall
-_LEVEL, _UPRIGHT = 1.3, 1.15  # weight of level and of upright planes against oblique ones
+_LEVEL, _UPRIGHT = 1.15, 1.1  # weight of level and of upright planes against oblique ones
 _BEHIND = 0.02  # share of the surroundings behind a plane up to which nothing lies behind it
 _STRAIGHT = 0.998  # cosine of the angle up to which a plane may be level or upright
+_GROWS = 1.45  # by which twice the tolerance must hold more points for it to be too narrow
+_THICKEST = 0.06  # of the thing's extent: largest tolerance
 _SLAB = 0.03  # of the thing's size: first tolerance of a surface
 
 
@@ -35,12 +40,14 @@ class Plane:
         axes: `[3, 3]`, rows: two unit vectors along it and its normal, right-handed.
         noise: how far its points lie from it, standard deviation, scene units.
         last: whether nothing lies behind it, as behind floors and walls.
+        carries: whether it is level and the thing stands on it.
     """
 
     origin: F64
     axes: F64
     noise: float
     last: bool
+    carries: bool = False
 
     @property
     def normal(self) -> F64:
@@ -82,16 +89,18 @@ def planes_near(around: F64, thing: F64, up: F64) -> list[Plane]:
         guess = _best(points[left], body, up, tolerance, rng)
         if guess is None:
             break
-        plane = _refined(points[left], body, guess, up, tolerance)
-        near = left & (np.abs(plane.height(points)) < max(2 * tolerance, 3 * plane.noise))
+        wide = _tolerance(points[left], guess, tolerance, _THICKEST * size)
+        plane = _refined(points[left], body, guess, up, wide)
+        near = left & (np.abs(plane.height(points)) < max(2 * wide, 3 * plane.noise))
         if (left & near).sum() < 5:
             break
         left &= ~near
-        behind = plane.height(points) < -2 * max(tolerance, plane.noise)
+        behind = plane.height(points) < -2 * max(wide, plane.noise)
         last = bool(behind.mean() <= _BEHIND)
         gap = float(np.quantile(plane.height(body), _ENDS))
         if last or (gap < _REACHES * size and plane.normal @ up > _FACING):
-            found.append(Plane(plane.origin, plane.axes, plane.noise, last))
+            carries = bool(plane.normal @ up > _CARRIES and gap < _REACHES * size)
+            found.append(Plane(plane.origin, plane.axes, plane.noise, last, carries))
     return found
 
 
@@ -111,7 +120,8 @@ def plane_through(points: F64, before: F64, up: F64, size: float) -> Plane | Non
     guess = _best(thin, np.median(before, axis=0)[None], up, tolerance, np.random.default_rng(0))
     if guess is None:
         return None
-    return _refined(thin, np.median(before, axis=0)[None], guess, up, tolerance)
+    wide = _tolerance(thin, guess, tolerance, _THICKEST * size / 2)
+    return _refined(thin, np.median(before, axis=0)[None], guess, up, wide)
 
 
 def thinned(points: F64, voxel: float) -> F64:
@@ -137,7 +147,9 @@ def _best(points: F64, body: F64, up: F64, tolerance: float, rng: np.random.Gene
             normals.append(up)
             offsets.append(float(edges[peak]))
             weights.append(_LEVEL)
-    pick = rng.integers(len(points), size=(_TRIED, 3))
+    seeds = rng.integers(len(points), size=_TRIED)
+    around = cKDTree(points).query(points[seeds], k=min(_LOCAL, len(points)))[1]  # points of one surface are near
+    pick = np.stack([seeds, *(around[np.arange(_TRIED), rng.integers(around.shape[1], size=_TRIED)] for _ in "ab")], 1)
     first, second, third = (points[pick[:, k]] for k in range(3))
     upright, oblique = np.cross(second - first, up), np.cross(second - first, third - first)
     for normal, weight in ((upright, _UPRIGHT), (oblique, 1.0)):
@@ -159,6 +171,19 @@ def _aside(height: F64, tolerance: float) -> Mask:
     low, high = np.quantile(height, [_ENDS, 1 - _ENDS], axis=0)
     beyond = np.minimum(np.maximum(-low, 0.0), np.maximum(high, 0.0))
     return np.asarray(beyond <= np.maximum(_BEYOND * (high - low), tolerance))
+
+
+def _tolerance(points: F64, guess: tuple[F64, float], least: float, most: float) -> float:
+    """How thick a surface is: the tolerance about a plane beyond which it holds hardly more points. A short fit
+    scatters Gaussians about the surfaces that they show."""
+    wide = least
+    while 2 * wide <= most:
+        normal, offset = _fitted(points, *guess, wide)
+        height = np.abs(points @ normal - offset)
+        if (height < 2 * wide).sum() < _GROWS * (height < wide).sum():
+            break
+        wide *= 2
+    return wide
 
 
 def _held(height: F64, tolerance: float) -> int:
