@@ -26,6 +26,7 @@ _REACHES = 0.12  # of the thing's extent: how near it comes to a surface that is
 _LEVEL, _UPRIGHT = 1.15, 1.1  # weight of level and of upright planes against oblique ones
 _BEHIND = 0.02  # share of the surroundings behind a plane up to which nothing lies behind it
 _STRAIGHT = 0.998  # cosine of the angle up to which a plane may be level or upright
+_COARSE, _NOISIER = 3.0, 2.2  # the wider tolerance over the first, and by which it must hold more to be taken
 _GROWS = 1.45  # by which twice the tolerance must hold more points for it to be too narrow
 _THICKEST = 0.06  # of the thing's extent: largest tolerance
 _SLAB = 0.03  # of the thing's size: first tolerance of a surface
@@ -86,10 +87,10 @@ def planes_near(around: F64, thing: F64, up: F64) -> list[Plane]:
     for _ in range(_ROUNDS):
         if len(found) >= _MOST or left.sum() < _FEWEST:
             break
-        guess = _best(points[left], body, up, tolerance, rng)
+        guess, width = _fine_or_coarse(points[left], body, up, tolerance, rng)
         if guess is None:
             break
-        wide = _tolerance(points[left], guess, tolerance, _THICKEST * size)
+        wide = _tolerance(points[left], guess, width, _THICKEST * size)
         plane = _refined(points[left], body, guess, up, wide)
         near = left & (np.abs(plane.height(points)) < max(2 * wide, 3 * plane.noise))
         if (left & near).sum() < 5:
@@ -164,6 +165,18 @@ def _best(points: F64, body: F64, up: F64, tolerance: float, rng: np.random.Gene
     score = np.where(_aside(body @ normal.T - offset, tolerance), held * np.array(weights), 0.0)
     best = int(score.argmax())
     return (normal[best], float(offset[best])) if held[best] >= _FEWEST and score[best] > 0 else None
+
+
+def _fine_or_coarse(
+    points: F64, body: F64, up: F64, tolerance: float, rng: np.random.Generator
+) -> tuple[tuple[F64, float] | None, float]:
+    """The best plane and the tolerance at which it was found: the given one, or a wider one where that holds so many
+    more points that surfaces must be noisier."""
+    fine, coarse = (_best(points, body, up, factor * tolerance, rng) for factor in (1.0, _COARSE))
+    if fine is None or coarse is None:
+        return (fine, tolerance) if coarse is None else (coarse, _COARSE * tolerance)
+    held = [int((np.abs(points @ n - o) < t).sum()) for (n, o), t in ((fine, tolerance), (coarse, _COARSE * tolerance))]
+    return (coarse, _COARSE * tolerance) if held[1] > _NOISIER * held[0] else (fine, tolerance)
 
 
 def _aside(height: F64, tolerance: float) -> Mask:
