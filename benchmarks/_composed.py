@@ -59,7 +59,9 @@ def judge(graph: SceneGraph | None, case: Case) -> Judged:
         said = f"{thing['count']} {thing['name'][0]}"
         things[said] = len(own) == thing["count"] or (bool(thing.get("more")) and len(own) > thing["count"])
         if "color" in thing:
-            colors[f"{thing['color']} {thing['name'][0]}"] = bool(own) and all(n.color == thing["color"] for n in own)
+            colors[f"{thing['color']} {thing['name'][0]}"] = bool(own) and all(
+                _same_color(n.color, thing["color"]) for n in own
+            )
     for name in [case["without"]] if isinstance(case.get("without"), str) else case.get("without", []):
         things[f"no {name}"] = graph is not None and not any(named(n.label, [name]) for n in nodes)
     if seats := case.get("seats"):
@@ -75,6 +77,10 @@ def judge(graph: SceneGraph | None, case: Case) -> Judged:
     present = [o for o in odd if any(_is_a(n.label, o) for n in others)]
     strange = [n.label for n in others if any(_is_a(n.label, o) for o in odd) or kinds.of(n.label) is None]
     return Judged(things, colors, relations, size, (len(present), len(odd)), tuple(strange))
+
+
+def _same_color(one: str, other: str) -> bool:
+    return one.replace("grey", "gray") == other.replace("grey", "gray")
 
 
 # ---- names ----------------------------------------------------------------------------------------------------------

@@ -36,3 +36,8 @@ PEOPLE = frozenset(
 def same_name(word: str) -> frozenset[str]:
     """Other words for what a word names."""
     return _NAMES.get(word, frozenset())
+
+
+def words() -> tuple[str, ...]:
+    """Every word that has other words for what it names."""
+    return tuple(_NAMES)

@@ -7,10 +7,12 @@ thing's front is its -y side at yaw 0.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import atan2, ceil, cos, degrees, pi, sin, sqrt, tan
+from types import MappingProxyType
 
 from ...gaussians.world import everyday
+from ...gaussians.world.box import YawBox, plan_gap
 from ...gaussians.world.person import STEP
 from ..layout.problem import Item, Rigid
 from .furnishing import Group, GroupRelation, pairs
@@ -29,11 +31,12 @@ _MOST_AT_ROUND = 4  # seats that the four sides of a round table hold
 
 @dataclass(frozen=True)
 class Formed:
-    """The rigid groups, the ids of the things in them, and of those that stand in a circle around a thing."""
+    """The rigid groups, the ids of the things in them, and the gaps, metres, to the thing in their middle of those that
+    stand in a circle around one."""
 
     rigid: tuple[Rigid, ...]
     members: frozenset[int]
-    circled: frozenset[int] = frozenset()
+    circled: Mapping[int, float] = field(default_factory=dict)
 
 
 class Formations:
@@ -55,7 +58,7 @@ class Formations:
     ) -> None:
         self.groups, self.ids, self.items, self.find = groups, ids, items, find
         self.bound: set[int] = set()
-        self.circled: set[int] = set()
+        self.circled: dict[int, float] = {}
 
     def run(self) -> Formed:
         """All formations; a thing belongs to one at most."""
@@ -67,7 +70,7 @@ class Formations:
                     if len(places) > 1 and not own & self.bound and all(map(self._is_free, own)):
                         self.bound |= own
                         found.append(Rigid(members=tuple(_from_first(places))))
-        return Formed(tuple(found), frozenset(self.bound), frozenset(self.circled & self.bound))
+        return Formed(tuple(found), frozenset(self.bound), MappingProxyType(self.circled))
 
     def _is_free(self, id: int) -> bool:
         item = self.items[id]
@@ -87,7 +90,11 @@ class Formations:
         ):
             return
         if said.form == "circle" and len(own) > 2:
-            yield self._ring(own, self._middle(group), said.gap)
+            middle = self._middle(group)
+            if middle is None and any(r.name == "facing" and r.objects for r in group.relations):
+                yield self._arc(own)
+            else:
+                yield self._ring(own, middle, said.gap, self._stated_gap(group, middle))
         elif said.form == "back_to_back":
             yield self._back_to_back(own)
         elif said.form in ("row", "grid"):
@@ -108,8 +115,29 @@ class Formations:
                 return others[0]
         return None
 
-    def _ring(self, own: Sequence[int], middle: int | None, gap: float | None = None) -> list[Place]:
-        """Things in a circle, turned to its middle; a wide one around something has an opening to walk in."""
+    def _stated_gap(self, group: Group, middle: int | None) -> float | None:
+        """The metres from a circle to what is in its middle, where stated."""
+        said = (r.distance for r in group.relations if r.distance is not None and self._objects(r) == [middle])
+        return next(said, None)
+
+    def _arc(self, own: Sequence[int]) -> list[Place]:
+        """Things in an arc, turned to its middle, where what they face stands elsewhere."""
+        across, span = self.items[own[0]].size[0] + 0.1, pi / 2
+        radius = max(_TALK, (len(own) - 1) * across / span)
+        turns = [(k - (len(own) - 1) / 2) * across / radius for k in range(len(own))]
+        return [(id, radius * sin(a), radius * (cos(a) - 1.0), -degrees(a)) for id, a in zip(own, turns, strict=True)]
+
+    def _ring(
+        self, own: Sequence[int], middle: int | None, gap: float | None = None, away: float | None = None
+    ) -> list[Place]:
+        """Things in a circle, turned to its middle; a wide one around something has an opening to walk in.
+
+        Args:
+            own: ids of the things.
+            middle: id of the thing in their middle, if there is one.
+            gap: metres between neighbours, where stated.
+            away: metres from that thing, where stated.
+        """
         width, depth, _ = self.items[own[0]].size
         across = width + (0.08 if gap is None else gap)
         inner = across / (2 * tan(pi / len(own))) if len(own) > 2 else 0.3
@@ -117,17 +145,19 @@ class Formations:
         if middle is not None:
             w, d, _ = self.items[middle].size
             half = sqrt(w * w + d * d) / 2
-            inner = max(inner, half + 0.12)
+            inner = max(inner, half + 0.12 if away is None else max(w, d) / 2 + away)
             if inner - half + depth > _IN_REACH and 2 * pi * inner - len(own) * across < _OPENING:
                 inner = 1.05 * (len(own) * across + _OPENING) / (2 * pi)
                 pitch = 2 * atan2(across / 2, inner)
                 start += (2 * pi - (len(own) - 1) * pitch) / 2
-            self.circled |= set(own)
             places = [(middle, 0.0, 0.0, 0.0)]
         for k, id in enumerate(own):
             turn = start + k * pitch
             x, y = (inner + depth / 2) * cos(turn), (inner + depth / 2) * sin(turn)
             places.append((id, x, y, degrees(atan2(-cos(turn), sin(turn)))))
+            if middle is not None:
+                box, inside = YawBox(x, y, 0.0, width, depth, 1.0, places[-1][3]), self.items[middle].size
+                self.circled[id] = round(float(plan_gap(box, YawBox(0.0, 0.0, 0.0, *inside, 0.0))), 3)
         return places
 
     def _grid(self, group: Group, own: Sequence[int], columns: int, gap: float | None) -> list[Place]:

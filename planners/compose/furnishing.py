@@ -41,6 +41,7 @@ class GroupRelation:
     hard: bool = False
     distance: float | None = None
     sides: bool = False
+    said: bool = False  # whether the brief states it, as a wish or as a suggestion
 
 
 @dataclass
@@ -102,7 +103,7 @@ class Furnishing:
         for said in self.brief.relations:
             if said.subject in known:
                 known[said.subject].relations.append(
-                    GroupRelation(said.name, said.objects, said.wall, said.hard, said.distance, said.sides)
+                    GroupRelation(said.name, said.objects, said.wall, said.hard, said.distance, said.sides, True)
                 )
 
     def hang(self) -> None:

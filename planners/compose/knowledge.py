@@ -14,7 +14,7 @@ from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
-from ...gaussians.world import everyday, kinds
+from ...gaussians.world import everyday, everyday_names, kinds
 from ...gaussians.world.kinds import Kind
 from ...gaussians.world.relations import WishName
 from ...gaussians.world.words import singular
@@ -162,6 +162,13 @@ def thing_words() -> Table:
     told = {_words(a): k.one or k.name for k in every for a in k.names if a not in k.labels}
     more = {w: " ".join(w if "of" in w else (*w[:-1], singular(w[-1]))) for w in everyday.by_words()}
     told = {(*w[:-1], singular(w[-1])): name for w, name in told.items()} | told
+    every_name = told | more
+    more |= {
+        (word,): every_name[(same,)] if (same,) not in more else same
+        for word in everyday_names.words()
+        for same in sorted(everyday_names.same_name(word))
+        if (word,) not in every_name and (same,) in every_name
+    }
     taken = room_words().keys() | style_words().keys()  # here a closet is a room, not a wardrobe
     return MappingProxyType({w: name for w, name in (more | told | _ALIASES).items() if w not in taken})
 

@@ -14,6 +14,7 @@ from .brief import Brief
 
 _SILL = 0.9  # metres from the floor to a window
 _BEFORE = 0.3  # metres before a window that are kept free of things taller than its sill
+_NARROWEST = 0.5  # metres, a window above a thing
 _EDGE = 0.12  # least metres from an opening to the corner
 _YAWS: dict[Wall, float] = {"north": 0.0, "east": -90.0, "south": 180.0, "west": 90.0}
 _WINDOW_WALLS: tuple[Wall, ...] = ("north", "west", "east", "south")
@@ -42,7 +43,9 @@ class _Walls:
         return Stand(position=(round(spot[0], 4), round(spot[1], 4), round(middle, 4)), yaw=_YAWS[wall])
 
 
-def openings(brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[int]) -> tuple[list[Item], list[Item]]:
+def openings(
+    brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[int], beneath: Sequence[Size] = ()
+) -> tuple[list[Item], list[Item]]:
     """Doors and windows of a room, each with its place on a wall.
 
     Args:
@@ -50,6 +53,7 @@ def openings(brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[i
         size: of the room.
         rng: chooses walls and places.
         ids: numbers for them.
+        beneath: sizes of things that are said to be under a window, which is no wider and above them.
     """
     walls = _Walls(size, {w: [] for w in _WINDOW_WALLS})
     asked = {t.name: t for t in brief.things if t.name in ("door", "window")}
@@ -71,7 +75,8 @@ def openings(brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[i
     avoided = {entered[0], *named, "south"}
     lit = [w for w in _WINDOW_WALLS if w in shown] or [w for w in _WINDOW_WALLS if w not in avoided]
     lit = lit or list(_WINDOW_WALLS)
-    glazed = [_window(walls, ids, lit[i % len(lit)], scale, rng) for i in range(windows)]
+    limits = (scale, min((0.9 * s[0] for s in beneath), default=30.0), max((s[2] for s in beneath), default=0.0) + 0.03)
+    glazed = [_window(walls, ids, lit[i % len(lit)], limits, rng) for i in range(windows)]
     return [d for d in made if d], [w for w in glazed if w]
 
 
@@ -96,11 +101,16 @@ def _doors(walls: _Walls, ids: Iterator[int], wall: Wall, rng: np.random.Generat
     return None
 
 
-def _window(walls: _Walls, ids: Iterator[int], wall: Wall, scale: float, rng: np.random.Generator) -> Item | None:
-    kind = knowledge.things()["window"]
+def _window(
+    walls: _Walls, ids: Iterator[int], wall: Wall, limits: tuple[float, float, float], rng: np.random.Generator
+) -> Item | None:
+    """A window on a wall; `limits`: factor on its usual size, its greatest width and its lowest underside."""
+    kind, (scale, widest, lowest) = knowledge.things()["window"], limits
+    widest = max(widest, _NARROWEST)
     length, height = walls.length(wall), walls.size[2]
-    width = round(min(float(rng.uniform(*kind.size[0])) * scale, length - 2 * _EDGE), 3)
+    width = round(min(float(rng.uniform(*kind.size[0])) * scale, length - 2 * _EDGE, widest), 3)
     bottom = min(_SILL, height * 0.35) if scale == 1.0 else min(0.5, height * 0.2)
+    bottom = max(bottom, min(lowest, height - 0.6))
     tall = round(min(float(rng.uniform(*kind.size[2])) * scale, height - bottom - 0.15), 3)
     if width < 0.3 or tall < 0.3:
         return None

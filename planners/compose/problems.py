@@ -81,11 +81,11 @@ class _ProblemBuilder:
         self.formed = Formed((), frozenset())
 
     def build(self) -> Posed:
-        doors, windows = openings(self.brief, self.room, self.rng, self.ids)
+        beneath = [s for g, s in self.sized for r in g.relations if r.name == "under" and r.objects == ("window",)]
+        doors, windows = openings(self.brief, self.room, self.rng, self.ids, beneath)
         self.items += [*doors, *windows]
         self.item_ids |= {"door": [_item_id(d) for d in doors], "window": [_item_id(w) for w in windows]}
-        carried = [(g, s) for g, s in self.sized if self._carrier(g)]
-        for group, size in [*((g, s) for g, s in self.sized if not self._carrier(g)), *carried]:
+        for group, size in sorted(self.sized, key=lambda sized: self._height_of_pile(sized[0])):
             self._place(group, size)
         self._form()
         for said in self.brief.relations:
@@ -96,7 +96,9 @@ class _ProblemBuilder:
             for relation in group.relations:
                 before = len(self.wishes)
                 self._add_wishes(group.key, relation, group)
-                stated |= {w for w in self.wishes[before:] if relation.hard and w.name == relation.name}
+                told = relation.hard or (relation.said and relation.objects)
+                names = {relation.name, "facing"} if relation.name == "around" else {relation.name}
+                stated |= {w for w in self.wishes[before:] if told and w.name in names}
         free = (Keepout(name="dance floor", radius=round(min(1.4, 0.22 * min(self.room[:2])), 2)),)
         problem = Problem(
             size=self.room,
@@ -125,6 +127,14 @@ class _ProblemBuilder:
         return group.key if group is not None else ""
 
     # ---- items -----------------------------------------------------------------------------------------------------
+
+    def _height_of_pile(self, group: Group) -> int:
+        """How many things one on another carry a group; what carries is placed before what it carries."""
+        seen, at = [group.key], self._carrier(group)
+        while at is not None and at.key not in seen:
+            seen.append(at.key)
+            at = self._carrier(at)
+        return len(seen)
 
     def _carrier(self, group: Group) -> Group | None:
         """The group that a group stands on, or None. Things on a rug count as standing on the floor."""
@@ -288,8 +298,11 @@ class _ProblemBuilder:
         aimed = relation.name in _AIMED
         for one, other in self._item_pairs(relation, subjects, others):
             if relation.name == "around" and one in self.formed.circled:
-                self.wishes.append(Wish(subject=one, name="facing", objects=(other,), hard=hard))
+                gap = self.formed.circled[one]  # members of a circle that is placed singly keep it too
+                self.wishes.append(Wish(subject=one, name="facing", objects=(other,), hard=hard, distance=gap))
                 continue
+            if relation.name == "far_from" and relation.distance is not None and one in self.formed.circled:
+                continue  # the circle is that wide
             leads = not aimed or self._leads(one, subjects)
             self._add_wish(one, relation.name, other, hard and leads, relation.distance)
 

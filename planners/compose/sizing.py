@@ -149,7 +149,7 @@ def _fit_inside(made: Furnishing, group: Group, sizes: dict[str, Size]) -> None:
         if other.thing.width is None and other.thing.depth is None:
             width, depth = min(max(width, wide), _MOST_GROWN * width), min(max(depth, deep), _MOST_GROWN * depth)
             sizes[other.key] = round(width, 3), round(depth, 3), height
-        factor = min(1.0, width / wide, depth / deep)
+        factor = min(1.0, (width - 0.02 - 0.01 * number) / (number * w), (depth - 0.02) / d)
         tall = min(1.0, 0.9 * height / h)
         if (factor < 1.0 or tall < 1.0) and group.thing.width is None and group.thing.height is None:
             sizes[group.key] = round(w * factor, 3), round(d * factor, 3), round(h * min(tall, factor), 3)

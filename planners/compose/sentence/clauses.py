@@ -33,14 +33,22 @@ _ASIDES = (
     ("in", "the", "shape", "of"), ("in", "the", "form", "of"), ("disguised", "as"), ("doubling", "as"),
     ("looking", "like"), ("that", "looks", "like"),
 )  # fmt: skip
+_MANTELS = bag("mantel mantelpiece mantle mantlepiece chimneypiece chimneybreast")
+_SCENERY = bag(
+    "lake sea ocean river beach shore seaside coast mountain mountains hills road roadside harbour harbor canal stream "
+    "seafront waterfront riverside lakeside water valley cliff cliffs countryside sunset railway highway motorway"
+)
 _WAYS_IN = bag("entrance entry doorway entryway")
 _TO_WAY_IN = frozenset({"by", "near", "beside", "to", "at", "opposite", "facing", "from", "flanking", "of", "behind"})
+_AGENTS = ("er", "or", "ist", "man", "men", "woman", "ian", "smith", "mate", "ant")
 _PRONOUNS = bag("it them this these those each both")
 _MOST = 4  # unknown words of one noun phrase
 NOBODY = frozenset({*vocabulary.PEOPLE, *bag(
     "painter potter artist musician chef cook baker writer student teenager kid grandma grandpa gran nan mum dad "
     "drummer dancer gamer reader barista waiter hairdresser customer shopper worshipper audience crowd everyone "
-    "everybody someone anyone mothers parents staff spectators watching waiting"
+    "everybody someone anyone mothers parents staff spectators watching waiting lads lad boys girls folks team crew "
+    "gang household newlyweds pensioner pensioners nurse nurses knights knight monk monks nun nuns king queen princess "
+    "prince wizard witch pirate pirates vampire detective dog dogs cat cats"
 )})  # fmt: skip
 
 
@@ -53,12 +61,15 @@ class Clauses(NounPhrases):
         while i < len(self.texts):
             if self.texts[i] in ("separates", "separating", "divides", "dividing", "separate"):
                 self._separate(i)
-            if taken := self._aside(i) or self._persons(i) or self._potted(i) or self._made_of(i):
+            asides = (self._aside, self._persons, self._potted, self._made_of, self._scenery)
+            if taken := next((n for aside in asides if (n := aside(i))), 0):
                 del self.texts[i : i + taken]
             elif self._is_being_verb(i):
                 self.texts[i] = "is"
                 i += 1
             else:
+                if self.texts[i] in _MANTELS and "fireplace" in self.texts:
+                    self.texts[i] = "fireplace"
                 if self.texts[i] in _WAYS_IN and set(self.texts[max(i - 3, 0) : i]) & _TO_WAY_IN:
                     self.texts[i] = "door"
                 i += 1
@@ -76,6 +87,18 @@ class Clauses(NounPhrases):
                 end = self.phrase_end(i + len(phrase))
                 return max(end, i + len(phrase) + 1) - i
         return 0
+
+    def _scenery(self, i: int) -> int:
+        """The number of words of "by the lake" at position `i`: what is around the place is not built."""
+        if self.texts[i] not in ("by", "near", "beside", "on", "overlooking", "at", "along", "with"):
+            return 0
+        sight = self.texts[i + 1 : i + 4] == ["a", "view", "of"]
+        if self.texts[i] == "with" and not sight:
+            return 0
+        j = i + 1 + 3 * sight
+        j += self.texts[j : j + 1] in (["the"], ["a"])
+        ends = j + 1 >= len(self.texts) or self.texts[j + 1] in {*_BOUNDS, "and", "with", "where"}
+        return j + 1 - i if j > i + 1 and ends and "".join(self.texts[j : j + 1]) in _SCENERY else 0
 
     def _potted(self, i: int) -> int:
         """The number of words of "in big pots" behind a plant at position `i`: it is drawn with its pot."""
@@ -101,8 +124,29 @@ class Clauses(NounPhrases):
         start = j
         while j < len(self.texts) and self.texts[j] in NOBODY:
             j += 1
+        if j == start and (end := self._agent_end(j)):
+            j = end
         ends = j == len(self.texts) or self.texts[j] in _BOUNDS or self.texts[j] in ("and", "with", "in", "by", "on")
         return j - i if j > start and (ends or match(vocabulary.RELATIONS, self.texts, j)) else 0
+
+    def _agent_end(self, i: int) -> int:
+        """The position behind "violin maker" at position `i`: somebody, by the ending of the last word; 0 if not."""
+        for j in range(i, min(i + 3, len(self.texts))):
+            if (
+                self.texts[j] in _BOUNDS
+                or match(vocabulary.RELATIONS, self.texts, j)
+                or quantities.read([self.texts[j]])
+            ):
+                return 0
+            word = singular(self.texts[j])
+            last = (
+                j + 1 == len(self.texts) or self.texts[j + 1] in _BOUNDS or self.texts[j + 1] in ("and", "with", "in")
+            )
+            known = knowledge.lookup(knowledge.thing_words(), self.texts, j)
+            if last:
+                named = word in NOBODY or (word.endswith(_AGENTS) and not known)
+                return j + 1 if named else 0
+        return 0
 
     def _is_being_verb(self, i: int) -> bool:
         """Whether a word is a verb of being somewhere: "the cage stands by", "on it sits a cake"."""

@@ -20,8 +20,9 @@ from .relating import PREPOSITIONS, layout_name, sides_at
 _SKIPPED = frozenset({
     "the", "a", "an", "one", "each", "every", "all", "both", "opposite", "that", "my", "its", "two", "other", "end",
     "long", "short", "same", "near", "main", "whole", "entire", "upper", "lower", "top", "bottom", "adjacent", "four",
-    "longer", "shorter", "side", "opposing", "facing", "remaining", "white", "brick", "stone", "wooden", "of",
+    "three", "longer", "shorter", "side", "opposing", "facing", "remaining", "white", "brick", "stone", "wooden", "of",
 })  # fmt: skip
+_SOME = {"two": 2, "both": 2, "opposite": 2, "three": 3}
 _EVERY = frozenset({"each", "every", "all", "four"})
 _ROOM_SIDES: dict[str, Wall] = {"behind": "north", "in_front_of": "south", "left_of": "west", "right_of": "east"}
 _AT_WINDOW = frozenset({"next_to", "under", "below", "at", "in_front_of", "against", "inside"})
@@ -35,6 +36,7 @@ _TO_OWNER = frozenset({
     "facing",
 })  # fmt: skip
 _NOBODY = Draft("", Said(), False)  # the subject of a relation until its thing is read
+_VAGUE = frozenset({"inside", "at", "from", "across"})  # "in summer": no place of a thing
 _PRONOUN_COUNTS = ("one", "two", "three", "four", "five", "six", "half")
 
 
@@ -63,6 +65,7 @@ class Linker:
         self.opens = True  # whether a sentence begins here
         self.fresh: Draft | None = None  # a thing just introduced as an object: "a stool in the centre" is about it
         self.carried = False  # whether the last relation was that of a thing on, in or under the fresh one
+        self.lost: list[str] = []  # sentences about places that were not understood
         self.listed = False  # whether a list of what each has goes on behind a comma
         self.asked = ""  # the word before the place that is read
         self.distance: float | None = None  # metres that belong to the relation that follows
@@ -178,7 +181,9 @@ class Linker:
 
     def drop(self) -> None:
         """Drop the waiting relation, as its object cannot be placed."""
-        self.waiting = None
+        waiting, self.waiting = self.waiting, None
+        if waiting is not None:
+            self._lose(waiting)
 
     def in_room(self) -> bool:
         """Whether the room is the object of the waiting relation: "in the room", "at the back of the shop"."""
@@ -193,6 +198,15 @@ class Linker:
         waiting, self.waiting = self.waiting, None
         if waiting and waiting.name == "between" and waiting.found:
             self._link(waiting.subject, "between", waiting.found)
+        elif waiting is not None:
+            self._lose(waiting)
+
+    def _lose(self, waiting: _Waiting) -> None:
+        """Note a place that is not understood, as the thing that it names was not."""
+        if waiting.subject is not None and waiting.subject.name and waiting.name not in _VAGUE:
+            words = waiting.name.removeprefix("reversed ").replace("_", " ")
+            said = f"what the {waiting.subject.name} is {words} was not understood"
+            self.lost.append(said)
 
     # ---- things ----------------------------------------------------------------------------------------------------
 
@@ -354,7 +368,8 @@ class Linker:
         small, large = child.kind, parent.kind
         if not small or not large:
             return
-        if small.support == "surface" and (large.top or large.name in small.on):
+        carries = large.support == "floor" and not large.seats and large.role != "bed" and not large.opening
+        if small.support == "surface" and (large.top or large.name in small.on or carries):
             self.reading.suggest(Link(child, "on", (parent,)))
         elif small.seats == 1 and large.top and not large.seats:
             self.reading.suggest(Link(child, "around", (parent,)))
@@ -446,6 +461,8 @@ class Linker:
         if draft is None or self.opens or name not in _TO_OWNER:
             return False
         owner = self.parent if self.parent is not None and self.parent is not draft else None
+        if owner is not None and _is_small(draft) and name in _NEAREST and not draft.several:
+            draft, owner = owner, None  # "a tripod with a camera in front": that is where the tripod is
         owner = owner or self.reading.before(draft, relation=name)
         if owner is None:
             return False
@@ -458,7 +475,8 @@ class Linker:
             if len(pair) == _TWO or (pair and pair[0].several):
                 self.reading.link(Link(draft, "between", pair))
         else:
-            self._link(draft, name, (owner,))
+            distance, self.distance = self.distance, None
+            self._link(draft, name, (owner,), _Waiting(draft, name, distance))
         return True
 
     def away(self, texts: Sequence[str], i: int) -> int:
@@ -483,6 +501,7 @@ class Linker:
         while j < len(texts) and texts[j] in _SKIPPED:
             j += 1
         every = bool(_EVERY & set(texts[i + taken : j]))
+        some = next((n for w in texts[i + taken : j] if (n := _SOME.get(w))), 0)
         sides = []
         while j < len(texts) and (texts[j] in vocabulary.CORNERS or texts[j] in vocabulary.WALLS):
             sides.append(texts[j])
@@ -493,6 +512,8 @@ class Linker:
         elif part in ("corner", "corners") and name in ("inside", "at", "against", "on"):
             walls = [w for s in sides for w in vocabulary.CORNERS.get(s, ())]
             if every or (part == "corners" and not walls):
+                if some and self.last is not None and not self.opens and not self.last.said.count:
+                    self.counted(some)
                 self._spot("corners")
             else:
                 for wall in dict.fromkeys(walls) or (None,):
@@ -519,7 +540,7 @@ class Linker:
             self._place("in_corner", None)
         elif spot == "corners":
             self._place("in_corner", None, sides=True)
-            if subject is not None and (subject.said.count or 1) == 1:
+            if subject is not None and (subject.said.count or 1) == 1 and self.last is subject:
                 self.counted(_CORNERS)
         elif subject is None:
             if spot.startswith("part "):
@@ -597,12 +618,18 @@ class Linker:
                 self.reading.link(Link(peer, name, (), wall))
 
 
+def _is_small(draft: Draft) -> bool:
+    return draft.kind is None or draft.kind.support == "surface"
+
+
 def _may_share(draft: Draft, link: Link) -> bool:
     """Whether a thing in a list shares the place of another one of it, where only that one's is stated."""
     kind = draft.kind
     if draft in link.objects or draft is link.subject:
         return False
-    small = kind is None or kind.support == "surface"
+    small = _is_small(draft)
+    if kind is not None and kind.seats == 1 and link.name in ("under", "below"):
+        return False  # chairs are at the table that is there
     if link.name in ("on", "inside"):
         first = link.objects[0].kind
         return (
@@ -620,7 +647,6 @@ def _belongs_to_owner(waiting: _Waiting, other: Draft) -> bool:
     small, owner = waiting.subject, waiting.owner
     if small is None or owner is None or other is owner or owner.placed or small.several:
         return False
-    fits = small.kind is None or small.kind.support == "surface"
-    return fits and bool(owner.kind) and waiting.name in (
+    return _is_small(small) and bool(owner.kind) and waiting.name in (
         "next_to", "facing", "left_of", "right_of", "in_front_of", "behind", "against", "between", "at",
     )  # fmt: skip

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ....gaussians.world.words import singular
+from ....gaussians.world.words import is_plural, singular
 from ...grammar.tagging.lookahead import color_at, match, may_be_noun
 from ...grammar.vocabulary import quantities
 from .. import knowledge
@@ -48,11 +48,48 @@ class NounPhrases:
 
     def name_at(self, i: int) -> tuple[str, int] | None:
         """The name of a thing at position `i`, unless it is a relation or a verb there."""
-        if i >= len(self.texts) or self.texts[i] in (",", "and") or self.is_verb(i, 1):
+        if i >= len(self.texts) or self.texts[i] in (",", "and"):
             return None
+        if self.is_verb(i, 1):
+            found = knowledge.lookup(knowledge.thing_words(), self.texts, i)
+            return found if found and found[1] > 1 else None  # a "floor lamp"
         if match(vocabulary.RELATIONS, self.texts, i) or match(vocabulary.SPOTS, self.texts, i):
             return None
         return knowledge.lookup(knowledge.thing_words(), self.texts, i)
+
+    def names_room(self, i: int, taken: int) -> bool:
+        """Whether a name at position `i` is part of that of a room: "vegetable garden", "bus station cafe"."""
+        texts, j = self.texts, i + taken
+        rooms = knowledge.room_words()
+        if is_plural(texts[j - 1]):  # "the dogs room", of the dog
+            return texts[j : j + 1] == ["room"] and not self.said.count
+        if knowledge.lookup(rooms, texts, j):
+            return True
+        plain = j + 1 < len(texts) and texts[j] in vocabulary.PLACES and not self.name_at(j)
+        return plain and knowledge.lookup(rooms, texts, j + 1) is not None
+
+    def compound_at(self, i: int) -> tuple[int, tuple[str, int]] | None:
+        """The head of a compound whose first noun ends before position `i`: where it begins, its name and length.
+
+        An unknown word may stand between them: "dog food bags".
+        """
+        if found := self.name_at(i):
+            return i, found
+        if i + 1 >= len(self.texts) or not self._may_be_inner(i):
+            return None
+        found = self.name_at(i + 1)
+        return (i + 1, found) if found else None
+
+    def _may_be_inner(self, i: int) -> bool:
+        text = self.texts[i]
+        if not may_be_noun(text) or text in vocabulary.FILLER or text in vocabulary.PRONOUNS or text in ADJECTIVES:
+            return False
+        if text.endswith(("ed", "ing", "ly")) or is_plural(text) or text in vocabulary.PARTS or text in _BEFORE_VERBS:
+            return False
+        phrase = match(vocabulary.RELATIONS, self.texts, i) or match(vocabulary.SPOTS, self.texts, i)
+        amount = quantities.read(self.texts[i : i + 1]) or match(vocabulary.COUNTS, self.texts, i)
+        told = phrase or amount or color_at(self.texts, i) or match(vocabulary.NEGATIONS, self.texts, i)
+        return not told and not match(vocabulary.ONLY, self.texts, i) and text not in ("each", "plus", "also", "facing")
 
     def noun_follows(self, i: int) -> bool:
         """Whether a noun phrase goes on at position `i` with the name of a thing, past adjectives."""

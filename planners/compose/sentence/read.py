@@ -35,7 +35,7 @@ _IRRELEVANT = ("selling", "sells", "serving", "serves", "like")  # what stands b
 _PLANTED = (["pot"], ["tree"], ["bush"], ["plant"], ["hedge"], ["trees"], ["pots"], ["bushes"], ["plants"], ["bouquet"])
 _AFTER_PLACE = (["with"], ["w"], [":"], [","], ["."], ["interior"], ["where"], ["-"], ["for"], ["has"], ["containing"])
 _LIKE_PLACES = ("house", "tent")  # shapes of things that one can be in
-_AFTER_ROUND = (["it"], ["the"], ["them"], ["each"], ["every"], ["this"], ["that"], ["both"])
+_AFTER_ROUND = (["a"], ["an"], ["it"], ["the"], ["them"], ["each"], ["every"], ["this"], ["that"], ["both"])
 _MOST_MORE = 20  # of "and three along each side"
 _OPENERS = frozenset(
     {"a", "an", "the", "its", "their", "his", "her", "my", "our", "your", "own", "another", "with", "and"}
@@ -82,6 +82,8 @@ class _Reader(Clauses):
         self.about_room = True  # whether a size that comes next is that of the room
         self.unshown: tuple[str, ...] = ()  # adjectives of the next noun that boxes do not show
         self.room_word = ""  # the word for the place that is described
+        self.skipped: set[int] = set()  # positions of words that made nothing
+        self.noun_end = -1  # position behind the last name of a thing
         self.room_end = 0  # position behind the last name of a room
         self.modifiers: list[str] = []  # unknown words before a noun, kept in its name
 
@@ -92,8 +94,14 @@ class _Reader(Clauses):
                  self._more, self._place, self._people, self._count, self._color, self._name, self._attribute,
                  self._filler)  # fmt: skip
         while i < len(self.texts):
-            taken = next((n for step in steps if (n := step(i))), 0)
-            i += taken or self._unknown(i)
+            step, taken = next(((s, n) for s in steps if (n := s(i))), (None, 0))
+            known = len(self.linker.reading.drafts) + len(self.linker.without)
+            taken = taken or self._unknown(i)
+            if step is None and known == len(self.linker.reading.drafts) + len(self.linker.without):
+                self.skipped |= set(range(i, i + taken))
+            i += taken
+        self._settle_count()
+        self.linker.stop()
 
     def brief(self) -> Brief:
         """What was read.
@@ -110,7 +118,7 @@ class _Reader(Clauses):
                 "not_understood" if self.unknown else "not_an_edit",
                 tuple(self.unknown[:64]),
             )  # fmt: skip
-        self.remarks += reading.remarks()
+        self.remarks += [*reading.remarks(), *self.linker.lost, *self.unread()]
         for name in dict.fromkeys(self.styles):
             if unshown := knowledge.styles()[name].unshown:
                 self.remarks.append(f"{name} also means {unshown}, which boxes do not show")
@@ -195,8 +203,8 @@ class _Reader(Clauses):
         if rest[:1] == ("away",):
             linker.from_there(metres)
             return 1
-        relation = match(vocabulary.RELATIONS, self.texts, i)
-        if relation and relation[0] in ("in_front_of", "behind", "left_of", "right_of", "above"):
+        relation = match(vocabulary.RELATIONS, self.texts, i) or match(vocabulary.SPOTS, self.texts, i)
+        if relation and relation[0].removeprefix("rel ") in ("in_front_of", "behind", "left_of", "right_of", "above"):
             linker.distance = metres
             return linker.place(self.texts, i)
         return 0
@@ -323,7 +331,7 @@ class _Reader(Clauses):
         if found := times(self.texts, i):
             return self._times(i, *found)
         if self.linker.waiting and (taken := self.one_of(i)):
-            self.linker.pronoun("them")
+            self.linker.pronoun("each" if self.texts[i] == "each" else "them")
             return taken
         number = quantities.read(self.texts[i:])
         if (
@@ -377,6 +385,13 @@ class _Reader(Clauses):
         if last is not None and self.before(i) in _SAID_OF and not self.noun_follows(i + found[1]):
             last.said = replace(last.said, color=_plain(found[0]))
             return found[1]
+        end = i + found[1]
+        ends = (
+            end == len(self.texts) or self.texts[end] in _MARKS or self.texts[end] in (",", "and", "with", "in", "on")
+        )
+        if last is not None and ends and self.noun_end == i and self.said == Said() and not last.said.color:
+            last.said = replace(last.said, color=_plain(found[0]))  # "tool chest red"
+            return found[1]
         name = knowledge.lookup(knowledge.thing_words(), self.texts, i)
         plain = self._is_colored(i)
         if name and not plain and (name[1] > found[1] or not self.noun_follows(i + found[1])):
@@ -410,7 +425,11 @@ class _Reader(Clauses):
         taken, what, name = best
         if what == 0:
             return self._noun(i, name, taken)
-        if what == -1 and not is_plural(self.texts[i]) and self.name_at(i + taken):
+        if what == -1 and self._is_place(i + taken, 1, " ".join(self.texts[i + taken : i + taken + 1])):
+            self.room_word = self.texts[i + taken]  # of "a poolside deck" the first word says what it is
+            self._room(name, " ".join(self.texts[i : i + taken + 1]))
+            return taken + 1
+        elif what == -1 and not is_plural(self.texts[i]) and self.name_at(i + taken):
             self.modifiers += self.texts[i : i + taken]  # a "studio monitor" is no studio
         elif what == -1:
             if i and i == self.room_end:
@@ -436,12 +455,13 @@ class _Reader(Clauses):
         ):
             self.said = replace(self.said, material=texts[i])
             return 1 + self._feature(i + 1)
-        if not is_plural(texts[i + taken - 1]) and knowledge.lookup(knowledge.room_words(), texts, i + taken):
-            return taken  # "a vegetable garden" holds no vegetable
+        if self.names_room(i, taken):
+            return taken  # "a vegetable garden" holds no vegetable, a "bus station cafe" no bus
         before: list[str] = []
-        while not is_plural(texts[i + taken - 1]) and (more := self.name_at(i + taken)):
-            before += texts[i : i + taken]
-            i, (name, taken) = i + taken, more
+        while not is_plural(texts[i + taken - 1]) and (more := self.compound_at(i + taken)):
+            end, (name, taken) = more
+            before += texts[i:end]
+            i = end
         if self._is_place(i, taken, word := texts[i + taken - 1]):
             self.habits = False  # what is usual there is unknown
             self._room("room", word)
@@ -465,6 +485,7 @@ class _Reader(Clauses):
         if self.before(i - len(before)) in _IRRELEVANT:
             return end - i + len(before)
         self._thing(name[:60], said, i)
+        self.noun_end = end
         return end - i + len(before)
 
     def _thing(self, name: str, word: str, i: int) -> None:
@@ -600,6 +621,21 @@ class _Reader(Clauses):
         self._thing(f"{measure} of {content}"[:60], self.texts[i], i)
         return end - i
 
+    def unread(self) -> list[str]:
+        """A sentence for each name of a thing among the words that is not in what was read."""
+        drafts = self.linker.reading.drafts
+        read = {w for d in drafts for n in (d.name, d.called) for w in singulars(n)}
+        read |= {w for n in (*self.linker.without, self.room_word) for w in singulars(n)}
+        lost, i = [], 0
+        while i < len(self.texts):
+            found = self.name_at(i)
+            if found and i in self.skipped and not (singulars(found[0]) & read):
+                said = " ".join(self.texts[i : i + found[1]])
+                if not singulars(said) & read:
+                    lost.append(f"“{said}” is said, and is not in the room")
+            i += found[1] if found else 1
+        return lost
+
     def _is_title(self, i: int) -> bool:
         """Whether a text begins with an unknown word for the place that it describes: "the vestry: a long table"."""
         first = not self.kind and not self.linker.reading.drafts
@@ -618,7 +654,11 @@ class _Reader(Clauses):
         """Whether the first noun phrase names the place that is described: "a nail bar with", "a caravan: …"."""
         first = not self.kind and not self.linker.reading.drafts and not is_plural(word)
         after = self.texts[i + taken : i + taken + 10]
-        ends = after[:1] in _AFTER_PLACE or (":" in after and "," not in after[: after.index(":")])
+        rooms = knowledge.room_words()
+        within = after[:1] in (["in"], ["at"]) and any(
+            knowledge.lookup(rooms, self.texts, i + taken + k) for k in (1, 2)
+        )
+        ends = within or after[:1] in _AFTER_PLACE or (":" in after and "," not in after[: after.index(":")])
         place = word in vocabulary.PLACES or everyday.shape(" ".join(self.texts[i : i + taken])) in _LIKE_PLACES
         return (
             first and place and ends and (after[:1] != [","] or word in vocabulary.PLACES or self.is_heading(i + taken))
@@ -641,3 +681,8 @@ class _Reader(Clauses):
 def _plain(color: str) -> str:
     """A colour as things have it."""
     return color.replace("grey", "gray")[:40]
+
+
+def singulars(name: str) -> set[str]:
+    """The words of a name, in the singular."""
+    return {singular(w) for w in name.split()}

@@ -6,6 +6,7 @@ Handles typography and typing errors. `read.py` interprets the words.
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Sequence
 
 from ....gaussians.world.words import singular
@@ -33,11 +34,13 @@ def words_of(cleaned: str) -> tuple[list[str], list[str]]:
     A correction is kept only where it completes a whole name: "gravel" does not become "travel" of "travel bag".
     """
     joined: list[str] = []
-    for word in split(_COUNTED.sub("", cleaned)):
+    plain = "".join(c for c in unicodedata.normalize("NFKD", cleaned) if not unicodedata.combining(c))  # "cafe"
+    for word in split(_COUNTED.sub("", plain)):
         if word.text == "'s" and joined:
             joined[-1] += "" if joined[-1].endswith("s") else "s"
         elif word.text not in ('"', "'"):
             joined.append(word.text)
+    joined = _spelt_out(joined)
     slips = {
         i: s for i, t in enumerate(joined) if not _is_known(t) and (s := misspelled_name(t, knowledge.every_word()))
     }
@@ -45,6 +48,23 @@ def words_of(cleaned: str) -> tuple[list[str], list[str]]:
     named = {j for i in range(len(fixed)) if (n := knowledge.longest_name(fixed, i)) for j in range(i, i + n)}
     told = [f"read “{joined[i]}” as {meant}" for i, meant in slips.items() if i in named]
     return [text if i in named else joined[i] for i, text in enumerate(fixed)], told
+
+
+def _spelt_out(texts: list[str]) -> list[str]:
+    """The words with "&", "+", "w/" and "w/o" written out."""
+    found: list[str] = []
+    i = 0
+    while i < len(texts):
+        if texts[i] in "&+":
+            found.append("and")
+        elif texts[i] == "w" and texts[i + 1 : i + 2] == ["/"]:
+            without = texts[i + 2 : i + 3] == ["o"]
+            found.append("without" if without else "with")
+            i += 1 + without
+        else:
+            found.append("with" if texts[i] == "w" else texts[i])
+        i += 1
+    return found
 
 
 def _is_known(text: str) -> bool:

@@ -152,7 +152,7 @@ PLACES = bag(
     "centre center workshop ward wagon carriage boat ship bus train van truck hut shed barn stable yard camp arena "
     "pool "
     "lobby suite quarters chamber cell dungeon cave bunker treehouse pavilion gazebo conservatory winery brewery sauna "
-    "igloo lighthouse"
+    "igloo lighthouse deck depot cellar office marquee ring court pitch rink platform"
 )
 # Endings of adjectives that boxes cannot show: "a striped awning", "mismatched chairs".
 ADJECTIVE_ENDINGS = ("ed", "ing", "able", "ible", "ish", "less", "ful")
@@ -238,7 +238,6 @@ FEATURES: dict[Phrase, str] = _table({
     "high ceiling, high ceilings, tall ceiling, tall ceilings, vaulted ceiling, lofty ceiling": "high ceiling",
     "low ceiling, low ceilings": "low ceiling",
     "dance floor": "dance floor",
-    "skylight, skylights": "skylight",
     "brick wall, brick walls, exposed brick, exposed brick wall, exposed brick walls, bare brick": "brick wall",
     "exposed pipes, bare pipes, ductwork": "exposed pipes",
     "accent wall, feature wall": "accent wall",
