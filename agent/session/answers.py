@@ -19,6 +19,11 @@ _YES = re.compile(
     r"(,? please)?"
 )
 _NO = re.compile(r"(?:no|nope|none|none of (?:them|these|those)|neither|another one|something else)(?:,? please)?")
+_ENOUGH = re.compile(
+    r"(?:nothing (?:else|more)|that is (?:all|it)|that's (?:all|it)|no more"
+    r"|(?:it is |it's )?(?:already )?(?:included|in it)|already|the same(?: one)?|skip(?: it| that)?|leave it(?: out)?)"
+    r"(?:,? please)?"
+)
 _BUT = re.compile(
     r"(?:all|every one|each|everything)(?: of (?:them|these|those))?,? (?:but|except(?: for)?|without) (.+)"
 )
@@ -42,6 +47,11 @@ def says_yes(text: str) -> bool:
 def rejects(text: str) -> bool:
     """Whether a text says that nothing on a list is meant, and says nothing else: "no", "none of them"."""
     return _NO.fullmatch(plain(text)) is not None
+
+
+def says_enough(text: str) -> bool:
+    """Whether a text says that nothing further is meant, and says nothing else: "that is all", "already included"."""
+    return _ENOUGH.fullmatch(plain(text)) is not None
 
 
 def says_all(text: str) -> bool:

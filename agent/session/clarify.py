@@ -102,13 +102,40 @@ def plan_with_query(question: Question, chosen: Query) -> EditPlan:
 
 def with_plural(plan: EditPlan, asked: Question) -> EditPlan:
     """The plan, with a remark if all things of a name were asked for and a person chose some of a list."""
-    node: Any = asked.plan.ops[asked.step]
-    for key in asked.path:
-        node = node[key] if isinstance(key, int) else getattr(node, key)
+    node = _node(asked, asked.path)
     if not isinstance(node, Query) or node.pick != "all" or not node.text:
         return plan
     said = f"{node.text}: only what was chosen; there may be more of that kind"
     return plan.model_copy(update={"reason": "; ".join(r for r in (plan.reason, said) if r)[:2000]})
+
+
+def is_further(question: Question) -> bool:
+    """Whether a question is about one of several things that are named together: "the neck and the head"."""
+    return bool(question.selection.query.also) or (len(question.path) >= 2 and question.path[-2] == "also")
+
+
+def without_further(question: Question) -> EditPlan:
+    """The plan of a question about one of several things, without that thing."""
+    query, (*around, last) = question.selection.query, question.path
+    if query.also:
+        return plan_with_query(question, query.also[0].model_copy(update={"also": query.also[1:]}))
+    ops = list(question.plan.ops)
+    left = tuple(one for i, one in enumerate(_node(question, tuple(around))) if i != last)
+    ops[question.step] = exchange(ops[question.step], tuple(around), left)
+    return question.plan.model_copy(update={"ops": tuple(ops)})
+
+
+def asked_about(question: Question) -> str:
+    """What a question is about, in words, where it is one of several things that are named together; else ""."""
+    return question.selection.query.model_copy(update={"also": ()}).describe() if is_further(question) else ""
+
+
+def _node(question: Question, path: Path) -> Any:
+    """What stands at a path in the operation of a question."""
+    node: Any = question.plan.ops[question.step]
+    for key in path:
+        node = node[key] if isinstance(key, int) else getattr(node, key)
+    return node
 
 
 def as_a_whole(plan: EditPlan, step: int) -> EditPlan:

@@ -57,14 +57,17 @@ def offered(
     page: int = 0,
 ) -> Selection | None:
     """An absent selection with the things that may be meant as its candidates, those of its colours first, then by how
-    much of the views they fill; None where its name is known and names are reliable, so that it is not there.
+    much of the views they fill; None where its name is known, names are reliable and there are several things, so that
+    it is not there.
 
     Args:
         resolve: selects the owner of a part in the same scene.
         page: how often nothing was meant of what was offered: the less visible things follow, and then parts of things.
     """
     field, query = scene.language, selection.query
-    if field is None or not _is_open(query) or not (_unknown(query, encoder) or not is_reliable(field)):
+    if field is None or not _is_open(query):
+        return None
+    if not (_unknown(query, encoder) or not is_reliable(field) or _is_alone(field)):
         return None
     whole, parts = _pool(field, query, resolve)
     ranked = _ranked(scene, query, whole, viewer)
@@ -111,6 +114,11 @@ def _is_open(query: Query) -> bool:
     """Whether a query is for things by a name or an attribute, and not by ids or for parts of space."""
     fixed = query.last or query.groups or query.invert or query.pick == "rest" or query.region is not None
     return not fixed and query.text not in ALL | BACKGROUND | FLOATERS and bool(query.text or query.colors)
+
+
+def _is_alone(field: LanguageField) -> bool:
+    """Whether a scene is one thing, so that what is named is a part of it."""
+    return sum(bool(g.count) for g in field.objects()) == 1
 
 
 def _unknown(query: Query, encoder: Encoder | None) -> bool:

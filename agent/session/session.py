@@ -21,9 +21,18 @@ from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
 from . import log as session_log
 from . import portions
-from .answers import chosen_numbers, rejects
+from .answers import chosen_numbers, rejects, says_enough
 from .asker import Asker, see_answer
-from .clarify import Question, as_a_whole, plan_with_answer, plan_with_query, with_plural
+from .clarify import (
+    Question,
+    as_a_whole,
+    asked_about,
+    is_further,
+    plan_with_answer,
+    plan_with_query,
+    with_plural,
+    without_further,
+)
 from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
@@ -401,6 +410,8 @@ class Session:
             raise UserError("there is no open question; give an instruction")
         if rejects(text) and (error := self.offer_others()) is not None:
             raise error
+        if is_further(self.question) and says_enough(text):
+            return without_further(self.question)
         single = self.question.selection.verdict == "unconfirmed"
         if (portion := portions.read(text, len(self.question.candidates), single=single)) is not None:
             return self._portion(self.question, portion)
@@ -711,6 +722,8 @@ class Session:
             error = failure.error
             if question.selection.verdict == "absent":
                 error = self._offer(question, error) or error
+            elif about := asked_about(question):
+                error = with_message(error, f"{error}; this asks for {about}")
             raise (with_message(error, f"{error}; {told}") if told else error) from failure.__cause__
         plan = plan_with_query(question, seen)
         return plan.model_copy(update={"reason": "; ".join(filter(None, [plan.reason, told]))[:2000]})
@@ -729,6 +742,8 @@ class Session:
         told = found.reason.removeprefix(question.selection.reason).removeprefix("; ")
         selection = replace(found, verdict="absent", ids=found.ids[:0], groups=())
         self.question = replace(question, selection=selection, offered=True, page=page)
+        if about := asked_about(question):
+            told = f"this asks for {about}: {told}; or 'that is all' if it is in what was chosen"
         said = str(error) if error is not None else f"nothing was changed; {question.selection.query.describe()}"
         return with_message(error or AbsentError(said), f"{said}; {told}")
 

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 from ...gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
 from ..pictures.named_cameras import view_text
 from ..session import portions
-from ..session.answers import chosen_numbers, rejects
+from ..session.answers import chosen_numbers, rejects, says_enough
 from ..session.camera_moves import Looked, look
 from ..session.camera_words import read_moves
+from ..session.clarify import is_further
 from ..session.plan_report import candidate_json, planner_json, refusal_json, usage_lines
 from ..session.planner_client import is_dismissal, undo_or_redo
 from ..session.refusal import verdict_of
@@ -192,6 +193,8 @@ class Chat:
         if question is None or undo_or_redo(text) is not None:
             return False
         if question.selection.verdict != "absent" or chosen_numbers(text, len(question.candidates)) is not None:
+            return True
+        if is_further(question) and says_enough(text):
             return True
         return bool(question.candidates) and portions.read(text, len(question.candidates)) is not None
 

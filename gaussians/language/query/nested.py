@@ -27,8 +27,8 @@ def queries(node: Any, path: Path = ()) -> Iterator[tuple[Path, Query]]:
             yield from queries(item, (*path, i))
 
 
-def exchange(node: Any, path: Path, query: Query) -> Any:
-    """`node` with the query at `path` exchanged; everything else is shared."""
+def exchange(node: Any, path: Path, query: Query | tuple[Query, ...]) -> Any:
+    """`node` with the query, or the tuple of queries, at `path` exchanged; everything else is shared."""
     if not path:
         return query
     key, rest = path[0], path[1:]

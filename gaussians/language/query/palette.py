@@ -16,7 +16,7 @@ import torch
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ...color import BASIC, name_of, rgb_to_lab
+from ...color import BASIC, name_of, rgb_to_lab, shade_of
 from ...errors import UserError
 from ...harmonics import dc_to_color
 from ...scene import Scene
@@ -42,6 +42,8 @@ APART = 14.0  # distance of colours below which two clusters are one
 CLEAR = 0.8  # of the distance to the second nearest cluster: up to which a colour is of the nearest
 NEIGHBOURS = 9  # clear Gaussians that decide an unclear one
 SMALLEST = 0.015  # share by area of a colour that is told
+GREY = 12.0  # chroma below which a colour has no hue
+HUE = 0.3  # cosine of the angle between two hues up to which one may be called by the other, if nothing fits better
 MATCHES = 0.05  # score of a word from which a colour has it
 DIMMED = 0.9  # factor of the score that a dark colour would have in more light
 _ROUNDS = 12
@@ -93,9 +95,21 @@ class Palette:
         for word in words:
             scores = np.maximum(color_scores(word, self.labs), DIMMED * color_scores(word, lit))
             said = np.array([word in name.split() for name in self.names])
-            chosen |= said | ((scores >= MATCHES) & (scores >= 0.5 * scores.max(initial=0.0)))
+            hits = said | ((scores >= MATCHES) & (scores >= 0.5 * scores.max(initial=0.0)))
+            chosen |= hits if hits.any() else self._of_hue(word)
         found: I64 = self.rows[chosen[self.part]]
         return found
+
+    def _of_hue(self, word: str) -> NDArray[np.bool_]:
+        """Which colour `[C]` has nearly the hue of a word; none if no colour has, or the word names a grey."""
+        asked = rgb_to_lab(torch.tensor(shade_of(word), dtype=torch.float64)).numpy()[1:]
+        own = self._lit[:, 1:]
+        chroma = np.linalg.norm(own, axis=1)
+        if np.linalg.norm(asked) < GREY:
+            return np.zeros(len(own), bool)
+        cosine = own @ asked / np.maximum(chroma * np.linalg.norm(asked), 1e-9)
+        near = np.where(chroma >= GREY, cosine, -1.0)
+        return np.asarray((near >= HUE) & (near == near.max()))
 
     def told(self) -> str:
         """The colours that are more than a trace: "white (69%), red (28%)"; those of one name count together."""
