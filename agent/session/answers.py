@@ -24,6 +24,9 @@ _ENOUGH = re.compile(
     r"|(?:it is |it's )?(?:already )?(?:included|in it)|already|the same(?: one)?|skip(?: it| that)?|leave it(?: out)?)"
     r"(?:,? please)?"
 )
+_MORE = re.compile(
+    r"(.+?),? (?:and|plus|or) (?:some |there is |there are |show )?(?:more|others|other ones|further ones)"
+)
 _BUT = re.compile(
     r"(?:all|every one|each|everything)(?: of (?:them|these|those))?,? (?:but|except(?: for)?|without) (.+)"
 )
@@ -47,6 +50,12 @@ def says_yes(text: str) -> bool:
 def rejects(text: str) -> bool:
     """Whether a text says that nothing on a list is meant, and says nothing else: "no", "none of them"."""
     return _NO.fullmatch(plain(text)) is not None
+
+
+def keeps_and_more(text: str, count: int) -> tuple[int, ...] | None:
+    """The places that a text chooses while it asks for further ones: "14, 35 and more"; None if it does not."""
+    match = _MORE.fullmatch(plain(text))
+    return None if match is None else chosen_numbers(match[1], count)
 
 
 def says_enough(text: str) -> bool:

@@ -40,7 +40,8 @@ class Question:
         selection: its verdict ("ambiguous", "absent" or "unconfirmed"), reason and candidates.
         resolve: resolves another query in the same state of the scene.
         offered: the candidates are things that may be meant by a name that was not found, see `offers`.
-        page: how often nothing was meant of what was offered before.
+        page: how often other things than those that were offered were asked for.
+        kept: candidates of earlier pages that are meant, besides what is chosen now.
     """
 
     plan: EditPlan
@@ -50,6 +51,7 @@ class Question:
     resolve: Callable[[Query], Selection]
     offered: bool = False
     page: int = 0
+    kept: tuple[Candidate, ...] = ()
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:

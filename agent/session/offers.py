@@ -43,7 +43,7 @@ PARTS_PAGE = 1000  # the page from which parts are offered, however many pages o
 HINT = "or a portion: 'the red part of 2', '3 without the wall', 'pieces of 3'"
 _VIEWS = 5  # of the scene's cameras that are looked through beside the viewer's
 _ELSEWHERE = 0.4  # what a share of another view's picture counts against one of the viewer's
-_TRACE, _MINOR = 0.03, 0.5  # shares of Gaussians between which the colour that was said tells a part of what was chosen
+_TRACE, _MINOR = 0.08, 0.5  # shares of Gaussians between which the colour that was said tells a part of what was chosen
 _SMALLEST = 0.0005  # share of a picture from which a thing is worth a number
 
 
@@ -81,7 +81,7 @@ def offered(
     kind = "parts" if found[0].group not in {g.id for g in whole} else "things"
     told = f"if it is among the {len(found)} numbered {kind}, say its number, or several, {HINT}"
     return replace(selection, candidates=tuple(found)).noting(
-        told + ("; or 'none' for others" if len(found) == MOST else "")
+        told + ("; 'none' for others, '3 and more' to keep 3 and see others" if len(found) == MOST else "")
     )
 
 
@@ -192,9 +192,9 @@ def _minor_color(scene: Scene, groups: Sequence[int], query: Query) -> NDArray[n
     if query.not_colors or is_reliable(_field(scene)) or query.text in PARTS:
         return None
     found = palette(scene, rows_of(scene, groups))
-    rows = found.of(query.colors)
+    rows, near = found.of(query.colors), sum(float(found.shares[found.of_hue(w)].sum()) for w in query.colors)
     share = len(rows) / len(found.rows)
-    return rows if _TRACE <= share <= _MINOR else None
+    return rows if _TRACE <= share <= _MINOR and near <= _MINOR else None
 
 
 def _field(scene: Scene) -> LanguageField:

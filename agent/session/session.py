@@ -21,7 +21,7 @@ from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
 from . import log as session_log
 from . import portions
-from .answers import chosen_numbers, rejects, says_enough
+from .answers import chosen_numbers, keeps_and_more, rejects, says_enough
 from .asker import Asker, see_answer
 from .clarify import (
     Question,
@@ -412,19 +412,32 @@ class Session:
             raise error
         if is_further(self.question) and says_enough(text):
             return without_further(self.question)
+        if self.question.offered and (held := keeps_and_more(text, len(self.question.candidates))) is not None:
+            raise self._offer_more(self.question, held)
         single = self.question.selection.verdict == "unconfirmed"
         if (portion := portions.read(text, len(self.question.candidates), single=single)) is not None:
             return self._portion(self.question, portion)
         by_number = self.question.offered or any(c.ids is not None for c in self.question.candidates)
         if by_number and (places := chosen_numbers(text, len(self.question.candidates))) is not None:
-            absent = self.question.selection
-            scene, meant = offered_choice(self.scene, absent.query, absent.candidates, places)
+            absent, kept = self.question.selection, self.question.kept
+            every = (*absent.candidates, *kept)
+            places = (*places, *range(len(absent.candidates), len(every)))
+            scene, meant = offered_choice(self.scene, absent.query, every, places)
             self._regroup(scene)
             return with_plural(plan_with_query(self.question, meant), self.question)
         if self.question.selection.verdict == "unconfirmed" and is_dismissal(text):
             asked, self.question = self.question.selection.query.describe(), None
             raise UnconfirmedError(f"nothing was changed; say in other words what is meant by {asked}")
         return plan_with_answer(self.question, text, self._planner.noun_phrase)
+
+    def _offer_more(self, asked: Question, held: tuple[int, ...]) -> ScenewrightError:
+        """Let the open question keep some candidates and offer others, and the error that says so."""
+        error = self.offer_others()
+        if error is None or self.question is None:
+            raise UserError("there are no others; say the numbers alone, or a portion: 'the red part of 2'")
+        kept = (*asked.kept, *(asked.candidates[i] for i in held))
+        self.question = replace(self.question, kept=kept)
+        return with_message(error, f"{error}; {len(kept)} of those before are kept")
 
     def _portion(self, asked: Question, portion: portions.Portion) -> EditPlan:
         """The plan of a question for a portion of its candidates, which becomes a group of its own; or their pieces as
@@ -437,11 +450,14 @@ class Session:
         absent = asked.selection
         if portion.kind == "pieces":
             raise self._offer_pieces(asked, portion)
-        whole = portion.kind == "whole" and not portion.more
+        whole = portion.kind == "whole" and not portion.more and not asked.kept
         if whole:
             scene, meant = offered_choice(self.scene, absent.query, absent.candidates, portion.places)
         else:
-            scene, meant = portions.taken(self.scene, portion, absent.query, absent.candidates, self.viewer)
+            every = (*absent.candidates, *asked.kept)
+            held = portions.Portion("numbers", tuple(range(len(absent.candidates), len(every))))
+            portion = replace(portion, more=(*portion.more, held)) if asked.kept else portion
+            scene, meant = portions.taken(self.scene, portion, absent.query, every, self.viewer)
         self._regroup(scene)
         plan = plan_with_query(asked, meant)
         return as_a_whole(plan, asked.step) if whole else plan

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ...gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
 from ..pictures.named_cameras import view_text
 from ..session import portions
-from ..session.answers import chosen_numbers, rejects, says_enough
+from ..session.answers import chosen_numbers, keeps_and_more, rejects, says_enough
 from ..session.camera_moves import Looked, look
 from ..session.camera_words import read_moves
 from ..session.clarify import is_further
@@ -194,9 +194,10 @@ class Chat:
             return False
         if question.selection.verdict != "absent" or chosen_numbers(text, len(question.candidates)) is not None:
             return True
-        if is_further(question) and says_enough(text):
+        count = len(question.candidates)
+        if (is_further(question) and says_enough(text)) or keeps_and_more(text, count) is not None:
             return True
-        return bool(question.candidates) and portions.read(text, len(question.candidates)) is not None
+        return bool(question.candidates) and portions.read(text, count) is not None
 
     def _question(self, text: str) -> None:
         """Answer a question about the scene."""

@@ -168,7 +168,8 @@ class Recolor(TargetedOp):
         was, now = (seen_colors(s, rows_of(s.cloud, outcome.touched)) for s in (before, outcome.scene))
         checks = [self._arrived(before.cloud, rows, was, now), count_matches(before, outcome.scene, outcome)]
         if self.adjust in ("darker", "lighter"):
-            shift = grey_shift(sample(before.cloud, rows), sample(outcome.scene.cloud, rows))
+            still = outcome.touched[torch.isin(outcome.touched, outcome.scene.cloud.ids)]
+            shift = grey_shift(*(sample(s.cloud, rows_of(s.cloud, still)) for s in (before, outcome.scene)))
             checks.append(
                 at_most("greys stay grey", shift, _GREY_SHIFT, "ΔE", f"the hue of greys shifted by {shift:.1f}")
             )

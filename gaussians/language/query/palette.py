@@ -43,7 +43,7 @@ CLEAR = 0.8  # of the distance to the second nearest cluster: up to which a colo
 NEIGHBOURS = 9  # clear Gaussians that decide an unclear one
 SMALLEST = 0.015  # share by area of a colour that is told
 GREY = 12.0  # chroma below which a colour has no hue
-HUE = 0.3  # cosine of the angle between two hues up to which one may be called by the other, if nothing fits better
+HUE = 0.38  # cosine of the angle between two hues up to which one may be called by the other, if nothing fits better
 MATCHES = 0.05  # score of a word from which a colour has it
 DIMMED = 0.9  # factor of the score that a dark colour would have in more light
 _ROUNDS = 12
@@ -100,16 +100,28 @@ class Palette:
         found: I64 = self.rows[chosen[self.part]]
         return found
 
+    def of_hue(self, word: str) -> NDArray[np.bool_]:
+        """Which colours `[C]` have nearly the hue of a word, whatever their lightness; none if the word names a grey.
+
+        Raises:
+            UserError: it is no colour word.
+        """
+        return self._nearness(word) >= HUE
+
     def _of_hue(self, word: str) -> NDArray[np.bool_]:
-        """Which colour `[C]` has nearly the hue of a word; none if no colour has, or the word names a grey."""
+        """Which colour `[C]` has most nearly the hue of a word; none if no colour has."""
+        near = self._nearness(word)
+        return np.asarray((near >= HUE) & (near == near.max()))
+
+    def _nearness(self, word: str) -> F64:
+        """Cosine `[C]` of the angle between the hue of each colour and that of a word; -1 for greys."""
         asked = rgb_to_lab(torch.tensor(shade_of(word), dtype=torch.float64)).numpy()[1:]
         own = self._lit[:, 1:]
         chroma = np.linalg.norm(own, axis=1)
         if np.linalg.norm(asked) < GREY:
-            return np.zeros(len(own), bool)
+            return np.full(len(own), -1.0)
         cosine = own @ asked / np.maximum(chroma * np.linalg.norm(asked), 1e-9)
-        near = np.where(chroma >= GREY, cosine, -1.0)
-        return np.asarray((near >= HUE) & (near == near.max()))
+        return np.where(chroma >= GREY, cosine, -1.0)
 
     def told(self) -> str:
         """The colours that are more than a trace: "white (69%), red (28%)"; those of one name count together."""

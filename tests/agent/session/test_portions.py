@@ -110,10 +110,34 @@ def test_pieces_are_offered_and_one_of_them_is_edited(session: Session, room: Sc
 
 def test_a_colour_that_is_not_there_is_refused_with_those_that_are(session: Session, room: Scene) -> None:
     with pytest.raises(UserError, match="its colours are"):
-        session.answer("the magenta part of 1")
+        session.answer("the turquoise part of 1")
     assert session.question is not None and session.scene.cloud is room.cloud
 
 
 def test_numbers_without_others_leave_these_out(session: Session) -> None:
     with pytest.raises(UserError, match="nothing would be left"):
         session.answer("2 without 2")
+
+
+def test_numbers_of_an_earlier_page_are_kept(session: Session, room: Scene) -> None:
+    assert session.question is not None and room.language is not None
+    first = session.question.candidates[1].group
+    with pytest.raises(AbsentError, match="are kept"):
+        session.answer("2 and more")
+    assert session.question is not None and [c.group for c in session.question.kept] == [first]
+    second = session.question.candidates[0].group
+    result = session.answer("1")
+    assert result.selection is not None
+    assert len(result.selection) == room.language.groups[first].count + room.language.groups[second].count
+
+
+def test_one_of_two_names_can_be_dropped(room: Scene) -> None:
+    asked = Session(room)
+    with pytest.raises(AbsentError, match="this asks for"):
+        asked.do("make the flumbergast and the wuggle teal")
+    assert asked.question is not None
+    chosen = asked.question.candidates[0].group
+    with pytest.raises(AbsentError, match="this asks for"):
+        asked.answer("1")
+    result = asked.answer("that is all")
+    assert result.selection is not None and result.selection.groups == (chosen,)
