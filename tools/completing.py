@@ -43,7 +43,7 @@ def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
     receipt = done.receipt.model_copy(
         update={
             "added": done.receipt.added + len(ids),
-            "changed": done.receipt.changed + sum(f.lighter for f in told),
+            "changed": done.receipt.changed + sum(f.lighter + f.darker for f in told),
             "total": len(scene.cloud),
             "notes": (*done.receipt.notes, *notes(told)),
             "filled": told,
@@ -69,6 +69,7 @@ def filled(before: Scene, after: Scene, moved: Sequence[Tensor] = ()) -> tuple[S
     for rows in left_their_place(before, after, moved):
         apart = mask_of(scene.cloud, torch.cat(elsewhere)) if elsewhere else None
         patches = patches_behind(scene, before.cloud[rows], apart)
+        darkness = max((p.darkness for p in patches), default=0.0)
         lit, new = unshaded(scene, patches), merged(scene, patches, top)
         told += tell(scene, patches)
         if lit is not scene.cloud:
@@ -79,7 +80,25 @@ def filled(before: Scene, after: Scene, moved: Sequence[Tensor] = ()) -> tuple[S
             cloud = joined(scene.cloud, None, [new])
             scene = scene.replace(cloud=cloud, language=recount(scene.language, cloud))
             ids.append(new.ids)
+        if elsewhere and darkness > 0:
+            scene, cast = _shaded(scene, before.cloud.ids[rows], darkness)
+            told += cast
     return scene, _together(told), torch.cat(ids)
+
+
+def _shaded(scene: Scene, ids: Tensor, darkness: float) -> tuple[Scene, tuple[Filled, ...]]:
+    """The scene with the contact shadow of a moved thing where it stands now."""
+    from .filling.fill import shadow_under
+    from .filling.shadow import multiplied
+
+    rows, factor = shadow_under(scene, mask_of(scene.cloud, ids), darkness)
+    if not len(rows):
+        return scene, ()
+    sh = scene.cloud.sh.clone()
+    sh[rows] = multiplied(sh[rows], factor)
+    scene = scene.replace(cloud=scene.cloud.replace(sh=sh))
+    scene = scene.replace(language=after_recolor(scene, scene.cloud.ids[rows]))
+    return scene, (Filled(surface="what it stands on", gaussians=0, area=0.0, sure=0.0, darker=len(rows)),)
 
 
 def _together(told: Sequence[Filled]) -> tuple[Filled, ...]:
@@ -94,7 +113,7 @@ def _together(told: Sequence[Filled]) -> tuple[Filled, ...]:
         sure = (one.sure * one.area + other.sure * other.area) / area if area > 0 else 0.0
         found[key] = Filled(
             surface=one.surface, gaussians=one.gaussians + other.gaussians, area=area, sure=sure,
-            lighter=one.lighter + other.lighter, reason=one.reason,
+            lighter=one.lighter + other.lighter, darker=one.darker + other.darker, reason=one.reason,
         )  # fmt: skip
     return tuple(found.values())
 

@@ -128,6 +128,7 @@ class Filled(BaseModel):
         area: of the hole, square scene units.
         sure: how sure the fill is, in [0, 1].
         lighter: Gaussians of the surface that lay in the thing's contact shadow and are lighter now.
+        darker: Gaussians of the surface that lie in its shadow where it stands now.
         reason: why nothing was made; "" if something was.
     """
 
@@ -138,6 +139,7 @@ class Filled(BaseModel):
     area: float
     sure: float
     lighter: int = 0
+    darker: int = 0
     reason: str = ""
 
 

@@ -26,7 +26,7 @@ from .hidden import VOXELS as HIDING
 from .hidden import hidden, space_of
 from .new_rows import Look, gaussians_of
 from .planes import F64, VOXELS, Mask, Plane, planes_near
-from .shadow import Shadow, estimated, multiplied, rows_and_factors, zone_of
+from .shadow import Shadow, cast, estimated, multiplied, rows_and_factors, zone_of
 from .smooth import harmonic
 from .texture import Continued, continued
 
@@ -41,6 +41,9 @@ _SKIRT = 0.02  # of the thing's extent: how near a wall the floor is not looked 
 _PART = 0.3  # of a gap in a surface: where the thing hid as much of it, all of it is the hole
 _ENCLOSED = 0.8  # of such a gap's border that must be of the surface
 _FAR = 1.0  # of the thing's extent: a surface farther from it was seen past it
+_ROUGH = 0.02  # of the thing's extent: noise of a surface on which no shadow can be told
+_CLOSED = 0.5  # of the cells around a thing that its support must cover for its shadow to be told
+_LOW = 0.02  # share of a thing's points below and above its height
 _NEAR = 6  # cells from a hole within which a group must be that is continued into it
 _GROUP = 0.1  # of a surface's cells from which a group is part of it
 _SAMPLE = 60_000  # points of the surroundings
@@ -62,6 +65,7 @@ class Patch:
             multiplied to take it away.
         error: root mean square disagreement with the border, display space.
         spread: standard deviation of the surface's texture, display space.
+        darkness: of that shadow close to the thing, in [0, 1); 0 without one.
         reason: why nothing was made, "" if something was.
     """
 
@@ -75,6 +79,7 @@ class Patch:
     reason: str = ""
     shaded: Tensor = field(default_factory=lambda: torch.zeros(0, dtype=torch.int64))
     factor: Tensor = field(default_factory=lambda: torch.zeros(0))
+    darkness: float = 0.0
 
     @property
     def area(self) -> float:
@@ -162,17 +167,11 @@ def _patch(
     extent: tuple[F64, F64, float],
 ) -> Patch | None:  # fmt: skip
     """One surface continued where the thing hid it; None if it hid nothing of it."""
-    low, high, size = extent
-    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
-    local = plane.local(corners)
-    if local[:, 2].min() > _FAR * size:
+    _, _, size = extent
+    placed = _chart(scene, rows, plane, extent)
+    if placed is None:
         return None
-    pad = _AROUND * size
-    thick = max(_THICK * plane.noise, 0.01 * size)
-    window = local[:, :2].min(axis=0) - pad, local[:, :2].max(axis=0) + pad
-    coarse = chart_of(plane, *window, float((window[1] - window[0]).max()) / 100)
-    slab = rows_in_slab(scene.cloud, rows, coarse, thick, thick)
-    chart = chart_of(plane, *window, spacing_of(coarse, scene.cloud, slab))
+    chart, slab = placed
     shown = seen(chart, as_photographed(scene, slab, plane))
     own = _of_surface(shown)
     within = _before(chart.points(), clips, 0.0)
@@ -208,11 +207,69 @@ class Surface:
 
 def _shadow(thing: GaussianCloud, surface: Surface, within: Mask, size: float) -> Shadow | None:
     """The contact shadow of a thing on a surface."""
+    plane = surface.chart.plane
+    if not (plane.carries or plane.last) or plane.noise > _ROUGH * size:
+        return None
     footprint = seen(surface.chart, thing).alpha > COVERED
     if not footprint.any():
         return None
     zone = zone_of(footprint, surface.chart, size) & within
+    if surface.covered[zone & ~footprint].sum() < _CLOSED * (zone & ~footprint).sum():
+        return None
     return estimated(surface.shown.rgb, _same(surface.shown, surface.covered, footprint), footprint, zone)
+
+
+def _chart(
+    scene: Scene, rows: Tensor, plane: Plane, extent: tuple[F64, F64, float]
+) -> tuple[Chart, Tensor] | None:  # fmt: skip
+    """The chart of a surface around a thing, and the rows of the surface; None if the thing is far from it."""
+    low, high, size = extent
+    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    local = plane.local(corners)
+    if local[:, 2].min() > _FAR * size:
+        return None
+    pad = _AROUND * size
+    thick = max(_THICK * plane.noise, 0.01 * size)
+    window = local[:, :2].min(axis=0) - pad, local[:, :2].max(axis=0) + pad
+    coarse = chart_of(plane, *window, float((window[1] - window[0]).max()) / 100)
+    slab = rows_in_slab(scene.cloud, rows, coarse, thick, thick)
+    chart = chart_of(plane, *window, spacing_of(coarse, scene.cloud, slab))
+    return chart, slab
+
+
+def shadow_under(scene: Scene, thing: Tensor, darkness: float) -> tuple[Tensor, Tensor]:
+    """The rows that lie in the contact shadow of a thing where it stands, and by what their colours are multiplied,
+    `[M]` each; empty if it stands on nothing.
+
+    Args:
+        thing: `[N]` bool, its rows.
+        darkness: of the shadow close to the thing, in [0, 1).
+    """
+    nothing = torch.zeros(0, dtype=torch.int64), torch.zeros(0)
+    cloud = scene.cloud[thing]
+    size, low, high = _extent(cloud)
+    if size <= 0:
+        return nothing
+    pad = _AROUND * size
+    rows = rows_between(scene.cloud, low - pad, high + pad)
+    rows = rows[~thing[rows]]
+    solid = rows[scene.cloud.opacities[rows] > OPAQUE]
+    around = spread(scene.cloud, solid[:: max(1, len(solid) // _SAMPLE)], size)
+    own = points_of(cloud, (cloud.opacities > OPAQUE).nonzero().squeeze(1))
+    own = own[((own >= low) & (own <= high)).all(axis=1)]
+    up = scene.frame.up_vector
+    if len(own) < 4:
+        return nothing
+    for plane in planes_near(around, own, up):
+        placed = _chart(scene, rows, plane, (low, high, size)) if plane.carries else None
+        if placed is None:
+            continue
+        chart, slab = placed
+        footprint = seen(chart, cloud).alpha > COVERED
+        height = float(np.ptp(np.quantile(own @ up, [_LOW, 1 - _LOW])))
+        if footprint.any():
+            return rows_and_factors(scene.cloud, slab, chart, cast(footprint, chart, min(height, size / 2), darkness))
+    return nothing
 
 
 def continue_into(
@@ -229,15 +286,16 @@ def continue_into(
     least = _SUPPORT if chart.plane.last or chart.plane.carries else _SURROUNDED
     if not reason and support < least and hole.any():
         reason = "too little of it is seen around the hole"
-    rows, factor = torch.zeros(0, dtype=torch.int64), torch.zeros(0)
+    rows, factor, darkness = torch.zeros(0, dtype=torch.int64), torch.zeros(0), 0.0
     if shadow is not None:
+        darkness = shadow.depth
         shown = replace(shown, rgb=shown.rgb / shadow.ratio[..., None])
         rows, factor = rows_and_factors(scene.cloud, surface.rows, chart, 1 / shadow.ratio)
     if reason or not hole.any():
-        return Patch(chart.plane, chart, hole, nothing, support, 0.0, 0.0, reason, rows, factor)
+        return Patch(chart.plane, chart, hole, nothing, support, 0.0, 0.0, reason, rows, factor, darkness)
     return replace(
         _filled(scene, surface.rows, chart.plane, chart, shown, surface.covered, hole, support),
-        shaded=rows, factor=factor,
+        shaded=rows, factor=factor, darkness=darkness,
     )  # fmt: skip
 
 

@@ -18,12 +18,16 @@ from .planes import F64, Mask
 from .texture import continued_far
 
 REACH = 0.3  # of the thing's extent: how far a contact shadow reaches beyond what it covers
-_DARKEST = 0.25  # ratio of colours that a contact shadow goes down to
+_COMPACT = 2.0  # times the root of the area that a thing covers: extent from which the reach is measured at most
+_DARKEST = 0.35  # ratio of colours that a contact shadow goes down to
 _SEEN = 0.96  # ratio above which nothing is changed
 _PART = 0.2  # of the cells near a thing, its darkest, that tell whether there is a shadow: it may stand on legs
 _CLEAR = 0.9  # ratio there above which there is none
 _GLOW = 1.05  # of the brightest of the surface around: what nothing may exceed
 _TINT = 0.3  # difference of two colours of the same mean from which they are two materials
+_BRIGHTER, _FEW = 0.15, 0.12  # by how much, and in which share of its reach, a shadow may be brighter
+_FADES = 0.035  # by how much it is darker near the thing than where it ends, on average
+_BEYOND, _UNEVEN = 1.5, 0.16  # its darkness over the spread of ratios where it ends, and the largest such spread
 _SMOOTH = 1.5  # cells over which the ratio is averaged at least
 _COARSE, _COARSEST = 0.1, 2.5  # of the shadow's reach, and cells at most: by how much more
 _OUTSIDE = 0.2  # how far from one the ratio may be where the shadow ends, which then counts as one
@@ -49,7 +53,9 @@ def zone_of(footprint: Mask, chart: Chart, size: float) -> Mask:
         footprint: `[H, W]`, the cells below the thing.
         size: extent of the thing, scene units.
     """
-    return np.asarray(ndimage.distance_transform_edt(~footprint) * chart.cell <= REACH * size)
+    # What is spread thin, as grass, casts no wide shadow for its extent.
+    reach = REACH * min(size, _COMPACT * float(np.sqrt(footprint.sum())) * chart.cell)
+    return np.asarray(ndimage.distance_transform_edt(~footprint) * chart.cell <= reach)
 
 
 def estimated(rgb: F64, known: Mask, footprint: Mask, zone: Mask) -> Shadow | None:
@@ -76,7 +82,7 @@ def estimated(rgb: F64, known: Mask, footprint: Mask, zone: Mask) -> Shadow | No
         return None  # what does not fade outward is another surface, or the light of the room
     ratio = np.where(inside, ratio / base, 1.0)
     close = inside & (away <= max(1.0, 0.25 * end))
-    if not close.any() or float(np.quantile(ratio[close], _PART)) > _CLEAR:
+    if not close.any() or not rim.any() or not _is_shadow(ratio, close, rim, inside):
         return None
     fade = np.clip((end - away) / max(0.3 * end, 1e-9), 0.0, 1.0)
     ratio = 1 - fade * (1 - np.clip(ratio, _DARKEST, 1.0))
@@ -84,6 +90,16 @@ def estimated(rgb: F64, known: Mask, footprint: Mask, zone: Mask) -> Shadow | No
     ratio = np.maximum(ratio, rgb.max(axis=2) / (_GLOW * max(float(_brightest(rgb, outside).max()), 1e-3)))
     ratio = np.where(inside & (ratio < _SEEN) & _grey(rgb, clear), ratio, 1.0)
     return Shadow(ratio, float(1 - ratio[close].mean()))
+
+
+def _is_shadow(ratio: F64, close: Mask, rim: Mask, inside: Mask) -> bool:
+    """Whether ratios are those of a contact shadow: darker and not brighter, fading outward, and by more than the
+    surface's own pattern varies where the shadow ends. A meadow or a patterned rug has none that could be told."""
+    dark = float(np.quantile(ratio[close], _PART))
+    uneven = float(ratio[rim].std())
+    brighter = float((ratio[inside] > 1 + _BRIGHTER).mean())
+    fades = float(ratio[rim].mean() - ratio[close].mean())
+    return dark <= min(_CLEAR, 1 - _BEYOND * uneven) and brighter <= _FEW and fades >= _FADES and uneven <= _UNEVEN
 
 
 def _alike(rgb: F64, outside: Mask, inside: Mask) -> Mask:

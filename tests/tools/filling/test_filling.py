@@ -10,7 +10,7 @@ import torch
 
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud, concat
-from scenewright.gaussians.harmonics import color_to_dc
+from scenewright.gaussians.harmonics import color_to_dc, dc_to_color
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.selection import Selection
 from scenewright.gaussians.render import render
@@ -18,6 +18,7 @@ from scenewright.gaussians.scene import Frame, Scene
 from scenewright.tools.completing import completed
 from scenewright.tools.execute import Done, carry_out
 from scenewright.tools.filling.fill import merged, patches_behind
+from scenewright.tools.filling.shadow import multiplied
 from scenewright.tools.operation import Context
 from scenewright.tools.registry import parse
 
@@ -181,3 +182,94 @@ def test_a_surface_that_goes_is_not_filled(room: Scene) -> None:
     bare = room.replace(cloud=room.cloud[room.cloud.group != WALL])
     wall = room.cloud[room.cloud.group == WALL]
     assert all(abs(p.plane.normal[1]) < 0.9 for p in patches_behind(bare, wall) if len(p.cloud))
+
+
+def test_a_named_wall_is_filled_and_an_opening_is_left(room: Scene) -> None:
+    """The operation closes the hole behind the box once; what is seen through an opening keeps it open."""
+    bare = _delete(room, infill=False).scene
+    op = parse({"op": "infill", "target": {"groups": [WALL]}})
+
+    def wall(scene: Scene, query: Query, *_: object, **__: object) -> Selection:
+        return Selection(query, "found", scene.cloud.ids[scene.cloud.group == WALL], (WALL,))
+
+    context = Context(VIEW, resolver=wall)
+    x, z = _grid((0.6, 0.7), (1.2, 1.2))
+    cut = (bare.cloud.group == WALL) & (bare.cloud.means[:, 0] > 0.6) & (bare.cloud.means[:, 0] < 1.2)
+    cut &= (bare.cloud.means[:, 2] > 0.7) & (bare.cloud.means[:, 2] < 1.2)
+    garden = _sheet(np.stack([x, 0 * x + 1.6, z], 1), 1, np.tile([0.2, 0.6, 0.2], (len(x), 1)), 3)
+    open_ = bare.replace(cloud=_numbered([bare.cloud[~cut], garden]))
+    first = carry_out(open_, op, context)
+    made = first.scene.cloud[torch.arange(len(open_.cloud), len(first.scene.cloud))]
+    assert len(made) == 0 or float(made.means[:, 0].max()) < 0.6
+    assert any("window" in note for note in first.receipt.notes)
+    again = carry_out(first.scene, op, context)
+    assert again.receipt.added == 0
+
+
+# ---- contact shadows: taken off where a thing stood, put on where it stands; patterns are left
+
+CONTEXT = Context(VIEW, resolver=_found)
+
+
+def _shadowed(darkness: float) -> tuple[Scene, torch.Tensor]:
+    """A small box on a large floor under its shadow, and the ratio of each floor Gaussian's colour."""
+    floor, box = _floor(), _box(y=-0.4, size=0.5)
+    away = (floor.means[:, :2] - torch.tensor([0.0, -0.4])).abs().amax(dim=1) - 0.25
+    ratio = 1 - darkness * torch.exp(-0.5 * (away.clamp(min=0) / 0.06) ** 2)
+    shaded = floor.replace(sh=color_to_dc(dc_to_color(floor.sh) * ratio[:, None, None]))
+    return Scene(_numbered([shaded, box]), Frame((0, 0, 1), 0.0, 1.0, "given", "given")), ratio
+
+
+def _do(scene: Scene, **fields: object) -> Done:
+    op = parse({"target": {"groups": [BOX]}, **fields})
+    return completed(scene, op, CONTEXT, carry_out(scene, op, CONTEXT))
+
+
+def test_a_deletion_takes_the_shadow_off() -> None:
+    """At most a quarter of it is left, in the mean over the floor that it darkened."""
+    scene, ratio = _shadowed(0.4)
+    done = _do(scene, op="delete")
+    now = dc_to_color(done.scene.cloud.sh[: len(ratio), 0]) / dc_to_color(_floor().sh[:, 0])
+    dark = (ratio < 0.95) & (ratio < 1)
+    assert float((now.mean(dim=1) - 1)[dark].abs().mean()) < 0.25 * float((1 - ratio)[dark].mean()) + 0.02
+    assert done.receipt.filled[0].lighter > 50
+    far = ratio > 0.999
+    assert torch.equal(done.scene.cloud.sh[: len(ratio)][far], scene.cloud.sh[: len(ratio)][far])
+
+
+def test_a_move_takes_the_shadow_along() -> None:
+    scene, ratio = _shadowed(0.4)
+    done = _do(scene, op="move", direction="left", distance={"value": 0.8, "unit": "m"})
+    now = dc_to_color(done.scene.cloud.sh[: len(ratio), 0]) / dc_to_color(scene.cloud.sh[: len(ratio), 0])
+    there = scene.cloud.means[: len(ratio)]
+    new = ((there[:, 0] + 0.8).abs() < 0.2) & ((there[:, 1] + 0.4).abs() < 0.2)
+    assert float(now[new].mean()) < 0.85 and float(now[ratio < 0.7].mean()) > 1.2
+    assert any(f.darker for f in done.receipt.filled)
+
+
+def test_a_floor_without_a_shadow_keeps_every_bit() -> None:
+    scene, ratio = _shadowed(0.0)
+    after = _do(scene, op="delete").scene.cloud
+    assert torch.equal(after.sh[: len(ratio)], scene.cloud.sh[: len(ratio)])
+
+
+def test_a_spotted_floor_has_no_shadow_that_could_be_told() -> None:
+    """Dark and bright spots of all sizes, as of a meadow."""
+    scene, ratio = _shadowed(0.0)
+    x, y = scene.cloud.means[: len(ratio), :2].T.double().numpy()
+    rng = np.random.default_rng(3)
+    spots = sum(np.sin(rng.normal(0, 8) * x + rng.normal(0, 8) * y + rng.uniform(0, 6)) for _ in range(9))
+    rgb = torch.from_numpy(np.clip(0.45 + 0.12 * spots, 0.02, 1).astype(np.float32))[:, None].expand(-1, 3)
+    sh = scene.cloud.sh.clone()
+    sh[: len(ratio), 0] = color_to_dc(rgb)
+    spotted = scene.replace(cloud=scene.cloud.replace(sh=sh))
+    after = _do(spotted, op="delete").scene.cloud
+    assert torch.equal(after.sh[: len(ratio)], sh[: len(ratio)])
+
+
+def test_colours_are_multiplied_in_all_bands() -> None:
+    sh = torch.randn(5, 4, 3, generator=torch.Generator().manual_seed(0))
+    factor = torch.tensor([0.5, 1.0, 2.0, 1.5, 0.25])
+    out = multiplied(sh, factor)
+    torch.testing.assert_close(dc_to_color(out[:, 0]), dc_to_color(sh[:, 0]) * factor[:, None])
+    torch.testing.assert_close(out[:, 1:], sh[:, 1:] * factor[:, None, None])
