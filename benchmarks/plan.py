@@ -19,7 +19,7 @@ from typing import Any, Literal, get_args
 from ..planners import load
 from ..planners.plan import EditPlan, Planner
 from ..tools import registry
-from . import _cascade, _data, _nouns, _written
+from . import _cascade, _data, _nouns, _spoiled, _written
 from .harness import Metric, Result
 
 CASES = Path(__file__).resolve().parent.parent / "tests" / "planners" / "instructions.jsonl"
@@ -111,6 +111,7 @@ def run(quick: bool = False) -> Result:
     untold = measure(planner, [{k: v for k, v in c.items() if k != "previous"} for c in todo], repeat)
     rooms, nouns = _on_rooms(planner), _of_people(planner, quick)
     compared, points, how = _cascade.measure(quick)
+    spoiled, of_spoiled = _spoiled.measure(quick)
     alone = Metric("right.without_context", share(untold, "right"), "share", "higher")
     start = Metric("ms.loading", 1e3 * min(loading() for _ in range(repeat)), "ms", "lower", 0.5)
     notes = (
@@ -125,9 +126,10 @@ def run(quick: bool = False) -> Result:
         "restated sentences, the second in .57 after it did; both have been read since, so the figure is of known "
         "sentences.",
         *how,
+        *of_spoiled,
         *nouns.notes,
     )
-    found = (*metrics(told), alone, *rooms.metrics, *compared, *nouns.metrics, start)
+    found = (*metrics(told), alone, *rooms.metrics, *compared, *spoiled, *nouns.metrics, start)
     return Result("plans of written instructions", "share right", found, points, notes, (_cascade.SEED,))
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from scenewright.benchmarks import _spoiled
 from scenewright.benchmarks import plan as bench
 from scenewright.gaussians.errors import FileError
 from scenewright.planners import EditPlan
@@ -59,3 +60,13 @@ def test_whole_benchmark() -> None:
 def test_missing_set_is_told(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="checkout"):
         bench.cases(tmp_path / "none.jsonl")
+
+
+def test_spoiled_plans_are_wrong_and_are_not_carried_out() -> None:
+    right = _spoiled.right_plans()
+    assert len(right) > 500 and all(not one.how for one in right)
+    wrong = _spoiled.spoiled_plans(right, 3)
+    assert len({one.how for one in wrong}) == 10 and len(wrong) == 30
+    passed = [one for one in wrong if _spoiled.carried_out(one, _spoiled.guarded) == "wrong_edit"]
+    assert len(passed) <= 1, [(one.how, one.case["id"]) for one in passed]
+    assert sum(_spoiled.carried_out(one, _spoiled.guarded) != "right" for one in right[::20]) <= 1

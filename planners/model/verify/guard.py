@@ -23,16 +23,18 @@ from ....gaussians.language.query.query import Query
 from ....gaussians.language.query.terms import STRUCTURE
 from ....tools.operation import EditOp
 from ...grammar.vocabulary.verbs import VERBS
-from ...impossible import NOT_FOR_STRUCTURE
+from ...impossible import NOT_FOR_STRUCTURE, Step
 from ...plan import Planner, Verdict
 from ...rooms.graph import SceneGraph
 from ...rooms.graph_scene import Id
-from ...rooms.label_encoder import words
+from ...rooms.label_encoder import THRESHOLD, agreement, words
 from ...rooms.plan_on_graph import Resolved
 from ..prompt.pruning import Relevance
-from .asked_for import clears, is_english, names_target, speaks_of_any, too_many, unasked_kinds, unwanted
+from .asked_for import clears, is_english, names_target, speaks_of_any, too_many, unwanted
 from .rehearsal import Rehearsal
 from .removal_words import Ground, mentions
+from .said import Phrase, Said
+from .second_reading import alike, unlike
 from .unstated_choices import drop_unstated_colors, drop_unstated_ids, singular_picks, stems
 
 # Operations that remove things, and the kinds of words that justify each. A new operation that removes belongs here.
@@ -46,6 +48,17 @@ _HIDDEN_OPACITY = 0.15  # opacity up to which a thing counts as removed
 _MANY = 4  # unnamed things; a plan that removes as many is a fault
 _FILLERS = re.compile(r"^(?:(?:and|now|then|next|ok|okay|please|so)\b[\s,]*)+")
 _SAME_AGAIN = re.compile(r"\b(?:too|also|as well|same|again|likewise|either|neither)\b")
+# Words for things of any kind, beside which the noun phrases of an instruction do not say all that it is about.
+_ANYTHING = re.compile(
+    r"\b(?:everything|anything|all|things?|stuff|objects?|items?|furniture|something|whatever|what|where|who\w*|rest|others?|"
+    r"clutter|mess|lot|decor|whole|entire|machine|room|scene)\b"
+)
+# A place that is meant without its name.
+_SOMEWHERE = re.compile(
+    r"\b(?:there|here)\b|"
+    r"\b(?:in|on|onto|into|under|behind|beside|of|to|by|near|above|over|with|beneath|against|around) "
+    r"(?:it|them|that|this|those|these|(?:the )?(?:others?|one|ones))\b"
+)
 _EVERYTHING = frozenset({"", "everything", "anything", "thing", "object", "item", "stuff", "furniture"})
 
 
@@ -88,6 +101,8 @@ class Guard:
         if self._scene is None:
             return tuple(ops)
         stated = drop_unstated_ids(ops, self._text, self._scene)
+        if self._said.turns_either_way and is_english(self._text):
+            stated = tuple(map(_counterclockwise, stated))
         stated = drop_unstated_colors(stated, self._text, self._previous)
         return singular_picks(stated, self._text, self._scene)
 
@@ -98,7 +113,7 @@ class Guard:
             return _first_of_each_kind(found)  # a dry run needs existing ids
         resolved = self._scene.dry_run(ops) if self._scene is not None and ops else None
         found += [*self._unjustified_removals(ops), *self._broad_removals(ops, resolved)]
-        found += self._unasked(ops, resolved)
+        found += self._unlike_the_reading(ops, resolved) if self._reading else self._unasked(ops, resolved)
         found += self._structure(ops) if resolved is None else self._dry_run_faults(resolved)
         return _first_of_each_kind(found)
 
@@ -151,7 +166,8 @@ class Guard:
         """Operations that remove something although the instruction does not ask for it."""
         for op in filter(_removes, ops):
             asked = any(mentions(g, self._text, self._before) for g in _REMOVALS[op.op])
-            asked |= len(ops) == 1 and unwanted(self._text) and names_target(op, self._text, self._before)
+            asked |= unwanted(self._text) and names_target(op, self._text, self._before)
+            asked |= op.op in ("delete", "opacity") and self._said.asks_to_remove
             if not asked and not (op.op == "replace" and self._names(getattr(op, "asset", ""))):
                 what = f"{op.op} {op.subject()}"
                 told = (
@@ -161,53 +177,145 @@ class Guard:
                 yield Fault("groundless", told, "not_understood", f"{_REFUSED}: {what}. {_REPHRASE}")
 
     def _unasked(self, ops: Sequence[EditOp], resolved: Resolved | None) -> Iterator[Fault]:
-        """Steps that the instruction does not ask for: on things that it neither names nor points at, of a kind or in a
-        number that nothing in it says."""
-        if not is_english(self._text):
+        """Steps that the instruction does not ask for: on things that it neither names nor points at, of a kind, with a
+        value or in a number that its words speak against."""
+        if not is_english(f"{self._text} {self._before or ''}"):
             return
         pointing = speaks_of_any(self._text) or speaks_of_any(self._before)
         pointing |= self._scene is None or not self._named  # nothing in the scene is called as the words say
         for step, op in enumerate(ops):
             meant = set(resolved.steps[step].targets) if resolved is not None and step < len(resolved.steps) else set()
-            open_choice = any(q.pick == "any" for _, q in queries((op,)))
             meant |= {self._support[i] for i in meant if clears(self._text) and i in self._support}
             named = not meant or bool(self._scene is not None and meant & self._named)
-            if self._is_read and meant and not open_choice and not meant & self._read_targets:
-                yield self._unasked_fault(op, "the words mean another thing")
-            elif not (self._is_read or pointing or named or names_target(op, self._text, self._before)):
+            strange = bool(self._scene is not None and meant and self._called and not meant & self._called)
+            pointed = pointing and not (strange and not _ANYTHING.search(self._text.lower()) and not self._said.refers)
+            if not (pointed or named or names_target(op, self._text, self._before)):
                 yield self._unasked_fault(op, f"{op.subject()} is not named")
-        for op in unasked_kinds(ops, self._text, self._before):
-            yield self._unasked_fault(op, f"nothing asks to {op.op} {op.subject()}")
+            for why in self._said.against(op, len(ops) == 1):
+                yield self._unasked_fault(op, why)
         for op in too_many(ops, self._text, self._before):
             yield self._unasked_fault(op, "it speaks of one thing, not of several")
+        yield from self._other_things(ops, resolved)
+
+    def _other_things(self, ops: Sequence[EditOp], resolved: Resolved | None) -> Iterator[Fault]:
+        """Steps on others than the things that the noun phrases of the instruction mean."""
+        if self._scene is None or resolved is None or resolved.verdict != "ok":
+            return
+        for step in resolved.steps:
+            placed = {i for i in step.anchors if i in self._support}
+            if placed and self._called and not placed & self._called and not _SOMEWHERE.search(self._text.lower()):
+                yield self._unasked_fault(step.op, "another place is meant")
+            color = getattr(step.op, "color", None)
+            if color and self._said.likens and not self._is_color_of_named(color, set(step.targets)):
+                yield self._unasked_fault(step.op, f"{color} is the colour of nothing that is named")
+        spared = {plain_color(c) for c in self._said.left_out}
+        kept = {n.id for n in self._scene.graph.nodes if plain_color(n.color) in spared}
+        if any(step.op.op not in ("select", "isolate") and kept & set(step.targets) for step in resolved.steps):
+            yield self._unasked_fault(resolved.steps[0].op, "what is to be left out is not left out")
+        if self._said.points or clears(self._text):
+            return
+        for step in resolved.steps:
+            for role, ids in (("target", step.targets), ("place", step.anchors)):
+                own = {i for i in ids if i in self._support}
+                if own and step.op.op != "arrange" and not self._may_mean(own, role == "place"):
+                    yield self._unasked_fault(step.op, f"another {role} is meant")
+
+    def _is_color_of_named(self, color: str, targets: set[Id]) -> bool:
+        """Whether a colour is that of a thing that is named and does not get it, or is said itself."""
+        assert self._scene is not None
+        others = [n.color for n in self._scene.graph.nodes if n.id in self._named - targets and n.color]
+        said = [str(c) for c in self._said.values("HUE", "COLOR")]
+        return any(alike(color, other) for other in (*others, *said))
+
+    def _may_mean(self, ids: set[Id], placed: bool) -> bool:
+        """Whether things are those that noun phrases with their names mean; also where such a phrase is not clear."""
+        assert self._scene is not None
+        labels = [n.label for n in self._scene.graph.nodes if n.id in ids and n.label]
+        clear = [(phrase, meant) for phrase, meant in self._meant if placed or not phrase.placed]
+        named = [
+            (phrase, meant)
+            for phrase, meant in clear
+            if max(agreement(phrase.noun, labels), default=0) >= THRESHOLD or any(ids & group for group in meant)
+        ]
+        if not named:
+            told = any(max(agreement(p.noun, labels), default=0) >= THRESHOLD for p, _ in self._meant)
+            open_ = self._said.refers or not clear or not all(meant for _, meant in clear)
+            return told or placed or open_
+        if not all(meant for _, meant in named):
+            return True
+        return _made_of(ids, [group for _, meant in named for group in meant])
 
     @cached_property
-    def _read_targets(self) -> set[Id]:
-        """What the grammar takes the instruction to be about, where it is sure and the scene has it; else nothing."""
+    def _said(self) -> Said:
+        return Said(self._text, self._before)
+
+    @cached_property
+    def _called(self) -> set[Id]:
+        """Nodes whose names are those of a noun phrase of the instruction."""
+        assert self._scene is not None
+        nodes = [n for n in self._scene.graph.nodes if n.label]
+        labels = [n.label for n in nodes]
+        found = {i for _, meant in self._meant for group in meant for i in group}
+        for phrase, _ in self._meant:
+            found |= {n.id for n, p in zip(nodes, agreement(phrase.noun, labels), strict=True) if p >= THRESHOLD}
+        return found
+
+    @cached_property
+    def _meant(self) -> list[tuple[Phrase, list[frozenset[Id]]]]:
+        """The things that each noun phrase of the instruction may mean; none where that is not clear."""
+        assert self._scene is not None
+        scene = self._scene
+        return [
+            (phrase, [frozenset(ids) for query in phrase.readings if (ids := scene.by_query(query))])
+            for phrase in self._said.phrases(self._recall)
+        ]
+
+    def _unlike_the_reading(self, ops: Sequence[EditOp], resolved: Resolved | None) -> Iterator[Fault]:
+        """Steps that do what the grammar does not read in the instruction, and what it reads and no step does.
+
+        Where the grammar is not sure, it may have left a part out; what a plan does beyond its reading is then judged
+        by the words.
+        """
+        if self._scene is None or resolved is None or resolved.verdict != "ok":
+            return
+        labels = {n.id: n.label for n in self._scene.graph.nodes}
+        extra, missing = unlike(resolved.steps, self._reading, self._said.given, labels)
+        if extra and not missing and not self._is_sure:
+            yield from self._unasked(ops, resolved)
+            return
+        for effect in extra[:1]:
+            op = effect.step.op
+            yield self._unasked_fault(op, f"{op.op} {op.subject()} with these values is not what the words say")
+        for effect in () if extra else missing[:1]:
+            what = f"{effect.op} {labels.get(effect.thing) or effect.thing}"
+            told = f"the instruction also asks to {what}. Give all the steps that it asks for"
+            reason = f"the model left a part undone, so nothing was done: {what}"
+            yield Fault("missing", told, "not_understood", reason)
+
+    @property
+    def _is_sure(self) -> bool:
         sure = getattr(self._recall, "is_sure", None)
-        if self._scene is None or sure is None:
-            return set()
+        return sure is not None and bool(sure(self._text, previous=self._previous))
+
+    @cached_property
+    def _reading(self) -> tuple[Step, ...]:
+        """What the grammar would do, where it reads the instruction and the scene has what it names; else nothing."""
+        if self._scene is None:
+            return ()
         try:
-            known = sure(self._text, previous=self._previous)
-            ops = self._recall.plan(self._text, previous=self._previous).ops if known else ()
+            ops = self._recall.plan(self._text, previous=self._previous).ops
         except UserError:  # too long for the grammar
-            return set()
+            return ()
         if any(q.pick == "any" for _, q in queries(tuple(ops))):
-            return set()
+            return ()
         resolved = self._scene.dry_run(ops) if ops else None
-        if resolved is None or resolved.verdict != "ok":
-            return set()
-        return {i for step in resolved.steps for i in step.targets}
+        return resolved.steps if resolved is not None and resolved.verdict == "ok" else ()
 
     @cached_property
     def _support(self) -> dict[Id, Id]:
         """What each thing stands on."""
         assert self._scene is not None
         return {n.id: n.support for n in self._scene.graph.nodes}
-
-    @property
-    def _is_read(self) -> bool:
-        return bool(self._read_targets)
 
     def _unasked_fault(self, op: EditOp, why: str) -> Fault:
         told = f"{op.op}: {why} in the instruction. Give only the steps that it asks for, on what it names"
@@ -284,8 +392,21 @@ _REPHRASE = "If you mean it, say so ('delete …', 'keep only …', 'delete ever
 @cache
 def _commands() -> frozenset[str]:
     """First words of commands, except those of "do the same"."""
-    alike = {phrase.split()[0] for phrase, (kind, _) in VERBS.items() if kind == "SAME"}
+    alike = {phrase.split()[0] for phrase, (kind, _) in VERBS.items() if kind in ("SAME", "UNITIS")}
     return frozenset(phrase.split()[0] for phrase in VERBS) - alike
+
+
+def _counterclockwise(op: EditOp) -> EditOp:
+    """A turn of which nobody says the way, the way that counts as positive."""
+    degrees = getattr(op, "degrees", None)
+    turns = op.op == "rotate" and degrees is not None and degrees < 0 and getattr(op, "toward", None) is None
+    return op.model_copy(update={"degrees": -degrees}) if turns and degrees is not None else op
+
+
+def _made_of(ids: set[Id], groups: Sequence[frozenset[Id]]) -> bool:
+    """Whether some of the groups together are exactly these."""
+    within = [g for g in groups if g <= ids]
+    return ids == set().union(*within)
 
 
 def _removes(op: EditOp) -> bool:

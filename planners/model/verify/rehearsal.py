@@ -59,6 +59,11 @@ class Rehearsal:
         except UserError:
             return None
 
+    @property
+    def last_ids(self) -> tuple[Id, ...]:
+        """Ids of what "it" refers to."""
+        return self.stage.names(self.last.groups) if self.last is not None else ()
+
     def dry_run(self, ops: Sequence[EditOp]) -> Resolved | None:
         """What the operations would touch; None if they refer to an "it" that is unknown. All ids must exist."""
         if self.last is None and any(q.last for _, q in queries(tuple(ops[:1]))):
@@ -93,6 +98,14 @@ class Rehearsal:
         words = query.model_copy(update={"groups": (), "also": (), "pick": "all", "count": None, "ordinal": None})
         try:
             found = self.stage.find(with_queries(words, self._with_rows), self.last)
+        except UserError:
+            return ()
+        return self.stage.names(found.groups) if found.verdict == "found" else ()
+
+    def by_query(self, query: Query) -> tuple[Id, ...]:
+        """Ids of the nodes that a query means; nothing if that is not clear."""
+        try:
+            found = self.stage.find(query, self.last)
         except UserError:
             return ()
         return self.stage.names(found.groups) if found.verdict == "found" else ()

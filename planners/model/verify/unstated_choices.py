@@ -23,6 +23,11 @@ _WORD = re.compile(r"[^\W\d_]+")
 _OPEN_CHOICE = re.compile(r"\b(?:any|some|either|one of|random|whichever|whatever)\b")
 _SEVERAL = re.compile(r"\b(?:all|every\w*|each|both|any\w*|whole|entire|ones?|others?|rest|set|pair|group|\d+)\b")
 _THE = r"\b(?:the|this|that|my|our|your) "
+_IT = re.compile(r"\b(?:it|its|them|they|that|this|those|these|another|again|more|one|ones|same)\b")
+# Comparatives, which tell things apart unless the size is what is to change.
+_GRADED = frozenset(
+    ["bigger", "larger", "smaller", "taller", "shorter", "wider", "narrower", "darker", "lighter", "brighter"]
+)
 # Words that do not distinguish things of one kind: verbs, amounts and function words.
 _PLAIN_WORDS = """
 a an the this that it its please kindly can could would will you i we me us my our your to of and then now just let s
@@ -57,10 +62,12 @@ def drop_unstated_ids(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tup
             return query
         named = query if query.text else query.model_copy(update={"text": scene.label(query.groups[0])})
         fits = scene.by_words(named) if named.text else ()
-        told = all(stems(word) <= _plain() | used | stems(named.text) for word in _WORD.findall(said))
+        plain = _plain() if any(op.op == "scale" for op in ops) else _plain() - _GRADED
+        told = all(stems(word) <= plain | used | stems(named.text) for word in _WORD.findall(said))
         if not set(query.groups) < set(fits) or not told:
             return query
-        if set(fits) <= meant or _told_by_color(set(query.groups), fits, stems(text), scene):
+        last = scene.last is not None and set(query.groups) == set(scene.last_ids) and _IT.search(said)
+        if last or set(fits) <= meant or _told_by_color(set(query.groups), fits, stems(text), scene):
             return query
         # One thing is meant, however many ids the model gave; never all that the words fit.
         return named.model_copy(update={"groups": (), "pick": "one" if named.pick in _LOOSE else named.pick})

@@ -268,7 +268,7 @@ def test_what_cannot_be_ends_as_impossible() -> None:
 
 def test_refusals_are_told_before_what_may_stand() -> None:
     planned = [op("recolor", "plant", color="red"), op("delete", "sofa")]
-    assert kinds("paint the plant red", *planned) == ["groundless", "ambiguous"]
+    assert kinds("paint the plant red", *planned) == ["groundless", "unasked", "ambiguous"]
 
 
 def test_no_operations_have_no_faults() -> None:
