@@ -16,6 +16,7 @@ from typing import Any
 
 from ....gaussians.errors import UserError
 from ....gaussians.language.query.query import Query
+from ....gaussians.world.finishes import said as finish_said
 from ....gaussians.world.lengths import in_metres
 from ....tools.operation import EditOp
 from ...grammar.restating.chunks import Chunk, as_words, chunks, is_thing
@@ -161,7 +162,16 @@ class Said:
         """
         if self._own and not self._asks_for(op, single):
             yield f"nothing asks to {op.op} {op.subject()}"
-        checks = (self._color, self._direction, self._relation, self._turn, self._length, self._factor, self._count)
+        checks = (
+            self._color,
+            self._material,
+            self._direction,
+            self._relation,
+            self._turn,
+            self._length,
+            self._factor,
+            self._count,
+        )
         for check in checks:
             if (why := check(op)) is not None:
                 yield why
@@ -227,6 +237,15 @@ class Said:
         if every:
             return f"the colour {color} is not the one that is said"
         return f"no colour is said for the {op.subject()}" if op.op != "recolor" else None
+
+    def _material(self, op: EditOp) -> str | None:
+        """A material has one of its words in the instruction."""
+        material = getattr(op, "material", None)
+        if material is None:
+            return None
+        runs = (self._words[i : i + n] for n in (1, 2, 3) for i in range(len(self._words)))
+        named = {found.finish for run in runs if (found := finish_said(" ".join(run))) is not None}
+        return None if material in named or not named else f"the material {material} is not the one that is said"
 
     def _sides(self) -> set[str]:
         tags = {str(v) for v in self.values("DIR", "RAISE", "PREP", "NEAR", "SIDE", "SPOT") if isinstance(v, str)}

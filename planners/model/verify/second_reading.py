@@ -113,7 +113,7 @@ def _same_values(one: Step, other: Step, given: Given) -> bool:
 
 def _compared(one: Step, other: Step, given: Given) -> Iterator[bool]:
     """For each value, whether two steps of the same operation agree on it."""
-    for name in ("direction", "adjust", "axis", "on_it"):
+    for name in ("direction", "adjust", "axis", "on_it", "material"):
         yield getattr(one.op, name, None) == getattr(other.op, name, None)
     yield _same_color(one.op, other.op)
     yield getattr(one.op, "count", 1) == getattr(other.op, "count", 1)
