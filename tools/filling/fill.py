@@ -24,7 +24,7 @@ from ...gaussians.scene import Scene
 from .charts import COVERED, Chart, Seen, chart_of, rows_in_slab, seen
 from .hidden import VOXELS as HIDING
 from .hidden import hidden, space_of
-from .new_rows import Look, gaussians_of
+from .new_rows import Look, gaussians_of, is_fill
 from .planes import F64, VOXELS, Mask, Plane, planes_near
 from .shadow import Shadow, cast, estimated, multiplied, rows_and_factors, zone_of
 from .smooth import harmonic
@@ -101,6 +101,9 @@ def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = No
     pad = _AROUND * size
     rows = rows_between(scene.cloud, low - pad, high + pad)
     rows = rows if apart is None else rows[~apart[rows]]
+    # What was filled before tells nothing of where a surface goes on: the same hole filled again stays as it is.
+    made_before = is_fill(scene.cloud, rows)
+    earlier, rows = rows[made_before], rows[~made_before]
     solid = rows[scene.cloud.opacities[rows] > OPAQUE]
     around = spread(scene.cloud, solid[:: max(1, len(solid) // _SAMPLE)], size)
     own = points_of(thing, (thing.opacities > OPAQUE).nonzero().squeeze(1))
@@ -109,10 +112,10 @@ def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = No
         return []
     up = scene.frame.up_vector
     planes = planes_near(around, own, up)
-    made, patches = scene.cloud, list[Patch]()
+    patches = list[Patch]()
     for plane in planes:
         clips = [p for p in planes if p is not plane and p.last]
-        patch = _patch(scene.replace(cloud=made), rows, thing, plane, clips, (low, high, size))
+        patch = _patch(scene, (rows, earlier), thing, plane, clips, (low, high, size))
         if patch is not None and (plane.last or len(patch.cloud) or len(patch.shaded)):
             patches.append(patch)  # that a surface among others ends before the thing is nothing to tell
     return patches
@@ -163,11 +166,15 @@ def rows_between(cloud: GaussianCloud, low: F64, high: F64) -> Tensor:
 
 
 def _patch(
-    scene: Scene, rows: Tensor, thing: GaussianCloud, plane: Plane, clips: Sequence[Plane],
+    scene: Scene, known: tuple[Tensor, Tensor], thing: GaussianCloud, plane: Plane, clips: Sequence[Plane],
     extent: tuple[F64, F64, float],
 ) -> Patch | None:  # fmt: skip
-    """One surface continued where the thing hid it; None if it hid nothing of it."""
-    _, _, size = extent
+    """One surface continued where the thing hid it; None if it hid nothing of it.
+
+    Args:
+        known: rows of what is around, and of what was filled there before.
+    """
+    (rows, earlier), (_, _, size) = known, extent
     placed = _chart(scene, rows, plane, extent)
     if placed is None:
         return None
@@ -182,10 +189,12 @@ def _patch(
     hole, support = np.zeros_like(empty), 0.0
     if empty.sum() >= _FEWEST:
         was, open_ = _hidden_cells(scene, rows, slab, thing, plane, chart, empty, extent)
+        there = _covers(scene, earlier, plane, chart, size)
+        open_ &= ~there
         # Where nothing was seen, the surface is there if it is there around.
         filled = harmonic(covered.astype(np.float64)[..., None], covered | open_, was)[..., 0]
         hole = (was & (filled > 0.5)) | _gaps(was, empty, covered, within)
-        hole = _large(hole, _LEAST * size**2 / chart.cell**2)
+        hole = _large(hole & ~there, _LEAST * size**2 / chart.cell**2)
         rim = ndimage.binary_dilation(hole, iterations=2) & ~hole
         told = (covered | open_) & rim if plane.last or plane.carries else rim
         support = float((covered & rim).sum()) / max(int(told.sum()), 0.2 * int(rim.sum()), 1)
@@ -193,6 +202,12 @@ def _patch(
     if not hole.any() and shadow is None:
         return None
     return continue_into(scene, surface, hole, support, shadow)
+
+
+def _covers(scene: Scene, rows: Tensor, plane: Plane, chart: Chart, size: float) -> Mask:
+    """`[H, W]` where some rows, which lie on a surface, cover it."""
+    thick = max(_THICK * plane.noise, 0.01 * size)
+    return seen(chart, scene.cloud[rows_in_slab(scene.cloud, rows, chart, thick, thick)]).alpha > COVERED / 2
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ from .planes import F64
 COVER = 0.6  # standard deviation over the side of a cell: no gaps, and edges stay crisp
 _FLAT = 0.08  # thickness over the standard deviation along the surface
 _OPACITY = 0.97
+_SAME = 1e-3  # relative error of the proportions by which a fill is recognised
 _NEIGHBOURS = 8  # Gaussians of the surface whose view-dependent colour a new one takes
 
 
@@ -60,6 +61,18 @@ def gaussians_of(chart: Chart, look: Look, cloud: GaussianCloud, rows: Tensor) -
         torch.from_numpy(look.group.astype(np.int32)),
     )  # fmt: skip
     return made.to(cloud.device)
+
+
+def is_fill(cloud: GaussianCloud, rows: Tensor) -> Tensor:
+    """`[M]` bool: the rows that a fill made, told by their opacity and proportions, which a file keeps."""
+    scales = cloud.scales[rows]
+    side = scales[:, 0]
+    round_ = (scales[:, 1] / side - 1).abs() < _SAME
+    return (
+        round_
+        & ((scales[:, 2] / (_FLAT * side) - 1).abs() < _SAME)
+        & ((cloud.opacities[rows] / _OPACITY - 1).abs() < _SAME)
+    )
 
 
 def _bands(points: Tensor, cloud: GaussianCloud, rows: Tensor) -> Tensor:

@@ -100,7 +100,10 @@ def planes_near(around: F64, thing: F64, up: F64) -> list[Plane]:
         last = bool(behind.mean() <= _BEHIND)
         gap = float(np.quantile(plane.height(body), _ENDS))
         if last or (gap < _REACHES * size and plane.normal @ up > _FACING):
-            carries = bool(plane.normal @ up > _CARRIES and gap < _REACHES * size)
+            # What things stand on is found first, as it is the largest; shelves and seats above it carry nothing of it.
+            carries = bool(plane.normal @ up > _CARRIES and gap < _REACHES * size) and not any(p.carries for p in found)
+            if not (last or carries) and plane.normal @ up > _CARRIES and any(p.carries for p in found):
+                continue
             found.append(Plane(plane.origin, plane.axes, plane.noise, last, carries))
     return found
 
