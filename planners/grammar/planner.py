@@ -224,6 +224,9 @@ def _complete_halves(ops: Sequence[Fields]) -> list[Fields]:
             if _is_among(op["target"], after):
                 ops = [*ops[: i + 1], _without(ops[i + 1], op["target"]), *ops[i + 2 :]]
             continue  # "leave the bed, move the desk"
+        if op["op"] == "isolate" and settled and settled[-1]["op"] == "delete" and settled[-1]["target"].pick == "all":
+            settled[-1] = _without(settled[-1], op["target"])  # "take everything off the desk, leave only the lamp"
+            continue
         alone = op["op"] == "isolate" and after is not None and _is_all_else(after)
         if held == "kept" or (alone and ops[i + 1]["op"] != "delete"):
             kept = op["target"]
@@ -294,9 +297,17 @@ def _merge_copies(ops: Sequence[Fields]) -> list[Fields]:
         bare = before.get("op") == "duplicate" and not {"place", "direction"} & before.keys()
         if bare and op["op"] == "move" and _is_the_copy(op["target"], before["target"]) and "toward" not in op:
             merged[-1] = {**before, **{k: v for k, v in op.items() if k not in ("op", "target")}}
+        elif _places_new(before, op):
+            merged[-1] = {**before, "place": op["place"]}  # "a table is needed, next to the bed"
         else:
             merged.append(op)
     return [_in_a_row(op) if op["op"] == "duplicate" else op for op in merged]
+
+
+def _places_new(before: Fields, op: Fields) -> bool:
+    """Whether a move only says where what was just added stands."""
+    bare = before.get("op") == "insert" and before.get("place") is None
+    return bare and op["op"] == "move" and set(op) == {"op", "target", "place"} and op["target"] == Query(last=True)
 
 
 def _is_the_copy(moved: Query, original: Query) -> bool:

@@ -26,6 +26,7 @@ from .tagging.non_edits import FORBIDDEN, STATEMENT, empty_refusal, is_chat, ref
 from .tagging.tagger import clauses
 from .tagging.tags import Clause, Tag, sentences
 from .tagging.words import Word
+from .vocabulary import lexicon
 
 _MOST_TRIES = 90
 _DEEPEST = 3
@@ -76,7 +77,10 @@ class Reader:
         Raises:
             Refusal: any part of it is not understood, or none of it is an edit.
         """
-        for sentence, mark in _with_topics(_with_corrections(list(sentences(words)))):
+        parts = list(sentences(words))
+        while self._follows and len(parts) > 1 and _takes_back(parts[0][0]):
+            parts = parts[1:]  # "No, wait. Next to the bed."
+        for sentence, mark in _with_topics(_with_corrections(parts)):
             self._sentence(sentence, mark, 0)
         return self._settled(words)
 
@@ -262,6 +266,11 @@ class Reader:
             [*state.before],
             state.colors,
         )
+
+
+def _takes_back(sentence: Sequence[Word]) -> bool:
+    """Whether a sentence only takes back the instruction before."""
+    return tuple(w.text for w in sentence if w.text != ",") in lexicon.RETRACTIONS
 
 
 def _spanning(texts: Sequence[str], sentence: Sequence[Word]) -> tuple[Word, ...]:

@@ -182,7 +182,8 @@ def duplicate(phrases: Phrases, node: Node) -> list[Fields]:
 def copies(phrases: Phrases, node: Node) -> list[Fields]:
     found = phrases.things(node)
     motion = places.read_motion(trees(node, *MOTIONS), phrases)
-    if any(n.modifiers for n in found) and not motion.aims:
+    placed = any(p.kind in ("related", "between", "centered", "in_spot") for n in found for p in n.modifiers)
+    if placed and not motion.aims:
         word = found[-1].modifiers[0].word
         raise Refusal("it is not clear whether that is where the copy goes; copy it, then move it", word)
     number = tokens(node, "NUMBER")

@@ -25,7 +25,7 @@ from .changes import Fields
 from .described import EVERYTHING, NounPhrase, all_of, existing, is_all_on_it, union
 from .moving import moved
 from .phrases import Phrases
-from .places import MOTIONS, goal_of, length
+from .places import MOTIONS, goal_of, length, read_motion
 
 
 def operations_of(phrases: Phrases, tree: Node) -> list[Fields]:
@@ -155,6 +155,10 @@ def drop(phrases: Phrases, node: Node) -> list[Fields]:
         node, *MOTIONS
     ):
         return moved(phrases, found, node, "PUT")  # "drop it in the box"
+    nudged = [d for d in trees(node, "nudge")]
+    if len(nudged) == len(trees(node, *MOTIONS)) == 1:
+        motion = read_motion(nudged, phrases)
+        return phrases.targeted(node, "move", direction="down", **motion.fields())  # "drop it a bit"
     if trees(node, *MOTIONS) or any(n.modifiers or n.article == "all" for n in found):
         raise Refusal("say put or delete", "drop")
     return phrases.targeted(node, "delete")

@@ -73,9 +73,13 @@ def about(thing: Sequence[str], clause: Sequence[str]) -> Iterator[list[str]]:
     ahead = Lookahead(clause)
     start, _ = ahead.skip_polite(0)
     if (verb := ahead.verb(start)) is not None:
-        if clause[start + verb[1] : start + verb[1] + 1] and clause[start + verb[1]] in _ARTICLES:
+        sized = clause[-1] in ("size", "height", "width", "length")
+        if clause[start + verb[1] : start + verb[1] + 1] and clause[start + verb[1]] in _ARTICLES and not sized:
             return  # it has an object of its own
-        yield [*clause[: start + verb[1]], *thing, *clause[start + verb[1] :]]
+        behind = list(clause[start + verb[1] :])
+        if behind[:1] and behind[-1] in ("size", "height", "width", "length"):
+            yield [*clause[: start + verb[1]], *behind, "of", *thing]
+        yield [*clause[: start + verb[1]], *thing, *behind]
         return
     if begins_state(clause, 0) or ahead.preposition_at(0) or clause[0] in _OPENS_STATE:
         for command in states(" ".join(thing), clause):
@@ -222,6 +226,8 @@ def _states_at(said: Sequence[str], i: int) -> bool:
         return True
     amount = quantities.read(said[i:])
     if amount is not None and amount.kind not in ("NUMBER", "ORDINAL"):
+        return True
+    if said[i] in ("facing", "double", "twice", "at") or (said[i] in ("all", "both") and i + 1 < len(said)):
         return True
     found = match(lexicon.CLOSED_PHRASES, said, i)
     return (found is not None and found[0][0] in _STATED) or said[i][0].isdigit()

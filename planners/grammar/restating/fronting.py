@@ -45,7 +45,8 @@ _SPARED = tuple(
         rf"{_STAYS}$",
         r"^(?P<edit>\S.*?)(?: ,)*(?: (?:and|but|so|though|although|however))* (?:only |just |please |do )*(?:spare|"
         r"keep|"
-        r"leave|save|leave out|skip|ignore|mind you leave)(?: (?:me|us))? (?P<one>(?:the|my|our|that|this) [^,]+?)"
+        r"leave|save|leave out|skip|ignore|mind you leave)(?: (?:me|us))?(?: only| just| with)* (?P<one>(?:the|my|"
+        r"our|that|this) [^,]+?)"
         r"(?: alone| be| in place| there| here| where (?:it is|they are)| as (?:it is|they are)| out| though| "
         r"please)*$",
         r"^(?P<edit>\S.*?)(?: ,)*(?: (?:and|but|so|though|although|however|just|only|mind|please))* (?:not|never) "

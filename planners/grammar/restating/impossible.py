@@ -53,6 +53,7 @@ def _made_to(command: Sequence[str]) -> bool:
     return command[1] in _OBJECT and any(w in doings.plain() or w in doings.ongoing() for w in does)
 
 
+_REQUEST = re.compile(r"^(?:please )?(?:can|could|will|would) (?:you|we|i|someone|somebody) (?:please |just |kindly )*")
 _ARTICLES = bag("the a an my our your that this")
 _SEEMING = bag("like mean feel look seem appear match fit suit stand sit hang lie show stick visit open close")
 _OBJECT = bag("the a an my our your his her its that this those these some something it them me us all both up")
@@ -61,6 +62,7 @@ _OBJECT = bag("the a an my our your his her its that this those these some somet
 def cannot_be(texts: Sequence[str]) -> str:
     """Why a sentence that is not understood asks for what no operation does; "" if that cannot be told."""
     said = " ".join(texts) + " "
+    texts = _REQUEST.sub("", " ".join(texts)).split()
     start, _ = Lookahead(texts).skip_polite(0)
     command = [w for w in unopened(" ".join(texts[start:])).split() if w not in ("please", "just")]
     if len(command) > 1 and command[0] in doings.ACTIONS and command[1] in _OBJECT:

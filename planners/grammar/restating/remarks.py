@@ -11,6 +11,7 @@ from ..vocabulary import doings, nouns
 from .chunks import is_thing
 from .elision import JOINTS, substitute
 from .judgements import is_judged
+from .states import states
 
 _SUBJECTS = bag(
     "never i we you it they he she nobody everybody everyone someone somebody people guests visitors there this "
@@ -51,10 +52,18 @@ def is_remark(said: Sequence[str]) -> bool:
         len(said) > 1
         and said[0] not in ("whatever", "whichever", "what", "which", "who")
         and Lookahead(said).verb(0) is None
-        and (said[0] in _SUBJECTS or said[1] in _REMARKING or finite_at(said, 1))
+        and (said[0] in _SUBJECTS or said[1] in _REMARKING or _has_subject(said))
         and any(finite_at(said, i) for i in range(1, len(said)))
         and not _ASKING.search(_NEGATED.sub("cannot", _COAT.sub("", text)))
     )
+
+
+def _has_subject(said: Sequence[str]) -> bool:
+    """Whether words begin with a thing and what is said of it: "two parasols is one too many"."""
+    hue = color_at(said, 0)
+    if hue is not None and hue[1] < len(said) and finite_at(said, hue[1]):
+        return True  # "white shows every fingerprint"
+    return any(finite_at(said, i) and is_thing(tuple(said[:i])) for i in range(1, min(len(said), 5)))
 
 
 def _judged(said: Sequence[str]) -> list[str] | None:
@@ -96,6 +105,8 @@ def remarks(said: Sequence[str]) -> Iterator[list[str]]:
                 and color_at(second, len(second) - hue["hue"].count(" ") - 1)
             ):
                 yield ["paint", *_of_whom(thing), *hue["hue"].split()]
+            if thing and (state := _BETTER_SO.match(" ".join(second))):
+                yield from (s.split() for s in states(" ".join(thing), state["state"].split()))
             if far := _FAR_FROM.search(" ".join(first)):
                 second = _toward(second, far["goal"])
             filled = substitute(thing or ("it",), second)
@@ -106,7 +117,7 @@ def remarks(said: Sequence[str]) -> Iterator[list[str]]:
             yield first
 
 
-_OF_IT = ("it", "they", "he", "she", "we", "i", "nobody", "everyone", "that")
+_OF_IT = ("it", "they", "he", "she", "we", "i", "nobody", "everyone", "that", "someone", "somebody", "people", "there")
 
 
 def without_remark(said: Sequence[str]) -> str | None:
@@ -123,6 +134,11 @@ def without_remark(said: Sequence[str]) -> str | None:
 _HUE_WISH = re.compile(
     r"^(?:please |just |let us |rather |maybe |i would |we could |so )*(?:go|try|use|make that|how about|what about|"
     r"i would say|let us say|say) (?:with |for |it |in |a |to )*(?P<hue>\S+(?: \S+)?)(?: instead| please| then)*$"
+)
+_BETTER_SO = re.compile(
+    r"^(?P<state>(?:a |an |\d|half|two|ten|twenty|thirty|slightly |much |somewhat )\S*.*?) (?:would|might|will) "
+    r"(?:be|look|work|suit) "
+    r"(?:it |them )?(?:a bit |a lot |much |far )?(?:better|nicer|good|great|best|fine|perfect)$"
 )
 _FAR_FROM = re.compile(r"\btoo (?:far|close)(?: away)? (?:from|to) (?P<goal>(?:the|that|this|my|our) \S.*)$")
 

@@ -19,6 +19,23 @@ REWORDED = tuple(
         (rf"half as {_SIZED} again(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
         (rf"half again as {_SIZED}(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
         (rf"(?:as {_SIZED} again)", r"2 times as \g<size>"),
+        (
+            r"(?P<a>(?:put|move|place|pop|stick|belongs?|goes|hang|stand) [^.;!?]*?) , not (?=(?:on|in|under|by|next to|behind|"
+            r"beside|against|at|over|near) )[^,.;!?]+",
+            r"\g<a>",
+        ),
+        (r"where (?:it|they) belongs?(?: ,)?", ""),
+        (r", not (?:out |over |up |there )*where [^.;!?]+", ""),
+        (
+            r", (?:all (?:of (?:them|those|these)|two|three|four|five|six)|every (?:single |last )?one(?: of (?:them|"
+            r"those|these))?)(?= [.;!?]|$)",
+            "",
+        ),
+        (
+            r"(?:until|till|so) (?:that )?(?:it|they) (?:is|are) (?P<n>(?:\d|a |half|ten|twenty|thirty)[^,.;!?]*?) "
+            r"(?:higher|lower)(?: up| down)?",
+            r"by \g<n>",
+        ),
         (r"no one", "nobody"),
         (
             r", (?:just )?all (?:of (?:them|those|these) )?(?:but|except|except for|apart from|bar|save) (?=(?:the|"

@@ -13,7 +13,7 @@ from ....gaussians.world.words import singular
 from ..tagging.lookahead import Lookahead, color_at
 from ..tagging.words import Word, bag
 from ..vocabulary import doings, lexicon, nouns, quantities
-from .participles import gerunds
+from .participles import at, gerunds
 from .rewordings import REWORDED
 
 _SOUNDS = bag("er erm um umm uh uhm uhh hm hmm eh ah aha oh ooh oi yo huh ugh argh ahem")
@@ -81,7 +81,8 @@ _OPENERS = re.compile(
     r"any chance (?:you could|you can|we could|of you)|is there any (?:chance|way) (?:you could|you can|to|we could)|"
     r"(?:it would|it'd) be (?:great|good|nice|lovely|cool|better|best|helpful|awesome|fantastic|wonderful|super)"
     r"(?: if you (?:could|would)| if we (?:could|would)| to)|"
-    r"i (?:would|'d) (?:be grateful|appreciate it) if you (?:could|would)|i (?:would )?wish you (?:would|could)|"
+    r"i (?:would|'d) (?:be grateful|appreciate it) if you (?:could|would)|on second thoughts?|on reflection|come to "
+    r"think of it|i (?:would )?wish you (?:would|could)|"
     r"you (?:had better|would better|better|might want to|may want to|could maybe|should probably|need to|have to|"
     r"have got to|"
     r"ought to|can go ahead and|can now)|we (?:had better|would better|better|might want to|ought to|should "
@@ -157,7 +158,7 @@ def smoothed(words: Sequence[Word]) -> tuple[Word, ...]:
 def smooth(texts: Sequence[str]) -> list[str]:
     """The words of an instruction without hesitation, tags and reasons; never fewer than none of them are left."""
     said = " ".join(_without_hedges([t for t in texts if t not in _SOUNDS]))
-    said = _linked(said)
+    said = _linked(_asked_to(said))
     said = re.sub(r"(?: (?:—|–|―))+", " ,", said)
     said = re.sub(r"\. \.(?: \.)*", ",", said)
     said = _settle_commas(said)
@@ -223,6 +224,16 @@ def _without_hedges(texts: Sequence[str]) -> list[str]:
     """The words without adverbs that only stress or weaken what is said; "fully transparent" stays."""
     kept = [t for i, t in enumerate(texts) if t not in _HEDGES or _SHADED & set(texts[i + 1 : i + 2])]
     return kept if any(t[0].isalpha() for t in kept) else list(texts)
+
+
+_MIND = re.compile(r"^(?:(?:would|do) you )?mind (?P<rest>\S.*)$")
+
+
+def _asked_to(said: str) -> str:
+    """ "Mind taking out the sink?" as "take out the sink ?"."""
+    found = _MIND.match(said)
+    form = at(gerunds(), found["rest"].split(), 0) if found else None
+    return said if found is None or form is None else " ".join([*form[0], *found["rest"].split()[form[1] :]])
 
 
 _OWNED = re.compile(

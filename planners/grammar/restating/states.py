@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from ..tagging.lookahead import Lookahead, color_at
 from ..tagging.words import bag
+from ..vocabulary import quantities
 from .chunks import is_thing
 from .participles import at, participles
 from .wish_patterns import GONE
@@ -100,7 +101,18 @@ def states(thing: str, state: Sequence[str]) -> Iterator[str]:
         yield command(form[0], thing, words[form[1] :])
         if words[0] in ("taken", "made", "turned", "brought") and len(words) > 1:
             yield f"make {thing} {' '.join(words[1:])}"
-    if "clockwise" in said or re.search(r"\b(?:degrees?|deg|°)(?: |$)", said):
+    amount = quantities.read(words)
+    if (
+        said.startswith("at ")
+        and (share := quantities.read(words[1:])) is not None
+        and share.kind in ("FRACTION", "PERCENT")
+    ):
+        yield f"scale {thing} to {' '.join(words[1 : 1 + share.taken])}"
+    if (
+        "clockwise" in said
+        or (amount is not None and amount.kind == "ANGLE")
+        or re.search(r"\b(?:degrees?|deg|°)(?: |$)", said)
+    ):
         yield f"rotate {thing} {_in_degrees(said)}"
     if facing := _TO_FACE.match(said):
         yield f"turn {thing} to face {facing.group('goal')}"
@@ -124,6 +136,9 @@ def states(thing: str, state: Sequence[str]) -> Iterator[str]:
         "shrink",
         "grow",
         "swap",
+        "trade",
+        "exchange",
+        "switch",
         "slide",
         "shift",
         "tilt",

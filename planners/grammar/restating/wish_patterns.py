@@ -146,7 +146,8 @@ UNWANTED = tuple(
         rf"(?P<thing>\S.*?)(?: {NO_MORE})+$",
         rf"^(?:i|we) {REALLY}(?:do not|no longer|never|will not|will never) {REALLY}(?:ever )?"
         rf"(?:need|want|require)(?: to (?:see|have|keep|look at))? (?P<thing>\S.*)$",
-        rf"^(?:i|we) (?:can|could|would|will) {REALLY}(?:easily |happily |well |gladly )?(?:do|live|manage|be fine|"
+        rf"^(?:i|we) (?:can|could|would|will|should|might|had better) {REALLY}(?:easily |happily |well |gladly "
+        rf")?(?:do|live|manage|be fine|"
         rf"be happy|"
         rf"be happier|be better off|be better) "
         rf"without (?P<thing>\S.*?)(?: {NO_MORE})*$",
@@ -202,6 +203,10 @@ WANTED = tuple(
     for pattern in (
         rf"^(?P<thing>(?!(?:the|that|this|my|our|your|those|these|no|nothing|it|all|both|every|more|what|is|are) )"
         rf"(?:[a-z]+ ){{0,3}}[a-z]+) (?:is |are )?(?:needed|wanted|required|missing|please){_PLACE}$",
+        rf"^(?P<thing>{NEW} [^,]+?) (?:would|will|could|might) not (?:go amiss|be amiss|hurt|go astray|be out of place)"
+        rf"(?P<more> .*)?$",
+        rf"^(?:i|we) (?:would|could) not (?:mind|say no to|object to|complain about) (?:having |getting "
+        rf")?(?P<thing>{NEW} \S.*)$",
         rf"^(?:missing|needed|wanted|required|to add|still missing|still needed) [:,] (?P<thing>{NEW} \S.*)$",
         rf"^(?:is there )?(?:any|a) chance (?:of|for|that there could be|to have|to get) (?P<thing>{NEW} \S.*)$",
         rf"^(?:would|could|might|should)(?: not)? (?P<thing>{NEW} [^,]+?) {REALLY}(?:be|look|go|fit|do|work|suit) "
@@ -302,6 +307,9 @@ EMPTIED = tuple(
 HUED = tuple(
     re.compile(pattern)
     for pattern in (
+        r"^(?:a |some |another )?(?:fresh |new |nice )?(?:lick|coat|splash|layer|touch|dash) of (?P<hue>\S+(?: "
+        r"\S+)?)(?: paint)? "
+        r"(?:for|on|onto) (?P<thing>(?:the|that|this|my|our|both|all|every) \S.*)$",
         rf"^(?:{SPEAKER} (?:have |has |would |could |will |am going to |are going to |might )*|let us |please "
         rf")?(?:go|going|gone|went|"
         rf"decided|settled|settle|decide|choose|chose|opt|opted|vote|voted|stick|try|use|pick|picked|apply|put) "
@@ -317,6 +325,13 @@ HUED = tuple(
         r"would be|might be)"
         r" (?P<hue>\S.*)$",
     )
+)
+# "The white stand is where the cake should go".
+WHERE = re.compile(
+    r"^(?P<place>(?:the|that|this|my|our) [^,]+?) is (?:where|the place where|the spot where) (?P<thing>(?:the|that|"
+    r"this|my|our|those|"
+    r"these|both|all) [^,]+?) (?:should (?:go|be|stand|sit|hang|live)|goes|go|belongs?|ought to be|has to go|must "
+    r"go|needs to be)$"
 )
 BEST_PLACE = re.compile(
     r"^(?:the|a) (?:best|better|right|ideal|proper|perfect|only|good|nicer) (?:place|spot|position|home|location) for "

@@ -31,6 +31,7 @@ from .wish_patterns import (
     UNWANTED,
     WANTED,
     WANTING,
+    WHERE,
 )  # fmt: skip
 
 
@@ -103,6 +104,8 @@ def _is_hue(said: str) -> bool:
 
 
 def _best_place(said: str) -> Iterator[str]:
+    if found := WHERE.match(said):
+        yield f"move {found['thing']} to {found['place']}"
     if found := BEST_PLACE.match(said):
         yield f"put {found['thing']} {found['state']}"
 

@@ -77,12 +77,17 @@ def _noun_expected(texts: Sequence[str], i: int) -> bool:
     """
     behind = texts[i + 1] if i + 1 < len(texts) else "."
     j = i - 1
-    while j > 0 and (texts[j] in colors.BASIC or (texts[j],) in lexicon.ATTRIBUTE_PHRASES):
+    while j > 0 and (texts[j] in colors.BASIC or (texts[j],) in lexicon.ATTRIBUTE_PHRASES or _is_strange(texts[j])):
         j -= 1
     if i and texts[i - 1] in (*colors.BASIC, "grey", "of"):
         return True  # a colour and its noun: "the grey lounger 80 cm to the right"
     ends = behind in _BEHIND_NOUN or behind[0].isdigit() or (behind,) in lexicon.CLOSED_PHRASES
     return i > 0 and texts[j] in _ARTICLES and (behind in _BEHIND_NOUN if j == i - 1 else ends)
+
+
+def _is_strange(text: str) -> bool:
+    """Whether a word is neither of the closed vocabulary nor an everyday noun, and so may be part of a name."""
+    return text.isalpha() and text not in _ARTICLES and text not in _closed_words() and not nouns.is_known(text)
 
 
 def misspelled_name(text: str, there: frozenset[str]) -> str:

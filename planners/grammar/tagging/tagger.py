@@ -142,7 +142,12 @@ def _tag_quantity(state: TaggerState, i: int, length: int) -> int | None:
         return None
     behind = i + found.taken
     headed = state.last_type in ("COLOR", "SIZE", "SUP", "ORDINAL", "ADJ", "OTHER")
-    if state.texts[i] == "one" and found.kind == "NUMBER" and (headed or not state.ahead.noun_at(behind)):
+    if (
+        found.taken == 1
+        and state.texts[i] == "one"
+        and found.kind == "NUMBER"
+        and (headed or not state.ahead.noun_at(behind))
+    ):
         return None
     if found.kind == "LENGTH":
         if state.texts[behind : behind + 1] in (("tall",), ("high",)):

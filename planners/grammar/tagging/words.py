@@ -32,6 +32,7 @@ _CONTRACTIONS = {
     "what's": "what is", "where's": "where is", "who's": "who is", "how's": "how is", "there's": "there is",
     "here's": "here is", "let's": "let us", "lets": "let us", "gimme": "give me", "lemme": "let me",
     "whatever's": "whatever is", "everything's": "everything is", "that'll": "that will", "it'll": "it will",
+    "that'd": "that would", "there'd": "there would",
     "you'll": "you will", "they'd": "they would", "it'd": "it would", "she'd": "she would",
     "he'd": "he would", "we've": "we have", "you've": "you have", "they've": "they have", "weren't": "were not",
     "hasn't": "has not", "haven't": "have not", "hadn't": "had not", "mustn't": "must not", "needn't": "need not",

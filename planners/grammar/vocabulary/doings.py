@@ -12,7 +12,8 @@ from ..tagging.words import bag
 
 # Done to things or by people: as a command, no operation carries it out.
 ACTIONS = bag(
-    "answer ask bake bang beat bite blend blink boil boot bounce braise brew build buy call catch "
+    "answer ask bake light slice rock carve decorate "
+    "bang beat bite blend blink boil boot bounce braise brew build buy call catch "
     "charge chat chew chill climb connect cook crack crush cry dance defrost deliver descale dial dig disconnect "
     "dismantle donate drain draw drill drink drive dry eat explain extinguish feed film "
     "finish fish freeze fry grate grill grind hammer harvest heat hire hit hoover hug "

@@ -29,7 +29,8 @@ _SECRETS = r"""
 \bpass(?:word|code|phrase)s?\b | \bcredentials?\b | \b(?:api|secret|private|access)\ (?:keys?|tokens?)\b
 | \bcredit\ card\b | \bbank\ account\b | \benvironment\ variables?\b | \bsystem\ prompt\b
 | [$€£]\s?\d | \b(?:transfer|wire|send)\b.*\b(?:money|dollars|euros|bitcoin|funds)\b
-| \b(?:upload|e-?mail|exfiltrate|tweet|leak)\b | \bsend\ me\ the\ contents?\b | \w@\w+\.\w | \bhttps?://
+| \b(?:upload|e-?mail|exfiltrate|tweet)\b
+| \bleak\ (?:the|my|your|our|all|this|it|them)\b | \bsend\ me\ the\ contents?\b | \w@\w+\.\w | \bhttps?://
 | \b(?:send|post|share|forward|publish|copy|transmit|move)\b.*
   \b(?:server\b(?!\ (?:rack|cabinet|stand|room))|internet|the\ web|online|twitter|facebook|instagram|reddit|cloud|ftp)\b
 """
