@@ -20,7 +20,8 @@ REWORDED = tuple(
         (rf"half again as {_SIZED}(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
         (rf"(?:as {_SIZED} again)", r"2 times as \g<size>"),
         (
-            r"(?P<a>(?:put|move|place|pop|stick|belongs?|goes|hang|stand) [^.;!?]*?) , not (?=(?:on|in|under|by|next to|behind|"
+            r"(?P<a>(?:put|move|place|pop|stick|belongs?|goes|hang|stand) [^.;!?]*?) , not (?=(?:on|in|under|by|"
+            r"next to|behind|"
             r"beside|against|at|over|near) )[^,.;!?]+",
             r"\g<a>",
         ),
