@@ -79,11 +79,14 @@ class Painted:
 
 
 def mean_pigment(pattern: Pattern) -> Tensor:
-    """`[3]` float64 mean display colour of a texture over a wall of five metres."""
-    places = torch.rand(_PLACES, 2, generator=torch.Generator().manual_seed(0)).numpy() * 5
+    """`[3]` float64 mean display colour of a texture over five metres of surface that faces all ways."""
+    rng = np.random.default_rng(0)
+    places = rng.uniform(0, 5, (_PLACES, 2)).astype(np.float32)
     xyz = np.stack([places[:, 0], np.zeros(_PLACES), places[:, 1]], axis=1).astype(np.float32)
-    facing = np.tile(np.array([0, 1, 0], np.float32), (_PLACES, 1))
-    spots = Spots(xyz, places.astype(np.float32), facing, np.full(_PLACES, 1e-4, np.float32), 0)
+    facing = rng.normal(size=(_PLACES, 3))
+    facing[:, 2] = np.abs(facing[:, 2])
+    facing /= np.linalg.norm(facing, axis=1, keepdims=True)
+    spots = Spots(xyz, places, facing.astype(np.float32), np.full(_PLACES, 1e-4, np.float32), 0)
     return torch.from_numpy(pattern(spots)).double().mean(dim=0)
 
 
