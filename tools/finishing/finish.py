@@ -29,7 +29,7 @@ Pattern = Callable[[Spots], F32]  # display colours [N, 3] in good neutral light
 
 _VARIES = 0.02  # display colour by which a texture varies over a Gaussian, from which it is split
 _FINEST = 0.45  # of the texture's finest feature: standard deviation that children have at most
-_NEW, _MORE = 150_000, 4.0  # Gaussians after splitting: at most so many more, or so many times as many
+_NEW, _MORE = 60_000, 4.0  # Gaussians after splitting: at most so many more, or so many times as many
 _STEPS = 12  # of the search for the size of children
 _FAINT = 0.05  # opacity below which a Gaussian is not split
 _REACH = 1.1  # standard deviations from the middle at which the texture is compared with that in the middle
@@ -118,11 +118,12 @@ def _counts(own: GaussianCloud, normals: F32, chart: Chart, paint: Paint) -> Ten
         return counts
     gains = _varies(own[coarse], ordered.indices[coarse], normals[coarse.numpy()], chart, paint)
     coarse = coarse[gains > _VARIES]
+    opacities = own.opacities[coarse]
     limit = len(own) + max(_NEW, _MORE * len(own))
     low, high = finest, max(finest, float(sides.max()))  # the finest size that keeps to the limit, by bisection
     wanted = low
     for _ in range(_STEPS):
-        made = torch.stack([counts_for(sides[coarse, k], wanted) for k in (0, 1)], dim=1)
+        made = torch.stack([counts_for(sides[coarse, k], opacities, wanted) for k in (0, 1)], dim=1)
         if len(own) + int((made.prod(dim=1) - 1).sum()) <= limit:
             if wanted == finest:
                 break
@@ -131,7 +132,7 @@ def _counts(own: GaussianCloud, normals: F32, chart: Chart, paint: Paint) -> Ten
             low = wanted
         wanted = (low * high) ** 0.5
     else:
-        made = torch.stack([counts_for(sides[coarse, k], high) for k in (0, 1)], dim=1)
+        made = torch.stack([counts_for(sides[coarse, k], opacities, high) for k in (0, 1)], dim=1)
     counts[coarse] = made
     return counts
 

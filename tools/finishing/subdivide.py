@@ -1,9 +1,10 @@
 """Split flat Gaussians into grids of smaller ones that look the same, so that a finer texture can be shown.
 
 A Gaussian with standard deviations s1 >= s2 >= s3 becomes n1 x n2 children in the plane of its first two axes, spread
-over `_REACH` standard deviations to each side. The opacities of the children are chosen so that light that passes
-through all of them at a child's centre loses as much as it lost in the parent there (optical depths add; a fixed-point
-iteration finds them).
+over some standard deviations to each side; over fewer if it is dense, as its neighbours on a surface then cover its
+rim. The opacities of the children are chosen so that light that passes through all of them at a child's centre loses as
+much as it lost in the parent there (optical depths add; a fixed-point iteration finds them). Children that no renderer
+would draw are left out.
 """
 
 from __future__ import annotations
@@ -15,23 +16,26 @@ from ...gaussians.cloud import GaussianCloud
 from ...gaussians.rotations import to_matrix
 
 _COUNTS = (1, 2, 3, 4, 6, 8, 11, 14)  # of children along an axis: few, so that many are split alike
-_REACH = 2.0  # standard deviations to each side over which children are spread
+_REACH, _DENSE_REACH = 2.0, 1.8  # standard deviations to each side over which children are spread; of dense Gaussians
+_DENSE = 0.7  # opacity from which a Gaussian is dense
+_UNSEEN = 1 / 255  # opacity below which renderers leave a Gaussian out
 _OVERLAP = 0.9  # standard deviation of a child in steps from one to the next
 _ROUNDS = 12  # of the iteration for opacities
 _CLEAREST, _DENSEST = 1e-3, 0.995
 _LEVELS = 24  # of opacity, between which the opacities of children are interpolated
 
 
-def reduction(count: Tensor) -> Tensor:
+def reduction(count: Tensor, reach: float) -> Tensor:
     """Standard deviation of a child relative to its parent's, for so many children along an axis; 1 for one child."""
-    step = 2 * _REACH / count.clamp(min=1)
+    step = 2 * reach / count.clamp(min=1)
     return torch.where(count > 1, (_OVERLAP * step).clamp(max=0.9), torch.ones_like(step))
 
 
-def counts_for(scales: Tensor, wanted: float) -> Tensor:
-    """`[M]` int64: how many children along an axis bring standard deviations `[M]` down to `wanted`, or as near to it
-    as can be."""
-    needed = 2 * _REACH * _OVERLAP * scales / max(wanted, 1e-12)
+def counts_for(scales: Tensor, opacities: Tensor, wanted: float) -> Tensor:
+    """`[M]` int64: how many children along an axis bring standard deviations `[M]` of Gaussians with opacities `[M]`
+    down to `wanted`, or as near to it as can be."""
+    reach = torch.where(opacities >= _DENSE, _DENSE_REACH, _REACH)
+    needed = 2 * reach * _OVERLAP * scales / max(wanted, 1e-12)
     possible = torch.tensor(_COUNTS)
     counts = possible[torch.searchsorted(possible.to(needed), needed.contiguous()).clamp(max=len(_COUNTS) - 1)]
     return torch.where(scales > wanted, counts, 1)
@@ -50,10 +54,14 @@ def subdivided(cloud: GaussianCloud, counts: Tensor) -> tuple[GaussianCloud, Ten
     order = cloud.scales.argsort(dim=1, descending=True)
     made: list[GaussianCloud] = []
     parents: list[Tensor] = []
-    for pair in torch.unique(counts, dim=0).tolist():
-        rows = (counts == torch.tensor(pair)).all(dim=1).nonzero().squeeze(1)
-        made.append(_children(cloud[rows], order[rows], pair[0], pair[1]))
-        parents.append(rows.repeat_interleave(pair[0] * pair[1]))
+    kinds = torch.cat([counts, (cloud.opacities >= _DENSE).to(counts)[:, None]], dim=1)
+    for kind in torch.unique(kinds, dim=0).tolist():
+        rows = (kinds == torch.tensor(kind)).all(dim=1).nonzero().squeeze(1)
+        first, second, dense = kind
+        children = _children(cloud[rows], order[rows], (first, second), _DENSE_REACH if dense else _REACH)
+        seen = (children.opacities >= _UNSEEN) | (first * second == 1)
+        made.append(children[seen])
+        parents.append(rows.repeat_interleave(first * second)[seen])
     if not made:
         return cloud, torch.arange(len(cloud))
     parent = torch.cat(parents)
@@ -62,11 +70,11 @@ def subdivided(cloud: GaussianCloud, counts: Tensor) -> tuple[GaussianCloud, Ten
     return GaussianCloud(**columns)[by_parent], parent[by_parent]
 
 
-def _children(cloud: GaussianCloud, order: Tensor, first: int, second: int) -> GaussianCloud:
+def _children(cloud: GaussianCloud, order: Tensor, counts: tuple[int, int], reach: float) -> GaussianCloud:
     """The children of Gaussians that are all split alike, parent by parent."""
-    m, each = len(cloud), first * second
-    offsets = torch.cartesian_prod(_places(first), _places(second)).reshape(each, 2)  # standard deviations
-    shrunk = reduction(torch.tensor([float(first), float(second)]))
+    m, each = len(cloud), counts[0] * counts[1]
+    offsets = torch.cartesian_prod(*(_places(n, reach) for n in counts)).reshape(each, 2)  # standard deviations
+    shrunk = reduction(torch.tensor([float(n) for n in counts]), reach)
     axes = to_matrix(cloud.quats)
     plane = [axes.gather(2, order[:, k, None, None].expand(-1, 3, 1)).squeeze(2) for k in (0, 1)]
     sides = cloud.scales.gather(1, order[:, :2])
@@ -80,9 +88,9 @@ def _children(cloud: GaussianCloud, order: Tensor, first: int, second: int) -> G
     )
 
 
-def _places(count: int) -> Tensor:
+def _places(count: int, reach: float) -> Tensor:
     """`[count]` places of children along an axis, in standard deviations of their parent."""
-    return ((torch.arange(count) + 0.5) / count - 0.5) * (2 * _REACH) if count > 1 else torch.zeros(1)
+    return ((torch.arange(count) + 0.5) / count - 0.5) * (2 * reach) if count > 1 else torch.zeros(1)
 
 
 def _opacities(parents: Tensor, offsets: Tensor, shrunk: Tensor) -> Tensor:

@@ -113,9 +113,10 @@ def sheet(opacity: float) -> GaussianCloud:
 def test_children_look_like_their_parents(opacity: float, decibels: float) -> None:
     cloud = sheet(opacity)
     sides = cloud.scales.sort(dim=1, descending=True).values
-    counts = torch.stack([counts_for(sides[:, k], 0.03) for k in (0, 1)], dim=1)
+    counts = torch.stack([counts_for(sides[:, k], cloud.opacities, 0.03) for k in (0, 1)], dim=1)
     children, parents = subdivided(cloud, counts)
-    assert len(children) == int(counts.prod(dim=1).sum())
+    assert 0.7 * int(counts.prod(dim=1).sum()) <= len(children) <= int(counts.prod(dim=1).sum())
+    assert float(children.opacities.min()) >= 1 / 255
     assert torch.equal(children.ids, cloud.ids[parents])
     camera = Camera.look_at((0.0, -2.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 96, 96, 40.0)
     was, now = render(cloud, camera), render(children, camera)
@@ -125,7 +126,7 @@ def test_children_look_like_their_parents(opacity: float, decibels: float) -> No
 
 def test_what_is_fine_enough_is_not_split() -> None:
     cloud = sheet(0.5)
-    assert counts_for(cloud.scales[:, 0], 0.2).max() == 1
+    assert counts_for(cloud.scales[:, 0], cloud.opacities, 0.2).max() == 1
     children, _ = subdivided(cloud, torch.ones(len(cloud), 2, dtype=torch.int64))
     assert all(torch.equal(a, b) for (_, a), (_, b) in zip(children.columns(), cloud.columns(), strict=True))
 
