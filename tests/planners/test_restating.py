@@ -52,6 +52,13 @@ def test_a_number_that_is_not_understood_is_not_half_a_turn() -> None:
         "do you think the vase belongs on the shelf?",
         "the chair looks nice next to the window",
         "I don't know where to put the lamp",
+        "the pendant lamp hangs above the counter",
+        "the doormat keeps sliding to the left",
+        "without the doormat the floor gets dirty",
+        "no stools were harmed",
+        "you could have asked me first",
+        "we had a bigger fridge before",
+        "leave the oven where it is",
     ],
 )
 def test_what_is_no_wish_changes_nothing(text: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 from ..parsing import Refusal, parse
 from ..tagging.lookahead import color_at, compounds, match, may_be_noun
@@ -93,6 +94,8 @@ def _does(texts: Sequence[str]) -> bool:
     if any(w in DOING and not (i and texts[i - 1] in ("that", "which", "who")) for i, w in enumerate(texts)):
         return True
     kept = ("keep", "keeps", "kept", "is", "are")
+    if any(w.endswith("ing") and before in ("keep", "keeps", "kept") for before, w in pairwise(texts)):
+        return True  # "the mat keeps sliding"
     doing = (i for i, w in enumerate(texts) if i and w in doings.ongoing() and texts[i - 1] in kept)
     return any(i < 2 or texts[i - 2] not in ("that", "which", "who") for i in doing)
 

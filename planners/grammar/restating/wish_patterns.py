@@ -59,7 +59,7 @@ MODAL = re.compile(
     rf" {REALLY}(?P<state>\S.*)$"
 )
 PLACED = re.compile(
-    rf"^(?P<thing>\S.*?) {REALLY}(?:belongs?|goes|go|lives?|stands?|stood|sits?|sat|hangs?|hung|moves?|moved|"
+    rf"^(?P<thing>\S.*?) {REALLY}(?:belongs?|goes|go|lives?|stand|stood|sit|sat|hang|hung|moves?|moved|"
     rf"turned|were|was)"
     rf" {REALLY}(?P<state>\S.*)$"
 )
