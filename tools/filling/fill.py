@@ -95,6 +95,8 @@ def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = No
         thing: its Gaussians, where they were.
         apart: `[N]` bool, Gaussians that are not continued: the thing itself where it stands now. None: there are none.
     """
+    finite = torch.isfinite(thing.means).all(dim=1) & torch.isfinite(thing.scales).all(dim=1)
+    thing = thing if bool(finite.all()) else thing[finite]
     size, low, high = _extent(thing)
     if size <= 0:
         return []
@@ -162,7 +164,8 @@ def rows_between(cloud: GaussianCloud, low: F64, high: F64) -> Tensor:
     """Rows of the visible Gaussians between two corners."""
     a, b = (torch.tensor(c, dtype=torch.float32, device=cloud.device) for c in (low, high))
     inside = ((cloud.means >= a) & (cloud.means <= b)).all(dim=1) & (cloud.opacities > 0.02)
-    return inside.nonzero().squeeze(1)
+    rows = inside.nonzero().squeeze(1)
+    return rows[torch.isfinite(cloud.scales[rows]).all(dim=1)]
 
 
 def _patch(

@@ -273,3 +273,15 @@ def test_colours_are_multiplied_in_all_bands() -> None:
     out = multiplied(sh, factor)
     torch.testing.assert_close(dc_to_color(out[:, 0]), dc_to_color(sh[:, 0]) * factor[:, None])
     torch.testing.assert_close(out[:, 1:], sh[:, 1:] * factor[:, None, None])
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_broken_gaussians_are_passed_over(room: Scene, value: float) -> None:
+    """Neither a broken thing nor broken surroundings raise, and nothing broken is made."""
+    means, scales = room.cloud.means.clone(), room.cloud.scales.clone()
+    means[::17], scales[5::17] = value, value
+    broken = room.replace(cloud=room.cloud.replace(means=means, scales=scales))
+    gone = broken.cloud.group == BOX
+    patches = patches_behind(broken.replace(cloud=broken.cloud[~gone]), broken.cloud[gone])
+    new = merged(broken, patches)
+    assert len(new) > 50 and bool(torch.isfinite(new.means).all() and torch.isfinite(new.sh).all())
