@@ -6,6 +6,7 @@ opened.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,12 +22,15 @@ from ...errors import FileError, ScenewrightError
 from ...rotations import from_matrix, multiply, normalize, to_matrix
 from .make import Asset, Parts, Unlit, basic_name
 from .sampling import Samples
+from .triangles import cut
 
 Array = NDArray[np.float64]
 MAX_BYTES = 256 << 20
 MAX_FACES = 4_000_000
 MAX_GAUSSIANS = 60_000  # per asset; larger splats are subsampled evenly, because a room holds dozens of assets
-SAMPLES = 10_000  # Gaussians per mesh
+SAMPLES = 10_000  # Gaussians per mesh, at most
+CELLS = 5_000  # of them that a mesh without outlines is cut into
+MOST_CUT = 300_000  # triangles up to which a mesh is cut into cells; of more, points are drawn
 CELL_SCALE = 1.35  # samples are random: larger cells close the holes between them
 # Rows: our x, y, z in the axes of a file whose y points up; its front +z becomes our -y.
 FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -137,6 +141,47 @@ def _splat_asset(cloud: GaussianCloud, turn: Array, size: Vec3, kind: str) -> As
 
 
 def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None) -> Asset:
+    meshes = _meshes(path)
+    if sum(len(m.faces) for m in meshes) <= MOST_CUT:
+        samples, albedo = _cut(path, meshes, turn, size)
+    else:
+        samples, albedo = _spread(path, turn, size)
+    albedo = albedo if tint is None else np.tile(np.array(tint), (len(albedo), 1))
+    unlit = Unlit(samples, albedo, np.ones(len(samples.xyz), dtype=bool))
+    return _asset(unlit, unlit.cloud(np.array([-0.45, -0.6, 0.66])), size, kind)
+
+
+def _cut(path: Path, meshes: list[Any], turn: Array, size: Vec3) -> tuple[Samples, Array]:
+    """Cells of all triangles of some meshes, stretched to `size`, and their colours `[N, 3]`."""
+    corners = np.concatenate([np.asarray(m.triangles, dtype=np.float64) for m in meshes]) @ turn.T
+    if not np.isfinite(corners).all():
+        raise FileError(f"the mesh in {path.name} has corners that are not numbers")
+    gain, foot = _gain(corners.min(axis=(0, 1)), corners.max(axis=(0, 1)), size)
+    triangles = (corners - foot) * gain
+    one, other = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    area = float(np.linalg.norm(np.cross(one, other), axis=1).sum()) / 2
+    step = math.sqrt(area / CELLS)
+    ends = np.cumsum([0, *(len(m.faces) for m in meshes)])
+    part = np.repeat(np.arange(len(meshes)), np.diff(ends))
+    cells = cut(triangles, step, part)
+    while len(cells.xyz) > SAMPLES and step < max(size):  # many sides need many strips
+        step *= 1.03 * math.sqrt(len(cells.xyz) / SAMPLES)
+        cells = cut(triangles, step, part)
+    if len(cells.xyz) < 3:
+        raise FileError(f"the mesh in {path.name} has no surface")
+    rgb = np.empty((len(cells.xyz), 3))
+    for mesh, start, end in zip(meshes, ends, ends[1:], strict=False):
+        rows = (cells.face >= start) & (cells.face < end)
+        face = cells.face[rows] - start
+        points = (cells.weights[rows, :, None] * np.asarray(mesh.triangles)[face]).sum(axis=1)
+        rgb[rows] = _colors(mesh, points, face)
+    count = len(cells.xyz)
+    uv, piece = np.zeros((count, 2)), np.zeros(count, dtype=np.int64)
+    return Samples(cells.xyz, cells.frame, cells.size, uv, piece), rgb
+
+
+def _spread(path: Path, turn: Array, size: Vec3) -> tuple[Samples, Array]:
+    """Random samples of a mesh of many triangles, stretched to `size`, and their colours `[N, 3]`."""
     xyz, normal, rgb, area = surface(path)
     xyz, normal = xyz @ turn.T, normal @ turn.T
     gain, foot = _gain(xyz.min(axis=0), xyz.max(axis=0), size)
@@ -146,14 +191,28 @@ def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None
     area *= float(np.prod(gain) * np.linalg.norm(normal, axis=1).mean())
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     side = np.full((len(xyz), 2), CELL_SCALE * np.sqrt(area / len(xyz)))
-    samples = Samples(xyz, frames(normal), side, np.zeros((len(xyz), 2)), np.zeros(len(xyz), dtype=np.int64))
-    albedo = rgb if tint is None else np.tile(np.array(tint), (len(rgb), 1))
-    unlit = Unlit(samples, albedo, np.ones(len(xyz), dtype=bool))
-    return _asset(unlit, unlit.cloud(np.array([-0.45, -0.6, 0.66])), size, kind)
+    return Samples(xyz, frames(normal), side, np.zeros((len(xyz), 2)), np.zeros(len(xyz), dtype=np.int64)), rgb
 
 
 def surface(path: Path) -> tuple[Array, Array, Array, float]:
     """Evenly sampled points of a mesh, their normals and colours, and its area, in the file's frame and unit."""
+    meshes = _meshes(path)
+    total = sum(float(m.area) for m in meshes)
+    try:
+        parts = [
+            _sampled(m, max(20, round(SAMPLES * float(m.area) / total)), index) for index, m in enumerate(meshes[:512])
+        ]
+    except Exception as error:  # as in `_meshes`
+        raise FileError(f"{path.name} cannot be read as a mesh ({type(error).__name__}: {error})") from error
+    xyz, normal, rgb = (np.concatenate(column) for column in zip(*parts, strict=True))
+    good = np.isfinite(xyz).all(axis=1) & np.isfinite(normal).all(axis=1) & np.isfinite(rgb).all(axis=1)
+    if good.sum() < 10:
+        raise FileError(f"the mesh in {path.name} has no surface")
+    return xyz[good], normal[good], rgb[good], total
+
+
+def _meshes(path: Path) -> list[Any]:
+    """The meshes in a file, as they stand in its scene; they have an area. Raises FileError."""
     try:
         import trimesh
 
@@ -168,18 +227,11 @@ def surface(path: Path) -> tuple[Array, Array, Array, float]:
         total = sum(float(m.area) for m in meshes)
         if not np.isfinite(total) or total <= 0:
             raise FileError(f"the mesh in {path.name} has no surface")
-        parts = [
-            _sampled(m, max(20, round(SAMPLES * float(m.area) / total)), index) for index, m in enumerate(meshes[:512])
-        ]
+        return meshes
     except FileError:
         raise
     except Exception as error:  # readers of mesh formats raise all kinds of exceptions on a broken file
         raise FileError(f"{path.name} cannot be read as a mesh ({type(error).__name__}: {error})") from error
-    xyz, normal, rgb = (np.concatenate(column) for column in zip(*parts, strict=True))
-    good = np.isfinite(xyz).all(axis=1) & np.isfinite(normal).all(axis=1) & np.isfinite(rgb).all(axis=1)
-    if good.sum() < 10:
-        raise FileError(f"the mesh in {path.name} has no surface")
-    return xyz[good], normal[good], rgb[good], total
 
 
 def _sampled(mesh: Any, count: int, seed: int) -> tuple[Array, Array, Array]:

@@ -28,7 +28,7 @@ from .shapes import Piece
 Array = NDArray[np.float64]
 SH_C0 = 0.28209479177387814  # Y_0^0, Kerbl et al. 2023
 OPACITY = 0.97
-COVER = 0.6  # standard deviation over cell length: a surface without holes whose edges stay crisp
+COVER = sampling.COVER
 MAX_GAUSSIANS = 8500  # of one object at detail 1, approximately
 THICKNESS = 0.06  # of a Gaussian, as a share of its shorter tangent
 

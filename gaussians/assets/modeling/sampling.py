@@ -17,6 +17,7 @@ from .patterns import FINE, Surface, paint
 from .shapes import Piece, Sheets
 
 Array = NDArray[np.float64]
+COVER = 0.6  # standard deviation over cell length: a surface without holes whose edges stay crisp
 EDGE = 0.45  # width of a cell at a hard border, as a share of the other cells'
 MIN_AROUND = 6  # cells around the thinnest bar; with fewer it looks flat
 
@@ -72,18 +73,18 @@ def _cut(key: tuple[int, int, bool, bool, bool], rows: list[tuple[int, Sheets, f
     space = np.repeat([d for _, _, d in rows], count)  # [B]
 
     along_u = np.linalg.norm(np.diff(grid, axis=1), axis=3).mean(axis=2)  # [B, U-1]
-    number = _cells(along_u.sum(axis=1), space, hard_u)  # [B]
-    b, k, at_u, wide_u = _divide(number, hard_u)  # [R] each: grid, row in it, centre and width as parts of one
+    number = cells_along(along_u.sum(axis=1), space, hard_u)  # [B]
+    b, k, at_u, wide_u = divide(number, hard_u)  # [R] each: grid, row in it, centre and width as parts of one
     i, f, length_u = _locate(along_u, b, at_u)
     f = f[:, None, None]
     line = grid[b, i] * (1 - f) + grid[b, i + 1] * f  # [R, V, 3]
     slope = grid[b, i + 1] - grid[b, i]
 
     along_v = np.linalg.norm(np.diff(line, axis=1), axis=2)  # [R, V-1]
-    number = _cells(along_v.sum(axis=1), space[b], hard_v)
+    number = cells_along(along_v.sum(axis=1), space[b], hard_v)
     if closed:  # a bar keeps its roundness, except where it shrinks to a point
         number = np.where(along_v.sum(axis=1) > 0.25 * space[b], np.maximum(number, MIN_AROUND), number)
-    r, _, at_v, wide_v = _divide(number, hard_v)  # [N]
+    r, _, at_v, wide_v = divide(number, hard_v)  # [N]
     if not hard_v:
         at_v = np.mod(at_v + 0.5 * wide_v * (k[r] % 2), 1.0) if closed else at_v
     j, g, length_v = _locate(along_v, r, at_v)
@@ -123,7 +124,7 @@ def covered(samples: Samples) -> NDArray[np.bool_]:
     return hidden
 
 
-def _cells(length: Array, space: Array, hard: bool) -> NDArray[np.int64]:
+def cells_along(length: Array, space: Array, hard: bool) -> NDArray[np.int64]:
     """Number of cells that cover a length; hard borders need narrow cells in addition."""
     number = np.maximum(np.ceil(length / space - 0.05), 1)
     if hard:  # n - 2 whole cells and two narrow ones cover the length
@@ -131,7 +132,7 @@ def _cells(length: Array, space: Array, hard: bool) -> NDArray[np.int64]:
     return number.astype(np.int64)
 
 
-def _divide(number: NDArray[np.int64], hard: bool) -> tuple[NDArray[np.int64], NDArray[np.int64], Array, Array]:
+def divide(number: NDArray[np.int64], hard: bool) -> tuple[NDArray[np.int64], NDArray[np.int64], Array, Array]:
     """Divide each unit length b into `number[b]` cells: owner b, index, centre and width of each cell, flat arrays."""
     owner = np.repeat(np.arange(len(number)), number)
     index = np.arange(len(owner)) - np.repeat(np.cumsum(number) - number, number)
