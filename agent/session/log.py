@@ -8,7 +8,7 @@ Schema version 1. Every record has `v`, `seq` (1, 2, ... through the file), `tim
     open    session, continues, scenewright, scene (path or null), gaussians, digest, file
                                                                      a session begins; undo never goes back before it
     embed   encoder, things, before, after                           a language field was added to the scene; no edit
-    do      text, it, plan, receipts, selection, before, after, seconds
+    do      text, it, plan, viewer, receipts, selection, before, after, seconds
                                                                      an instruction was carried out
     failed  text, plan (or null), error, message, before             an instruction was refused; nothing was changed
     undo    text, before, after                                      the last `do` was undone
@@ -16,10 +16,11 @@ Schema version 1. Every record has `v`, `seq` (1, 2, ... through the file), `tim
     save    path, digest, file                                       the scene was written to a file
 
 `session` is the id of the session, `continues` that of the earlier one that ended with this scene, or null; `file` is
-the SHA-256 digest of the scene file's bytes; `it` and `selection` are what "it" referred to before and after. Logs of
-earlier versions lack some of these. `before` and `after` are SHA-256 digests of the cloud, so that a reader can check
-that the records form a chain. The functions `*_fields` give the fields of a record. A session without a log does not
-call them, as digests of large clouds take time.
+the SHA-256 digest of the scene file's bytes; `it` and `selection` are what "it" referred to before and after; `viewer`
+is the camera in whose frame left, right, in front and behind were meant (see `viewer_fields`). Logs of earlier versions
+lack some of these. `before` and `after` are SHA-256 digests of the cloud, so that a reader can check that the records
+form a chain. The functions `*_fields` give the fields of a record. A session without a log does not call them, as
+digests of large clouds take time.
 """
 
 from __future__ import annotations
@@ -35,10 +36,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from ...gaussians.errors import FileError, ScenewrightError
+from ...gaussians.errors import FileError, ScenewrightError, UserError
 from .log_lock import LogLock
 
 if TYPE_CHECKING:
+    from ...gaussians.camera import Camera
     from ...planners.plan import EditPlan
     from .history import State
     from .result import Result
@@ -207,12 +209,36 @@ def do_fields(result: Result, before: State, after: State) -> dict[str, Any]:
         "text": result.text,
         "it": list(before.last.groups) if before.last is not None else [],
         "plan": result.plan.model_dump(mode="json") if result.plan is not None else None,
+        "viewer": viewer_fields(result.viewer),
         "receipts": [r.model_dump(mode="json") for r in result.receipts],
         "selection": {"groups": list(left.groups), "gaussians": len(left)} if left is not None else None,
         "before": before.digest,
         "after": after.digest,
         "seconds": dict(result.seconds),
     }
+
+
+def viewer_fields(camera: Camera) -> dict[str, Any]:
+    """A camera as JSON, exact to the last bit: `world_to_camera` as four rows, the other fields as of `Camera`."""
+    pose = [[float(x) for x in row] for row in camera.world_to_camera]
+    lens = {name: float(getattr(camera, name)) for name in ("fx", "fy", "cx", "cy")}
+    size = {"width": int(camera.width), "height": int(camera.height), "name": camera.name}
+    return {"world_to_camera": pose, **lens, **size}
+
+
+def viewer_of(record: Record) -> Camera | None:
+    """The viewer of a `do` record; None if it has none, or none that is a camera."""
+    import numpy as np
+
+    from ...gaussians.camera import Camera
+
+    fields = record.get("viewer")
+    if not isinstance(fields, dict):
+        return None
+    try:
+        return Camera(**{**fields, "world_to_camera": np.array(fields["world_to_camera"], dtype=np.float64)})
+    except (KeyError, TypeError, ValueError, UserError):
+        return None
 
 
 def failed_fields(text: str, plan: EditPlan | None, error: ScenewrightError, state: State) -> dict[str, Any]:

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Protocol
 
 from ...gaussians.errors import FileError, ScenewrightError
 from ...gaussians.language.query.nested import exchange, queries
-from .log import Record
+from .log import Record, viewer_of
 from .log_sessions import LoggedSession, logged_session
 from .refusal import with_message
 from .result import Result
 
 if TYPE_CHECKING:
+    from ...gaussians.camera import Camera
     from ...gaussians.language.query.selection import Selection
     from ...gaussians.scene import Scene
     from ...planners.plan import EditPlan
@@ -44,14 +45,15 @@ class Replayed:
 
 @dataclass(frozen=True)
 class LoggedEdit:
-    """An edit of a logged session: its words, its plan, the digests of the cloud before and after it, and the groups
-    that "it" referred to, which a question or a selection between edits may have set."""
+    """An edit of a logged session: its words, its plan, the digests of the cloud before and after it, the groups that
+    "it" referred to, which a question or a selection between edits may have set, and the viewer it was meant for."""
 
     text: str
     plan: EditPlan
     before: str | None
     it: tuple[int, ...] = ()
     after: str | None = None
+    viewer: Camera | None = None
 
     def plan_for(self, digest: str) -> EditPlan:
         """The plan for the cloud with this digest; on another cloud than the logged one, without group ids."""
@@ -75,7 +77,9 @@ def logged_edits(log: str | Path, session: int | str) -> list[LoggedEdit]:
         UserError: it holds no such session.
     """
     return [
-        LoggedEdit(str(r["text"]), read_plan(r, log), r.get("before"), tuple(r.get("it") or ()), r.get("after"))
+        LoggedEdit(
+            str(r["text"]), read_plan(r, log), r.get("before"), tuple(r.get("it") or ()), r.get("after"), viewer_of(r)
+        )
         for r in logged_session(log, session).edits
     ]
 
@@ -87,6 +91,10 @@ class Edited(Protocol):
     def digest(self) -> str: ...
     @property
     def last(self) -> Selection | None: ...
+    @property
+    def viewer(self) -> Camera: ...
+    @viewer.setter
+    def viewer(self, camera: Camera) -> None: ...
     def embed(self) -> Scene: ...
     def remember(self, groups: tuple[int, ...]) -> None: ...
     def apply(self, plan: EditPlan) -> Result: ...
@@ -94,7 +102,20 @@ class Edited(Protocol):
 
 
 def replay_edits(session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool) -> list[Replayed]:
-    """Carry out logged edits on a session; see `Session.replay`."""
+    """Carry out logged edits on a session; see `Session.replay`.
+
+    On the cloud that they were made on, each is carried out for the viewer that it was meant for, so that "left" means
+    the same everywhere; on another cloud for the session's own, who is also the viewer afterwards.
+    """
+    own = session.viewer
+    try:
+        return _replayed(session, edits, skip_failed, own)
+    finally:
+        session.viewer = own
+
+
+def _replayed(session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool, own: Camera) -> list[Replayed]:
+    """See `replay_edits`."""
     outcome: list[Replayed] = []
     for edit in edits:
         try:
@@ -103,6 +124,7 @@ def replay_edits(session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool
                 session.embed()
                 session.remember(edit.it)
                 before = session.digest
+            session.viewer = edit.viewer if edit.viewer is not None and before == edit.before else own
             result = session.apply(edit.plan_for(before))
             outcome.append(Replayed(edit.text, result, None, edit.difference(before, session.digest)))
         except ScenewrightError as error:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import torch
 
-from scenewright.agent.session.log import read_log
+from scenewright.agent.session.log import read_log, viewer_of
 from scenewright.agent.session.session import Session
+from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import (
     AbsentError,
     AmbiguousError,
@@ -279,3 +281,36 @@ def test_a_replay_knows_what_it_meant_after_a_selection(boxes: Scene, encoder: A
     again = Session(boxes, planner="grammar", encoder=encoder)
     again.replay(tmp_path / "s.jsonl")
     assert again.scene.cloud.digest() == with_log.scene.cloud.digest()
+
+
+def test_a_replay_sees_the_scene_as_it_was_seen(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
+    """ "Left" is that of the viewer who said it: a session that looks from the other side comes to the same bytes, and
+    then has its own viewer again. On another scene its own viewer counts."""
+    log = tmp_path / "log.jsonl"
+    front = boxes.cameras[0]
+    back = Camera.look_at((0.0, 9.0, 4.0), (0.0, 0.0, 0.5), (0.0, 0.0, 1.0), 96, 64)
+    first = Session(boxes, encoder=encoder, viewer=front, log=log)
+    first.do("move the green thing 30 cm to the left")
+    first.viewer = back
+    first.do("move the green thing 10 cm to the left")
+    first.close()
+    viewers = [viewer_of(r) for r in read_log(log).records if r["kind"] == "do"]
+    for seen, meant in zip(viewers, (front, back), strict=True):
+        assert seen is not None and np.array_equal(seen.world_to_camera, meant.world_to_camera)
+        assert (seen.fx, seen.cx, seen.width) == (meant.fx, meant.cx, meant.width)
+    second = Session(boxes, encoder=encoder, viewer=back)
+    assert [r.note for r in second.replay(log)] == ["", ""]
+    assert second.digest == first.digest and second.viewer is back
+    step = first.scene.cloud.means - boxes.cloud.means  # 30 cm to one side and 10 cm back
+    assert float(step[:, 0].min()) == pytest.approx(-0.2, abs=1e-5)
+    other = boxes.replace(cloud=boxes.cloud.replace(opacities=boxes.cloud.opacities * 0.99))
+    third = Session(other, encoder=encoder, viewer=back)
+    third.replay(log)
+    moved = third.scene.cloud.means - boxes.cloud.means
+    assert float(moved[:, 0].max()) == pytest.approx(0.4, abs=1e-5)
+
+
+@pytest.mark.parametrize("viewer", [None, 3, {}, {"world_to_camera": [[1]]}, {"world_to_camera": "x", "fx": 1}])
+def test_a_record_without_a_camera_has_no_viewer(viewer: Any) -> None:
+    """Logs of earlier versions, and edited ones."""
+    assert viewer_of({"kind": "do", "viewer": viewer}) is None and viewer_of({"kind": "do"}) is None
