@@ -139,8 +139,9 @@ def run(quick: bool) -> Result:
         metrics=tuple(metrics),
         points=tuple(points),
         notes=(
-            "Times include selection by group id, edit, field update and all checks on Gaussians, but no words and "
-            "no pixels. The slowest is that of the operations on one thing.",
+            "Seconds of the processor. They include selection by group id, edit, field update and all checks on "
+            "Gaussians, but no words and no pixels. The slowest is of the operations on things; those on the whole "
+            "scene begin with all.",
             f"Goals on 1,000,000: {GOAL_SECONDS} s and less than {GOAL_MEMORY:g} times the cloud, itself included.",
             "Undo takes neither time nor memory: the previous scene is kept, and both share the columns that did not "
             "change.",
@@ -178,7 +179,7 @@ def _undone(scene: Scene) -> bool:
 
 
 def _best(edit: Callable[[], T], repeats: int) -> tuple[float, T]:
-    """The shortest of several runs, seconds, and the last outcome."""
+    """The shortest of several runs, seconds of the processor, and the last outcome."""
     best = float("inf")
     for _ in range(repeats):
         start = time.process_time()
