@@ -27,13 +27,14 @@ from ...impossible import NOT_FOR_STRUCTURE, Step
 from ...plan import Planner, Verdict
 from ...rooms.graph import SceneGraph
 from ...rooms.graph_scene import Id
-from ...rooms.label_encoder import THRESHOLD, agreement, words
+from ...rooms.label_encoder import words
 from ...rooms.plan_on_graph import Resolved
 from ..prompt.pruning import Relevance
 from .asked_for import clears, is_english, names_target, speaks_of_any, too_many, unwanted
+from .meant import Meant
 from .rehearsal import Rehearsal
 from .removal_words import Ground, mentions
-from .said import Phrase, Said
+from .said import Said
 from .second_reading import alike, unlike
 from .unstated_choices import drop_unstated_colors, drop_unstated_ids, singular_picks, stems
 
@@ -187,7 +188,7 @@ class Guard:
             meant = set(resolved.steps[step].targets) if resolved is not None and step < len(resolved.steps) else set()
             meant |= {self._support[i] for i in meant if clears(self._text) and i in self._support}
             named = not meant or bool(self._scene is not None and meant & self._named)
-            strange = bool(self._scene is not None and meant and self._called and not meant & self._called)
+            strange = bool(self._scene is not None and meant and self._meant.called and not meant & self._meant.called)
             pointed = pointing and not (strange and not _ANYTHING.search(self._text.lower()) and not self._said.refers)
             if not (pointed or named or names_target(op, self._text, self._before)):
                 yield self._unasked_fault(op, f"{op.subject()} is not named")
@@ -203,7 +204,12 @@ class Guard:
             return
         for step in resolved.steps:
             placed = {i for i in step.anchors if i in self._support}
-            if placed and self._called and not placed & self._called and not _SOMEWHERE.search(self._text.lower()):
+            if (
+                placed
+                and self._meant.called
+                and not placed & self._meant.called
+                and not _SOMEWHERE.search(self._text.lower())
+            ):
                 yield self._unasked_fault(step.op, "another place is meant")
             color = getattr(step.op, "color", None)
             if color and self._said.likens and not self._is_color_of_named(color, set(step.targets)):
@@ -217,7 +223,7 @@ class Guard:
         for step in resolved.steps:
             for role, ids in (("target", step.targets), ("place", step.anchors)):
                 own = {i for i in ids if i in self._support}
-                if own and step.op.op != "arrange" and not self._may_mean(own, role == "place"):
+                if own and step.op.op != "arrange" and not self._meant.may_be(own, role == "place"):
                     yield self._unasked_fault(step.op, f"another {role} is meant")
 
     def _is_color_of_named(self, color: str, targets: set[Id]) -> bool:
@@ -227,48 +233,14 @@ class Guard:
         said = [str(c) for c in self._said.values("HUE", "COLOR")]
         return any(alike(color, other) for other in (*others, *said))
 
-    def _may_mean(self, ids: set[Id], placed: bool) -> bool:
-        """Whether things are those that noun phrases with their names mean; also where such a phrase is not clear."""
-        assert self._scene is not None
-        labels = [n.label for n in self._scene.graph.nodes if n.id in ids and n.label]
-        clear = [(phrase, meant) for phrase, meant in self._meant if placed or not phrase.placed]
-        named = [
-            (phrase, meant)
-            for phrase, meant in clear
-            if max(agreement(phrase.noun, labels), default=0) >= THRESHOLD or any(ids & group for group in meant)
-        ]
-        if not named:
-            told = any(max(agreement(p.noun, labels), default=0) >= THRESHOLD for p, _ in self._meant)
-            open_ = self._said.refers or not clear or not all(meant for _, meant in clear)
-            return told or placed or open_
-        if not all(meant for _, meant in named):
-            return True
-        return _made_of(ids, [group for _, meant in named for group in meant])
-
     @cached_property
     def _said(self) -> Said:
         return Said(self._text, self._before)
 
     @cached_property
-    def _called(self) -> set[Id]:
-        """Nodes whose names are those of a noun phrase of the instruction."""
+    def _meant(self) -> Meant:
         assert self._scene is not None
-        nodes = [n for n in self._scene.graph.nodes if n.label]
-        labels = [n.label for n in nodes]
-        found = {i for _, meant in self._meant for group in meant for i in group}
-        for phrase, _ in self._meant:
-            found |= {n.id for n, p in zip(nodes, agreement(phrase.noun, labels), strict=True) if p >= THRESHOLD}
-        return found
-
-    @cached_property
-    def _meant(self) -> list[tuple[Phrase, list[frozenset[Id]]]]:
-        """The things that each noun phrase of the instruction may mean; none where that is not clear."""
-        assert self._scene is not None
-        scene = self._scene
-        return [
-            (phrase, [frozenset(ids) for query in phrase.readings if (ids := scene.by_query(query))])
-            for phrase in self._said.phrases(self._recall)
-        ]
+        return Meant(self._scene, self._said.phrases(self._recall), self._said.refers)
 
     def _unlike_the_reading(self, ops: Sequence[EditOp], resolved: Resolved | None) -> Iterator[Fault]:
         """Steps that do what the grammar does not read in the instruction, and what it reads and no step does.
@@ -401,12 +373,6 @@ def _counterclockwise(op: EditOp) -> EditOp:
     degrees = getattr(op, "degrees", None)
     turns = op.op == "rotate" and degrees is not None and degrees < 0 and getattr(op, "toward", None) is None
     return op.model_copy(update={"degrees": -degrees}) if turns and degrees is not None else op
-
-
-def _made_of(ids: set[Id], groups: Sequence[frozenset[Id]]) -> bool:
-    """Whether some of the groups together are exactly these."""
-    within = [g for g in groups if g <= ids]
-    return ids == set().union(*within)
 
 
 def _removes(op: EditOp) -> bool:
