@@ -284,12 +284,12 @@ def plan_penetration(a: YawBox, b: YawBox) -> Any:
     for yaw in (a.yaw, b.yaw):
         for turn in (yaw, yaw + 90.0):
             c, s = cos_sin(turn)
-            reach = (_extent(a, turn) + _extent(b, turn)) / 2
+            reach = (extent_along(a, turn) + extent_along(b, turn)) / 2
             deepest = np.minimum(deepest, reach - np.abs((a.x - b.x) * c + (a.y - b.y) * s))
     return deepest
 
 
-def _extent(a: YawBox, turn: float) -> float:
+def extent_along(a: YawBox, turn: float) -> float:
     """Full extent of a footprint along a direction, degrees."""
     c, s = cos_sin(turn - a.yaw)
     return abs(c) * a.w + abs(s) * a.d

@@ -25,6 +25,8 @@ _LOOSE = 1.15  # factor on the width of a top that holds several rows of things,
 _RAIL = 0.2  # metres, depth of railings and fences
 _STANDS = 0.7  # least share of a thing's depth that is on what carries it
 _MOST_GROWN = 2.5  # factor by which what carries things may grow
+_MOST_AT_ROUND = 4  # seats of a round table that are not in a ring
+_RING_SHARE = 0.92  # of the square around a ring of seats, which others may not enter
 _ROOF = 0.55  # share of its height that is free under a roof at least
 _SMALLEST = 1.0  # metres, least side of a room
 
@@ -252,13 +254,32 @@ def _formed_sides(groups: Sequence[tuple[Group, Size]]) -> tuple[float, float]:
 def _floor_needed(groups: Sequence[tuple[Group, Size]]) -> float:
     """Square metres of floor that things need, with the space that is kept free around them."""
     total = 1.2  # square metres before the door
+    rings = _rings(groups)
     for group, (width, depth, height) in groups:
         if group.kind.support != "floor" or height < 0.05:
+            continue
+        if group.key in rings:
+            total += rings[group.key]
             continue
         before, behind, left, right = group.kind.clear
         passage = _PASSAGE / 2 if group.kind.seats == 1 else _PASSAGE
         total += group.count * (width + left + right + passage) * (depth + before + behind + passage)
     return total / _FLOOR_SHARE
+
+
+def _rings(groups: Sequence[tuple[Group, Size]]) -> dict[str, float]:
+    """Square metres, with passages, of round tables with seats all around them, by key; 0 for the seats' own keys."""
+    sizes = {g.key: (g, s) for g, s in groups}
+    found: dict[str, float] = {}
+    for group, (_, depth, _) in groups:
+        for relation in group.relations:
+            if relation.name != "around" or not relation.objects or relation.objects[0] not in sizes:
+                continue
+            table, size = sizes[relation.objects[0]]
+            if table.kind.round and group.count > _MOST_AT_ROUND * table.count:
+                across = 1.2 * size[0] + 0.24 + 2 * depth + _PASSAGE
+                found |= {group.key: 0.0, table.key: _RING_SHARE * table.count * across**2}
+    return found
 
 
 def _wall_needed(groups: Sequence[tuple[Group, Size]]) -> float:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
+from ...gaussians.world.box import to_world
 from ..layout.problem import Item, Layout
 from ..layout.sentences import describe_wish
-from ..rooms.node import NodeId
+from ..rooms.node import Node, NodeId
 from .brief import Brief
 from .problems import Posed
 
+_TURNED = 48.0  # degrees, largest angle between the front of one of a row and what the row faces
 _MOST = 12  # lines about relations; further ones are counted
 
 
@@ -38,8 +41,21 @@ def _broken(posed: Posed, layout: Layout) -> Iterator[str]:
     """Stated relations that do not hold, those of formations included, of which only the middle one must."""
     items: dict[NodeId, Item] = {i.id: i for i in posed.problem.items}
     there = {n.id for n in layout.graph.nodes}
+    nodes = {n.id: n for n in layout.graph.nodes}
     lost = [w for w in layout.broken if w in posed.stated and {w.subject, *w.objects} <= there]
+    lost = [w for w in lost if w.hard or w.name != "facing" or not _looks_at(nodes[w.subject], nodes[w.objects[0]])]
     for wish in lost[:_MOST]:
         yield f"does not hold: {describe_wish(wish, items.__getitem__)}"
     if len(lost) > _MOST:
         yield f"{len(lost) - _MOST} more relations do not hold"
+
+
+def _looks_at(one: Node, other: Node) -> bool:
+    """Whether one is turned to any part of the other: of a row before a wide stage, the ends are as well."""
+    box, (x, y, _) = other.yaw_box, one.position
+    u, v = box.local(x, y)
+    half_w, half_d = box.w / 2, box.d / 2
+    tx, ty = to_world(box.x, box.y, box.yaw, max(-half_w, min(half_w, u)), max(-half_d, min(half_d, v)))
+    fx, fy = one.yaw_box.front
+    reach = math.hypot(tx - x, ty - y)
+    return fx * (tx - x) + fy * (ty - y) >= math.cos(math.radians(_TURNED)) * reach

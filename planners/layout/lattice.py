@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...gaussians.world.box import YawBox, is_square, plan_penetration, shared_height
+from ...gaussians.world.box import YawBox, cos_sin, extent_along, is_square, shared_height
 
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -52,11 +52,24 @@ def overlap_windows(lattice: Lattice, moving: YawBox, fixed: Sequence[YawBox]) -
         if level and is_square(others[k].yaw):
             found.append((window, True))
         else:
-            here = moving._replace(
-                x=lattice.xs[window[0]][:, None] + moving.x, y=lattice.ys[window[1]][None, :] + moving.y
-            )
-            found.append((window, plan_penetration(here, others[k]) > EPSILON))
+            dx = lattice.xs[window[0]][:, None] + (moving.x - others[k].x)
+            dy = lattice.ys[window[1]][None, :] + (moving.y - others[k].y)
+            found.append((window, _meet(dx, dy, moving, others[k])))
     return found
+
+
+def _meet(dx: F64, dy: F64, moving: YawBox, other: YawBox) -> Flags:
+    """Where two footprints overlap by their separating axes, for offsets within reach of both along the room's axes, so
+    that the axes of a box that is aligned with the room separate nothing there."""
+    meets: Flags = np.ones((len(dx), dy.shape[1]), bool)
+    for yaw in dict.fromkeys((moving.yaw, other.yaw)):
+        if is_square(yaw):
+            continue
+        c, s = cos_sin(yaw)
+        for x, y, turn in ((c, s, yaw), (-s, c, yaw + 90.0)):
+            reach = (extent_along(moving, turn) + extent_along(other, turn)) / 2 - EPSILON
+            meets &= np.abs(dx * x + dy * y) < reach
+    return meets
 
 
 def in_disc(lattice: Lattice, moving: YawBox, x: float, y: float, radius: float) -> Flags:

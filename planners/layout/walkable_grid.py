@@ -47,11 +47,13 @@ class WalkableGrid:
         self.required: set[Hashable] = set()
         self.doors: set[Hashable] = set()
         self.width = width
+        self._lost: frozenset[Hashable] | None = None  # what is not accessible, until a thing is put or taken
 
     def put(self, name: Hashable, spot: YawBox, required: bool, door: bool = False) -> None:
         """Add a thing. `required`: it must be accessible; `door`: people enter by it."""
         stamp = self._stamp(spot, SHOULDERS + ARM if door else self.width / 2 + ARM)
         self.stamps[name] = stamp
+        self._lost = None
         if stamp.taken is not None:
             self.taken[stamp.window] += stamp.taken
         if door:
@@ -62,13 +64,19 @@ class WalkableGrid:
     def take(self, name: Hashable) -> None:
         """Remove a thing."""
         stamp = self.stamps.pop(name)
+        self._lost = None
         if stamp.taken is not None:
             self.taken[stamp.window] -= stamp.taken
         self.required.discard(name)
         self.doors.discard(name)
 
-    def unreached(self) -> set[Hashable]:
+    def unreached(self) -> frozenset[Hashable]:
         """Things that must be accessible and are not."""
+        if self._lost is None:
+            self._lost = frozenset(self._found_unreached())
+        return self._lost
+
+    def _found_unreached(self) -> set[Hashable]:
         if not self.required:
             return set()
         areas, count = ndimage.label(self.taken == 0, structure=_ALL_AROUND)
