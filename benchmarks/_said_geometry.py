@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise, permutations
 
-from ..gaussians.world import kinds
+from ..gaussians.world import everyday, kinds
 from ..gaussians.world.box import YawBox, plan_gap, to_world
 from ..planners.rooms.graph import SceneGraph
 from ..planners.rooms.node import Node
@@ -67,6 +67,8 @@ def _on(one: Node, other: Node, graph: SceneGraph) -> bool:
 
 def _above(one: Node, other: Node, graph: SceneGraph) -> bool:
     del graph
+    if _overlaps(one, other) and one.bottom + everyday.free_beneath(one.label, one.size[2]) >= other.top - 0.05:
+        return True  # a parasol stands over a table
     near = _overlaps(one, other) or (one.support == "wall" and _gap(one, other) <= 0.3 and _within(one, other))
     return near and one.bottom >= other.top - 0.05
 

@@ -24,6 +24,7 @@ _PER_AREA = 0.9  # objects for each square metre of a stated size
 _FOCI = ("altar", "stage", "blackboard", "whiteboard", "projector screen", "lectern", "pulpit", "podium", "screen")
 _AUDIENCE = 4  # so many seats without another place face what an audience looks at
 _NAMED, _EXTRAS = 4, 4  # from so many named things on a room gets at most so many others
+ROOF = 0.55  # share of its height that is free under a roof at least
 _HUNG_HEIGHT = 0.6  # metres, tallest thing that hangs from the ceiling and usually stands
 _BEHIND = 0.65  # metres between a counter and what is behind it
 _SKIPPED = 0.15  # probability that a habit is left out, so that rooms of one kind differ
@@ -114,6 +115,10 @@ class Furnishing:
             if not over or group.thing.support in ("ceiling", "floor") or group.kind.support == "ceiling":
                 continue
             lower = self.find(over[0].objects[0])
+            if lower is not None and lower is not group and group.kind.under >= ROOF and group.kind.support == "floor":
+                group.relations = [r for r in group.relations if r is not over[0]]
+                lower.relations.append(replace(over[0], name="under", objects=(group.key,)))  # a parasol stands
+                continue
             if lower is not None and not self._is_at_wall(lower) and group.thing.support is None:
                 self._hang_from_ceiling(group)
                 continue
@@ -139,7 +144,9 @@ class Furnishing:
 
     def _hang_from_ceiling(self, group: Group) -> None:
         if group.kind.role in ("table lamp", "floor lamp", "desk lamp", "lamp", "wall lamp"):
-            group.kind = replace(knowledge.things()["pendant lamp"], name=group.kind.name, like="pendant lamp")
+            plain = group.kind.name in ("table lamp", "floor lamp", "desk lamp", "lamp", "wall lamp")
+            pendant = knowledge.things()["pendant lamp"]
+            group.kind = pendant if plain else replace(pendant, name=group.kind.name, like="pendant lamp")
             return
         wide, deep, tall = group.kind.size
         tall = (min(tall[0], _HUNG_HEIGHT), min(tall[1], _HUNG_HEIGHT))

@@ -15,7 +15,7 @@ from ..rooms.node import Size
 from . import knowledge, sizing
 from .brief import Brief
 from .formations import Formations, Formed
-from .furnishing import Furnishing, Group, GroupRelation, chained, furnish, pairs
+from .furnishing import ROOF, Furnishing, Group, GroupRelation, chained, furnish, pairs
 from .openings import beams, hang_curtains, openings
 from .sentence import vocabulary
 
@@ -303,8 +303,24 @@ class _ProblemBuilder:
                 continue
             if relation.name == "far_from" and relation.distance is not None and one in self.formed.circled:
                 continue  # the circle is that wide
+            if relation.name in ("under", "below"):
+                self._shelter_seats(one, other)
             leads = not aimed or self._leads(one, subjects)
             self._add_wish(one, relation.name, other, hard and leads, relation.distance)
+
+    def _shelter_seats(self, table: int, roof: int) -> None:
+        """Let the seats at a table that is under a roof be there too."""
+        kind = knowledge.thing(next(i.label for i in self.items if i.id == roof))
+        if kind is None or kind.under < ROOF:
+            return
+        loads = [_item_id(i) for i in self.items if i.support == table]
+        self.wishes += [Wish(subject=i, name="under", objects=(roof,), hard=False) for i in loads]
+        for group, _ in self.sized:
+            for relation in group.relations:
+                if relation.name == "around" and table in self._ids(relation.objects[0]):
+                    seats = pairs(self.item_ids.get(group.key, []), self._ids(relation.objects[0]))
+                    self.wishes += [Wish(subject=s, name="under", objects=(roof,), hard=False)
+                                    for s, t in seats if t == table]  # fmt: skip
 
     def _add_corners(self, subjects: list[int], hard: bool) -> None:
         """Wishes that share things out over the corners of the room."""

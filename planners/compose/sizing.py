@@ -10,7 +10,7 @@ import numpy as np
 from ..rooms.node import Size
 from . import knowledge
 from .brief import Brief, Scale
-from .furnishing import Furnishing, Group
+from .furnishing import ROOF, Furnishing, Group
 
 _SCALES: dict[Scale, tuple[float, float]] = {  # (position in the usual range, factor)
     "tiny": (0.0, 0.7), "small": (0.0, 0.85), "normal": (0.5, 1.0), "large": (1.0, 1.15), "huge": (1.0, 1.4),
@@ -27,7 +27,7 @@ _STANDS = 0.7  # least share of a thing's depth that is on what carries it
 _MOST_GROWN = 2.5  # factor by which what carries things may grow
 _MOST_AT_ROUND = 4  # seats of a round table that are not in a ring
 _RING_SHARE = 0.92  # of the square around a ring of seats, which others may not enter
-_ROOF = 0.55  # share of its height that is free under a roof at least
+_LEAST = 0.6  # furniture shrinks no further to stand on something
 _SMALLEST = 1.0  # metres, least side of a room
 
 
@@ -118,6 +118,8 @@ def _fit_loads(made: Furnishing, carrier: Group, sizes: dict[str, Size]) -> None
     sizes[carrier.key] = round(wide, 3), round(deep, 3), height
     rail = carrier.kind.backed and depth < _RAIL  # at the edge of the place: nothing may stand over on its far side
     factor = min(1.0, wide / need, (deep if rail else deep / _STANDS) / deepest)
+    if any(g.kind.seats for g in loads):
+        factor = max(factor, _LEAST)
     if factor < 1.0:
         for g in loads:
             if g.thing.width is None and g.thing.depth is None:
@@ -129,7 +131,7 @@ def _fit_canopy(made: Furnishing, group: Group, sizes: dict[str, Size]) -> None:
     """Widen a roof without a stated size over what is said to be under it, with the chairs around that."""
     for relation in group.relations:
         roof = made.find(relation.objects[0]) if relation.name in ("under", "below") and relation.objects else None
-        if roof is None or roof.kind.under < _ROOF or roof.thing.width is not None or group.kind.is_rug:
+        if roof is None or roof.kind.under < ROOF or roof.thing.width is not None or group.kind.is_rug:
             continue
         (width, depth, height), (w, d, _) = sizes[roof.key], sizes[group.key]
         seated = any(r.name == "around" and made.find(r.objects[0]) is group for g in made.groups for r in g.relations)
@@ -244,7 +246,8 @@ def _formed_sides(groups: Sequence[tuple[Group, Size]]) -> tuple[float, float]:
         columns = form.columns or ceil(group.count / rows)
         rows = ceil(group.count / columns)
         if form.form == "circle":
-            sides = [group.count * (width + 0.1) / pi + 2 * depth + 1.0] * 2
+            away = max((r.distance or 0.0 for r in group.relations if r.objects), default=0.0)
+            sides = [max(group.count * (width + 0.1) / pi + 2 * depth + 1.0, 2 * (away + depth) + 1.4)] * 2
         else:
             sides = [columns * (width + gap) + 0.4, rows * (depth + 0.7) + (1.0 if rows > 1 else 0.5)]
         long, short = max(long, *sides), max(short, min(sides))

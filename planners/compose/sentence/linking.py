@@ -404,6 +404,9 @@ class Linker:
             return 0
         if self.fresh is not None and found[0] in _NEAREST and self.carried:
             self.last = self.fresh  # "a candle on a stool next to the bed": the stool is next to it
+        large = self.last is not None and self.last.kind is not None and self.last.kind.support != "surface"
+        if self.fresh is not None and found[0] in ("on", "inside") and _is_small(self.fresh) and large:
+            self.last = self.fresh  # "chairs facing a television on a stand": the television is on it
         self.fresh, self.carried = None, found[0] in ("on", "inside", "under")
         self._finish()
         distance, self.distance = self.distance, None
