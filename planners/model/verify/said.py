@@ -81,6 +81,7 @@ _POINTING = re.compile(
 )
 _SAYS_HOW = bag("on onto in into inside next beside against by upon atop")  # how a thing stands where it goes to
 _EXCEPTING = frozenset({"but", "except", "apart from", "bar", "besides", "keep", "leave"})
+_LIKENING = bag("colour color shade tone hue like match matches matching")
 _DETERMINERS = bag("the a an my our your his her their this that these those every all both each any some")
 _PRONOUNS = bag("it its them they their this that these those")
 _CLOSE = 0.03  # relative difference of a number from the one that is said
@@ -232,8 +233,8 @@ class Said:
         every = hues + [str(v) for v in self.values("COLOR") if isinstance(v, str)]
         if any(alike(color, c) for c in (hues or every)):
             return None
-        if not hues and self.values("COLORLIKE", "SAME"):
-            return None  # the colour of another thing, which the scene knows
+        if not hues and (self.values("COLORLIKE", "SAME", "COLORWORD") or not _LIKENING.isdisjoint(self._words)):
+            return None  # the colour of another thing, which the scene or the model knows ("the colour of the sky")
         if every:
             return f"the colour {color} is not the one that is said"
         return f"no colour is said for the {op.subject()}" if op.op != "recolor" else None
