@@ -48,3 +48,22 @@ def _compact(schema: Keywords) -> Keywords:
     if not kept.get("required", True):
         del kept["required"]
     return kept
+
+
+def described_once(schema: Keywords, told: set[str]) -> Keywords:
+    """A schema whose shared types have descriptions only if they are not among `told`, to which they are added."""
+    if "$defs" not in schema:
+        return schema
+    types = {name: _silent(made) if name in told else made for name, made in schema["$defs"].items()}
+    told.update(types)
+    return {**schema, "$defs": types}
+
+
+def _silent(made: Keywords) -> Keywords:
+    """The schema of a type without its description and those of its fields."""
+    fields = {
+        name: {k: v for k, v in field.items() if k != "description"}
+        for name, field in made.get("properties", {}).items()
+    }
+    kept = {k: v for k, v in made.items() if k != "description"}
+    return {**kept, "properties": fields} if fields else kept

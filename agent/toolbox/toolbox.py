@@ -28,6 +28,7 @@ from .operations import operation_tools
 from .progress import Progress, Report
 from .reply import Reply, asked_back, refused
 from .saving import saving_tools
+from .schemas import described_once
 from .tool import Desk, Tool
 
 _WORD = re.compile(r"[^\W_]+")
@@ -78,8 +79,15 @@ class Toolbox:
         return self._desk.session
 
     def definitions(self) -> list[dict[str, Any]]:
-        """Name, description and parameters (JSON Schema) of each tool, as function-calling interfaces take them."""
-        return [{"name": t.name, "description": t.description, "parameters": t.schema} for t in self.tools.values()]
+        """Name, description and parameters (JSON Schema) of each tool, as function-calling interfaces take them.
+
+        Types that several tools take are described with the first of them.
+        """
+        told: set[str] = set()
+        return [
+            {"name": t.name, "description": t.description, "parameters": described_once(t.schema, told)}
+            for t in self.tools.values()
+        ]
 
     def call(self, name: str, arguments: Any = None, report: Report | None = None) -> Reply:
         """Call a tool. What a caller does wrong raises nothing: the reply then has `failed`, and its data say why.

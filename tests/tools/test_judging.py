@@ -32,6 +32,7 @@ CLEAN: list[Json] = [
     {"op": "recolor", "target": A_CHAIR, "color": "teal"},
     {"op": "recolor", "target": A_CHAIR, "adjust": "darker"},
     {"op": "recolor", "target": A_CHAIR, "adjust": "toward", "color": "red"},
+    {"op": "restyle", "target": A_CHAIR, "material": "marble"},
     {"op": "opacity", "target": A_CHAIR, "value": 0.4},
     {"op": "move", "target": A_CHAIR, "direction": "left", "distance": {"value": 30, "unit": "cm"}},
     {"op": "move", "target": A_CHAIR, "toward": {"text": "table"}, "distance": {"value": 20, "unit": "cm"}},

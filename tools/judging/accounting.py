@@ -16,6 +16,7 @@ _WAYS: dict[str, frozenset[str]] = {
     "isolate": frozenset({"gone"}),
     "replace": frozenset({"gone"}),
     "recolor": frozenset({"colored"}),
+    "restyle": frozenset({"colored", "gone"}),  # large Gaussians become several small ones
     "opacity": frozenset({"faded"}),
     "move": frozenset({"placed"}),
     "rotate": frozenset({"placed"}),
@@ -31,7 +32,7 @@ _WAYS: dict[str, frozenset[str]] = {
     "split": frozenset(),
 }
 _CARRIED = {"delete": frozenset({"placed"}), "replace": frozenset({"placed"})}
-_ADDS = frozenset({"insert", "duplicate", "replace", "infill"})
+_ADDS = frozenset({"insert", "duplicate", "replace", "infill", "restyle"})
 _COMPLETE = 0.99  # share of the target's visual weight that must change: a few Gaussians may already be as asked
 
 

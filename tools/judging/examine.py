@@ -35,6 +35,7 @@ from ..ops.opacity import Opacity
 from ..ops.recolor import Recolor
 from ..ops.reframe import Reframe
 from ..ops.replace import Replace
+from ..ops.restyle import Restyle
 from ..ops.rotate import Rotate
 from ..ops.scale import Scale
 from ..placement.bodies import bodies_of, contact_box, heading, mask_of_bodies
@@ -158,6 +159,13 @@ def _recolor(case: Case, op: Recolor) -> Found:
         if op.adjust in ("darker", "lighter"):
             checks += hues.kept_in_light(case, shown[case.target[shown]])
     return [*checks, *_named(case, case.changes.shaded)], _NO_IDS
+
+
+def _restyle(case: Case, op: Restyle) -> Found:
+    target = case.target.clone()
+    if not op.whole and bool(target.any()):
+        target[surfaces(case.before, case.meant).left] = False
+    return [all_of_it(case, case.changes.colored | case.changes.gone, target)], _NO_IDS
 
 
 def _to_paint(case: Case, op: Recolor) -> Tensor:
@@ -459,6 +467,7 @@ _JUDGES: dict[type, Callable[[Case, Any], Found]] = {
     Delete: _delete,
     Isolate: _isolate,
     Recolor: _recolor,
+    Restyle: _restyle,
     Opacity: _opacity,
     Move: _move,
     Rotate: _rotate,
