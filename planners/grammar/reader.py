@@ -17,6 +17,7 @@ from .meaning.changes import Fields, with_parts
 from .meaning.commands import operations_of
 from .meaning.phrases import Phrases
 from .parsing import Refusal, first_words, parse, trees
+from .restating.conditions import has_condition
 from .restating.corrections import corrected, takes_back
 from .restating.elision import about, topic_of
 from .restating.impossible import cannot_be
@@ -95,8 +96,11 @@ class Reader:
         if non_edit and ops and all(r.remark for r in said):
             non_edit = None  # "Lose the flip chart. It's ancient."
         if non_edit and ops and str(non_edit) == FORBIDDEN and topic is not None:
-            ops = [with_last(ops[0], topic), *ops[1:]]
-            ops, non_edit = [_excluding(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
+            if ops[0].get("target") == Query(last=True):
+                ops, non_edit = [{**ops[0], "target": topic}, *ops[1:]], None  # "don't delete the sofa, move it left"
+            else:
+                ops = [with_last(ops[0], topic), *ops[1:]]
+                ops, non_edit = [_excluding(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
         if not ops:
             raise non_edit or empty_refusal(words)
         if non_edit and not is_chat(non_edit):
@@ -112,6 +116,8 @@ class Reader:
         Raises:
             Refusal: neither is understood.
         """
+        if has_condition([w.text for w in sentence]):
+            raise Refusal("conditions are not checked; say what to do without one", sentence[0].text, firm=True)
         before = self._saved()
         if (taken_back := list(corrected(" ".join(w.text for w in sentence)))) and depth < _DEEPEST:
             return self._corrected(taken_back, sentence, depth)
@@ -221,7 +227,7 @@ class Reader:
                 state.stated_first = not state.ops
                 topic, named = _topic(clause, refusal), self._name(words)
                 state.topic = named if refusal.remark and named is not None else topic
-                if clause.negated and state.topic is not None and state.topic.text:
+                if (clause.negated or named is None) and state.topic is not None and state.topic.text:
                     self.phrases.antecedent, self.phrases.colors = state.topic.text, ()
                 continue
             state.ops = [*state.ops, *found]

@@ -35,6 +35,7 @@ def test_a_hole_is_filled(text: str, thing: str, where: str) -> None:
         "delete the sofa without filling",
         "remove the sofa, don't fill the hole",
         "delete the sofa and leave the hole open",
+        "without filling delete the sofa",
         "move the sofa 1 m to the left without filling it in",
         "replace the sofa with a green armchair, no infill",
     ],

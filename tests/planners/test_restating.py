@@ -128,3 +128,43 @@ def test_smoothing_invents_no_word(text: str) -> None:
 def test_no_text_has_endless_readings(words: list[str]) -> None:
     if words:
         assert sum(1 for _ in restatements([w.lower() for w in words], "", True)) < 2000
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "I don't want the bench to go",
+        "we don't want the chairs gone",
+        "I don't want the bench painted blue",
+        "the bench should not go",
+        "the bench can't go",
+        "nobody wants the bench deleted",
+        "nobody said the bench should go",
+        "they put blue on the bench",
+        "if the bench is red, delete the lamp",
+        "unless the bench is green, delete it",
+        "if there is a sofa, delete the lamp",
+    ],
+)
+def test_negated_wishes_reports_and_conditions_change_nothing(text: str) -> None:
+    assert not PLANNER.plan(text).ops
+
+
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        ("don't delete the bench, move it to the left", "move the bench to the left"),
+        ("do not move the bench but paint it red", "paint the bench red"),
+        ("I don't want the blue basket deleted, I want the white one deleted", "delete the white basket"),
+        ("if possible, delete the bench", "delete the bench"),
+        ("if there is room, add a stool", "add a stool"),
+        (
+            "I'd rather have a stool where the armchair is, and two more chairs by the window",
+            "put a stool where the armchair is, and add two more chairs by the window",
+        ),
+    ],
+)
+def test_what_is_asked_for_beside_what_is_not(text: str, plain: str) -> None:
+    ops = PLANNER.plan(text).ops
+    assert ops
+    assert ops == PLANNER.plan(plain).ops

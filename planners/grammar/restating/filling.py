@@ -41,6 +41,11 @@ _LEAVE = re.compile(
     re.IGNORECASE,
 )
 _THEN = re.compile(rf"\s*(?:,|;|\.)?\s*\b(?:and then|and|then|,)\s+(?={_FILL}\b)", re.IGNORECASE)
+_LEAVE_FIRST = re.compile(
+    r"^(?P<polite>(?:please |now |then )*)(?:without (?:filling|infilling|inpainting|patching)"
+    rf"(?: (?:{_HOLE}|it|anything))?(?: (?:in|up))?|with(?:out| no) (?:an )?infill)[ ,]+(?=\S)",
+    re.IGNORECASE,
+)
 
 
 class Request(NamedTuple):
@@ -66,7 +71,7 @@ class Heard(NamedTuple):
 
 def heard(text: str) -> Heard:
     """The instruction split into what it says of holes and the rest; all of it is the rest if it says nothing."""
-    rest = _LEAVE.sub("", text).strip(" ,;")
+    rest = _LEAVE_FIRST.sub(r"\g<polite>", _LEAVE.sub("", text)).strip(" ,;")
     leave = rest != text.strip(" ,;")
     if not leave:
         rest = text

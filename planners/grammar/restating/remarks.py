@@ -35,8 +35,8 @@ _OPENING_NOUNS = bag("the a an my our your his her its that this those these all
 _ASKING = re.compile(
     r"\b(?:should|must|ought|(?:has|have|needs?|wants?|got) to|to be|could you|can you|would you|will you|please|"
     r"instead|"
-    r"would like|had better|i mean|i meant|delete|remove|paint|recolou?r|move|rotate|replace|duplicate|not|if|"
-    r"unless|could do "
+    r"would (?:like|rather|prefer|love)|had better|i mean|i meant|delete|remove|paint|recolou?r|move|rotate|"
+    r"replace|duplicate|not|if|unless|could do "
     r"with|(?:needs?|wants?) \w+ing)\b"
 )
 _NEGATED = re.compile(r"\b(?:can|do|does|did|will|would|could|is|are|was|were|has|have|had|am) not\b")

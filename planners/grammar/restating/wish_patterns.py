@@ -21,6 +21,7 @@ BETTER = (
     r"pal)er)\w{2,}er|"
     r"more at home|more (?:sensible|fun|modern|elegant))"
 )
+_ASSERTED = r"(?!(?:not|never|nobody|no|none|neither|nor|hardly) )\S+"  # a word that does not deny what follows it
 # Before a thing and the state that it is to have.
 WANTING = re.compile(
     rf"^(?:(?:{SPEAKER} {REALLY}(?:would|could|will|can|might|may|should|do|does)? ?{REALLY}"
@@ -30,10 +31,10 @@ WANTING = re.compile(
     rf"(?: to (?:see|have|get|find)| seeing| having| for| it if| it that| if| that)?|"
     rf"(?:could|can|may|might|shall|should|would) {SPEAKER} {REALLY}(?:please )?(?:have|get|see|try|like|want)|"
     rf"(?:can|could|would|will) (?:you|someone|somebody) {REALLY}(?:please )?(?:have|get|see (?:to it )?that)|"
-    rf"(?:\S+ ){{1,4}}?(?:wants?|would (?:like|love|prefer)|prefers?|fanc(?:y|ies)|insists? on|asked for|asks for)"
-    rf"(?= (?:the|that|this|my|our|those|these|both|all|every|it|them) )|"
-    rf"(?:\S+ ){{1,3}}?(?:said|says|reckons|thinks|told (?:me|us)|insists|suggests|asked|asks)(?: (?:for|me|us|"
-    rf"to))*(?: that)?|"
+    rf"(?:{_ASSERTED} ){{1,4}}?(?:wants?|would (?:like|love|prefer)|prefers?|fanc(?:y|ies)|insists? on|asked for|"
+    rf"asks for)(?= (?:the|that|this|my|our|those|these|both|all|every|it|them) )|"
+    rf"(?:{_ASSERTED} ){{1,3}}?(?:said|says|reckons|thinks|told (?:me|us)|insists|suggests|asked|asks)(?: (?:for|"
+    rf"me|us|to))*(?: that)?|"
     rf"(?:let us )?{REALLY}(?:try|picture|imagine)|let us {REALLY}(?:have|see|get)|let me {REALLY}(?:have|see|try)|"
     rf"(?:just )?(?:have|get|make|let)|"
     rf"make sure(?: that)?|see to it that|make it so(?: that)?|ensure(?: that)?|i (?:think|feel|reckon|guess|suppose|"
@@ -163,8 +164,7 @@ UNWANTED = tuple(
         rf"{NO_MORE})*$",
         r"^(?:(?:i|we) have (?:really )?(?:had|seen) )?(?:quite )?enough of (?P<thing>\S.*)$",
         rf"^(?P<thing>\S.*?) (?:can|must|should|may|does|do|will|could) not {REALLY}(?:stay|be|remain|belong|fit|"
-        rf"go|live|"
-        rf"work|stand)(?: in)?(?: {NO_MORE})*$",
+        rf"live|stand)(?: in)?(?: {NO_MORE})*$",
         r"^(?P<thing>\S.*?) (?:has|have) (?:got )?(?:no (?:place|business)(?: being)?|outlived|overstayed|served|had)"
         r"(?: (?:here|in here|in this room|its usefulness|its welcome|its purpose|its day|its time|their day))+$",
         rf"^(?P<thing>\S.*?) {REALLY}(?:must|can|should|could|may|might|shall|will|would|has to|have to|needs to|"
@@ -310,7 +310,8 @@ HUED = tuple(
         r"^(?:a |some |another )?(?:fresh |new |nice )?(?:lick|coat|splash|layer|touch|dash) of (?P<hue>\S+(?: "
         r"\S+)?)(?: paint)? "
         r"(?:for|on|onto) (?P<thing>(?:the|that|this|my|our|both|all|every) \S.*)$",
-        rf"^(?:{SPEAKER} (?:have |has |would |could |will |am going to |are going to |might )*|let us |please "
+        rf"^(?:{SPEAKER} (?!(?:would|could|should|might) have |put |use |apply )"
+        rf"(?:have |has |would |could |will |am going to |are going to |might )*|let us |please "
         rf")?(?:go|going|gone|went|"
         rf"decided|settled|settle|decide|choose|chose|opt|opted|vote|voted|stick|try|use|pick|picked|apply|put) "
         rf"(?:with |for |on |to )?(?P<hue>\S.*?) (?:for|on|onto) (?P<thing>(?:the|that|this|my|our|both|all|every) "

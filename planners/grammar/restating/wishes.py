@@ -204,6 +204,8 @@ def _wanting(said: str) -> Iterator[str]:
     if not found:
         return
     rest = found.group("rest")
+    if _IN_PLACE_OF.match(rest):
+        yield f"put {rest}"
     yield from _split_states(rest.split())
     yield from wishes(rest)
 
@@ -222,6 +224,10 @@ def _placed(said: str) -> Iterator[str]:
         yield f"put {found.group('thing')} {' '.join(state)}"
 
 
+# "A stool where the armchair is", said as a wish.
+_IN_PLACE_OF = re.compile(
+    rf"^{NEW} [^,]*? where (?:the|that|this|my|our) [^,]*? (?:is|are|was|were|stands?|sits?)(?= ,|$| now)"
+)
 _INDEFINITE = ("a", "an", "another", "some")
 
 
