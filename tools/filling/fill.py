@@ -34,6 +34,7 @@ _AROUND = 0.6  # of the thing's extent: how far around it its surroundings are l
 OPAQUE = 0.15  # Gaussians below it are haze
 _THICK = 3.0  # times the noise of a surface: how thick it is
 _FEWEST = 6  # cells of a hole
+_ENDED = 0.5  # share of the border of an extension at which another surface has to end it
 _SUPPORT = 0.25  # of a hole's border that must be known
 _SURROUNDED = 0.6  # likewise, of a surface that things lie behind: as of a vase at the edge of a table
 _LEAST = 3e-4  # of the square of the thing's extent: area of a hole that is worth filling
@@ -197,6 +198,7 @@ def _patch(
         # Where nothing was seen, the surface is there if it is there around.
         filled = harmonic(covered.astype(np.float64)[..., None], covered | open_, was)[..., 0]
         hole = (was & (filled > 0.5)) | _gaps(was, empty, covered, within)
+        hole &= ~beyond(hole & ~there, covered, within)
         hole = _large(hole & ~there, _LEAST * size**2 / chart.cell**2)
         rim = ndimage.binary_dilation(hole, iterations=2) & ~hole
         told = (covered | open_) & rim if plane.last or plane.carries else rim
@@ -446,6 +448,38 @@ def _gaps(was: Mask, empty: Mask, covered: Mask, within: Mask) -> Mask:
         if (covered[wide] & rim).sum() >= _ENCLOSED * rim.sum() > 0:
             out[wide] |= gap
     return out
+
+
+def beyond(hole: Mask, covered: Mask, within: Mask) -> Mask:
+    """The parts of a hole into which a surface would be extended without anything that ends it: they lie outside of the
+    convex hull of what is seen of it, and hardly border on another surface.
+
+    Args:
+        within: where the surface may be, before other surfaces.
+    """
+    outside = hole & ~_hull(covered)
+    area, count = ndimage.label(outside)
+    out = np.zeros_like(hole)
+    for k in range(1, count + 1):
+        part = area == k
+        rim = ndimage.binary_dilation(part, iterations=2) & ~hole
+        ends = rim & ~covered
+        if (ends & ~within).sum() < _ENDED * ends.sum():
+            out |= part
+    return out
+
+
+def _hull(cells: Mask) -> Mask:
+    """The convex hull of some cells of `[H, W]`; none where they span no area."""
+    from scipy.spatial import Delaunay, QhullError
+
+    at = np.argwhere(cells & ~ndimage.binary_erosion(cells))  # the border spans the hull
+    try:
+        hull = Delaunay(at[np.unique(np.linspace(0, len(at) - 1, min(len(at), 4096)).astype(int))])
+    except (QhullError, ValueError):
+        return np.zeros_like(cells)
+    every = np.argwhere(np.ones_like(cells))
+    return np.asarray((hull.find_simplex(every) >= 0).reshape(cells.shape))
 
 
 def _large(hole: Mask, least: float) -> Mask:

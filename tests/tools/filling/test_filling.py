@@ -17,7 +17,7 @@ from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.tools.completing import completed
 from scenewright.tools.execute import Done, carry_out
-from scenewright.tools.filling.fill import merged, patches_behind
+from scenewright.tools.filling.fill import beyond, merged, patches_behind
 from scenewright.tools.filling.shadow import multiplied
 from scenewright.tools.operation import Context
 from scenewright.tools.registry import parse
@@ -285,3 +285,20 @@ def test_broken_gaussians_are_passed_over(room: Scene, value: float) -> None:
     patches = patches_behind(broken.replace(cloud=broken.cloud[~gone]), broken.cloud[gone])
     new = merged(broken, patches)
     assert len(new) > 50 and bool(torch.isfinite(new.means).all() and torch.isfinite(new.sh).all())
+
+
+def test_a_surface_is_not_extended_into_the_void() -> None:
+    """Beyond what is seen of it a surface goes on only up to another surface that ends it."""
+    covered = np.zeros((40, 40), dtype=bool)
+    covered[20:, 2:38] = True  # the near half of a floor
+    hole = np.zeros_like(covered)
+    hole[10:20, 10:30] = True  # beyond it
+    hole[25:30, 15:20] = True  # and inside of it
+    covered &= ~hole
+    everywhere = np.ones_like(covered)
+    void = beyond(hole, covered, everywhere)
+    assert void[10:19, 10:30].all()
+    assert not void[25:30].any()
+    before_wall = everywhere.copy()
+    before_wall[:10] = before_wall[:, :10] = before_wall[:, 30:] = False  # walls around it
+    assert not beyond(hole, covered, before_wall).any()
