@@ -48,7 +48,7 @@ class Scripted:
 
     def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         """The plan that was written down, or a wrong one; see `Planner.plan`."""
-        room = rooms().get(_key(observation.graph())) if observation is not None else None
+        room = _room_of(observation.graph()) if observation is not None else None
         case = self._cases.get((room or "", text, previous))
         if case is None:
             return self._grammar.plan(text, previous=previous)
@@ -70,6 +70,23 @@ def _every_case() -> list[dict[str, Any]]:
 def rooms() -> dict[str, str]:
     """The names of the written rooms by the JSON of the graph that a planner sees."""
     return {_key(GraphObservation(_written.stage(room)).graph()): room for room in {c["room"] for c in _every_case()}}
+
+
+def _room_of(graph: SceneGraph) -> str | None:
+    """The name of the written room that a planner sees, though the instruction before may have taken things away."""
+    if (exact := rooms().get(_key(graph))) is not None:
+        return exact
+    seen = _places(graph)
+    return next((name for name, places in _rooms_by_places() if seen < places), None)
+
+
+@cache
+def _rooms_by_places() -> tuple[tuple[str, frozenset[Any]], ...]:
+    return tuple((name, _places(SceneGraph.model_validate_json(key))) for key, name in sorted(rooms().items()))
+
+
+def _places(graph: SceneGraph) -> frozenset[Any]:
+    return frozenset((n.id, n.label, n.position, n.size) for n in graph.nodes)
 
 
 def _key(graph: SceneGraph) -> str:

@@ -24,6 +24,9 @@ understood, but no operation does it. `unsafe`: not about the scene. `absent`, `
 or several; only planners that see the scene give these, and the resolution of a plan's queries."""
 
 
+Count = Annotated[int, Field(ge=0, le=1_000_000_000)]
+
+
 class PromptSize(BaseModel):
     """How much of a scene and of the examples a language model was shown.
 
@@ -38,13 +41,13 @@ class PromptSize(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    tokens: Annotated[int, Field(ge=0)]
-    window: Annotated[int, Field(ge=0)]
-    things: Annotated[int, Field(ge=0)]
-    named_only: Annotated[int, Field(ge=0)] = 0
-    of_things: Annotated[int, Field(ge=0)]
-    examples: Annotated[int, Field(ge=0)]
-    of_examples: Annotated[int, Field(ge=0)]
+    tokens: Count
+    window: Count
+    things: Count
+    named_only: Count = 0
+    of_things: Count
+    examples: Count
+    of_examples: Count
 
     @property
     def whole(self) -> bool:
