@@ -68,7 +68,7 @@ def showing_through(scene: Scene, own: torch.Tensor, box: Box, others: torch.Ten
                 np.add.at(there, at, made.weights * (made.labels == 1))
                 np.add.at(every, at, made.weights)
         left = same / max(pixels, 1)
-        taken = torch.from_numpy((there >= OWN * every) & (there > FAINT)) & free & ~found
+        taken = torch.from_numpy((there >= OWN * every) & (there > FAINT)).to(cloud.device) & free & ~found
         if left < SHOWN or done == ROUNDS or not bool(taken.any()):
             break
         found |= taken
@@ -107,8 +107,8 @@ class Shown:
 
 
 def _cameras(scene: Scene, box: Box) -> Sequence[Camera]:
-    """Cameras of the scene that see the middle of a box, the nearest to its middle first and from several sides; views
-    around it where the scene has none."""
+    """Cameras of the scene that see the middle of a box, evenly spaced in their order; views around it where the scene
+    has none."""
     center = np.array(box.center)
     if not scene.cameras:
         east, north, up = scene.frame.basis()

@@ -5,6 +5,7 @@ What the words mean in the scene is found by `gaussians.language.query.portions`
 
 from __future__ import annotations
 
+import functools
 import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
@@ -96,7 +97,17 @@ def read(text: str, count: int, *, single: bool = False) -> Portion | None:
     said = plain(text)
     if len(said) > _LONGEST or count < 1 or chosen_numbers(said, count) is not None:
         return None
-    said = _LEAD.sub("", said).removesuffix(" please").removesuffix(" only")
+    said = _core(said)
+    found = _one(said, count, single=single)
+    return _united(said, count) if found is None else found
+
+
+def _core(said: str) -> str:
+    return _LEAD.sub("", said).removesuffix(" please").removesuffix(" only")
+
+
+def _one(said: str, count: int, *, single: bool = False) -> Portion | None:
+    """The one portion that a text without further ones means; None if it means none."""
     for pattern in _PIECES:
         if (match := pattern.fullmatch(said)) and (places := chosen_numbers(match[1], count)):
             return Portion("pieces", places)
@@ -107,24 +118,30 @@ def read(text: str, count: int, *, single: bool = False) -> Portion | None:
     if single and _ALL_OF_IT.fullmatch(said):
         return Portion("whole", tuple(range(count)))
     found = _without(said, count) or _narrowed(said, count)
-    if found is None or not (single or re.search(r"\d", said)):
-        return _united(said, count)
-    return found
+    return found if single or re.search(r"\d", said) else None
 
 
 def _united(said: str, count: int) -> Portion | None:
     """Several portions that are meant together: "1 and the red part of 3"; None if one of them cannot be read."""
-    for cut in _AND.finditer(said):
-        both = [_item(side, count) for side in (said[: cut.start()], said[cut.end() :])]
-        if both[0] is not None and both[1] is not None:
-            return replace(both[0], more=(*both[0].more, both[1]))
-    return None
+    cuts = [(match.start(), match.end()) for match in _AND.finditer(said)]
+
+    # An answer has up to 70 cuts. What follows each is read once, not again for every reading of what is before it.
+    @functools.cache
+    def rest(begin: int) -> Portion | None:
+        if (last := _item(said[begin:], count)) is not None:
+            return last
+        for end, following in cuts:
+            if end > begin and (first := _item(said[begin:end], count)) and (others := rest(following)):
+                return replace(first, more=(replace(others, more=()), *others.more))
+        return None
+
+    return rest(0)
 
 
 def _item(said: str, count: int) -> Portion | None:
     if (places := chosen_numbers(said, count)) is not None:
         return Portion("numbers", places)
-    found = read(said, count)
+    found = _one(_core(plain(said)), count)
     return found if found is not None and found.kind != "pieces" else None
 
 

@@ -32,6 +32,8 @@ def patches_in(scene: Scene, rows: Tensor) -> list[Patch]:
     points = points_of(scene.cloud, solid)
     low, high = np.quantile(points, [0.005, 0.995], axis=0)
     size = float((high - low).max())
+    if size <= 0:
+        return []
     plane = plane_through(spread(scene.cloud, solid, size), _inside(scene), scene.frame.up_vector, size)
     if plane is None:
         return []

@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from ...gaussians.language.field.language_field import LanguageField
+from ...gaussians.rows import mask_of_ids
 from ...gaussians.scene import Scene
 
 MOST_THINGS = 12  # things behind which is looked after one edit, the largest
@@ -44,15 +45,7 @@ def left_their_place(before: Scene, after: Scene, moved: Sequence[Tensor]) -> li
 
 def _gone(before: Scene, after: Scene) -> Tensor:
     """`[N]` bool: rows of the cloud before whose ids the cloud after does not have."""
-    ids, left = before.cloud.ids, after.cloud.ids
-    if ids is left:
-        return torch.zeros(len(ids), dtype=torch.bool, device=ids.device)
-    top = int(max(ids.max(), left.max())) + 1 if len(ids) and len(left) else 0
-    if top <= 8 * (len(ids) + len(left)):
-        there = torch.zeros(top, dtype=torch.bool, device=ids.device)
-        there[left] = True
-        return ~there[ids]
-    return ~torch.isin(ids, left)
+    return ~mask_of_ids(before.cloud.ids, after.cloud.ids)
 
 
 def _objects(field: LanguageField, groups: Tensor) -> Tensor:

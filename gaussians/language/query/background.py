@@ -191,7 +191,7 @@ def _ungrouped(scene: Scene) -> Bool:
 
 
 def _nearby_pieces(scene: Scene, within: Bool, subject: Bool, structure: Bool) -> Bool:
-    """`[N]` bool: Gaussians of things that lie wholly around the subject and were left out as strays."""
+    """`[N]` bool: Gaussians of things that lie for the most part around the subject and were left out as strays."""
     field = scene.language
     assert field is not None
     column, size = scene.cloud.group.cpu().numpy(), len(field.groups)

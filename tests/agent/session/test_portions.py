@@ -67,6 +67,20 @@ def test_what_is_no_portion_is_left_to_others(said: str) -> None:
     assert read(said, 3) is None
 
 
+def test_each_of_many_portions_that_are_joined_is_kept() -> None:
+    found = read("1 and the red part of 2, the left half of 3 and the blue part of 3", 3)
+    assert found is not None and found.places == (0,)
+    assert [(p.places, p.words, p.more) for p in found.more] == [
+        ((1,), ("red",), ()), ((2,), ("left",), ()), ((2,), ("blue",), ()),
+    ]  # fmt: skip
+
+
+def test_a_long_list_is_read_in_time() -> None:
+    """A reader that tries every way to join its 60 items would never end."""
+    assert read(", ".join(["1", "2", "3"] * 20) + " and wool", 3) is None
+    assert read(", ".join(["a"] * 60), 3) is None
+
+
 def test_without_a_number_a_portion_is_of_the_one_thing_that_is_asked_about() -> None:
     assert read("the red part", 3) is None
     found = read("only the red part", 1, single=True)

@@ -15,9 +15,10 @@ from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.selection import Selection
 from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Frame, Scene
-from scenewright.tools.completing import completed
+from scenewright.tools.completing import completed, filled
 from scenewright.tools.execute import Done, carry_out
 from scenewright.tools.filling.fill import beyond, merged, patches_behind
+from scenewright.tools.filling.missing import patches_in
 from scenewright.tools.filling.shadow import multiplied
 from scenewright.tools.operation import Context
 from scenewright.tools.registry import parse
@@ -209,6 +210,19 @@ def test_a_named_wall_is_filled_and_an_opening_is_left(room: Scene) -> None:
 # ---- contact shadows: taken off where a thing stood, put on where it stands; patterns are left
 
 CONTEXT = Context(VIEW, resolver=_found)
+
+
+def test_nothing_is_filled_where_everything_is_gone(room: Scene) -> None:
+    empty = room.replace(cloud=room.cloud[:0])
+    scene, told, ids = filled(room, empty)
+    assert scene is empty and told == () and not len(ids)
+
+
+def test_a_surface_without_extent_has_no_hole(room: Scene) -> None:
+    rows = torch.arange(60)
+    means = room.cloud.means.clone()
+    means[rows] = means[0].clone()
+    assert patches_in(room.replace(cloud=room.cloud.replace(means=means)), rows) == []
 
 
 def _shadowed(darkness: float) -> tuple[Scene, torch.Tensor]:
