@@ -31,6 +31,7 @@ MAX_GAUSSIANS = 60_000  # per asset; larger splats are subsampled evenly, becaus
 SAMPLES = 10_000  # Gaussians per mesh, at most
 CELLS = 5_000  # of them that a mesh without outlines is cut into
 MOST_CUT = 300_000  # triangles up to which a mesh is cut into cells; of more, points are drawn
+COARSEST = 3.0  # times the spacing of `CELLS`: from which cells are too coarse, and points are drawn instead
 CELL_SCALE = 1.35  # samples are random: larger cells close the holes between them
 # Rows: our x, y, z in the axes of a file whose y points up; its front +z becomes our -y.
 FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -142,17 +143,16 @@ def _splat_asset(cloud: GaussianCloud, turn: Array, size: Vec3, kind: str) -> As
 
 def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None) -> Asset:
     meshes = _meshes(path)
-    if sum(len(m.faces) for m in meshes) <= MOST_CUT:
-        samples, albedo = _cut(path, meshes, turn, size)
-    else:
-        samples, albedo = _spread(path, turn, size)
+    made = _cut(path, meshes, turn, size) if sum(len(m.faces) for m in meshes) <= MOST_CUT else None
+    samples, albedo = made or _spread(path, turn, size)
     albedo = albedo if tint is None else np.tile(np.array(tint), (len(albedo), 1))
     unlit = Unlit(samples, albedo, np.ones(len(samples.xyz), dtype=bool))
     return _asset(unlit, unlit.cloud(np.array([-0.45, -0.6, 0.66])), size, kind)
 
 
-def _cut(path: Path, meshes: list[Any], turn: Array, size: Vec3) -> tuple[Samples, Array]:
-    """Cells of all triangles of some meshes, stretched to `size`, and their colours `[N, 3]`."""
+def _cut(path: Path, meshes: list[Any], turn: Array, size: Vec3) -> tuple[Samples, Array] | None:
+    """Cells of all triangles of some meshes, stretched to `size`, and their colours `[N, 3]`; None if they are in so
+    many pieces, as the leaves of a tree, that cells few enough would be far too coarse for the rest of it."""
     corners = np.concatenate([np.asarray(m.triangles, dtype=np.float64) for m in meshes]) @ turn.T
     if not np.isfinite(corners).all():
         raise FileError(f"the mesh in {path.name} has corners that are not numbers")
@@ -164,7 +164,10 @@ def _cut(path: Path, meshes: list[Any], turn: Array, size: Vec3) -> tuple[Sample
     ends = np.cumsum([0, *(len(m.faces) for m in meshes)])
     part = np.repeat(np.arange(len(meshes)), np.diff(ends))
     cells = cut(triangles, step, part)
-    while len(cells.xyz) > SAMPLES and step < max(size):  # many sides need many strips
+    coarsest = COARSEST * step
+    while len(cells.xyz) > SAMPLES:  # many sides need many strips
+        if step >= coarsest:
+            return None
         step *= 1.03 * math.sqrt(len(cells.xyz) / SAMPLES)
         cells = cut(triangles, step, part)
     if len(cells.xyz) < 3:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from scenewright.gaussians.assets.modeling.imported import SAMPLES, read
 from scenewright.gaussians.assets.modeling.make import flat_gaussians
 from scenewright.gaussians.assets.modeling.sampling import COVER, Samples
 from scenewright.gaussians.assets.modeling.triangles import Cells, cut, merged, outlines
@@ -135,3 +138,17 @@ def test_merged_cells_keep_area_middle_and_moments() -> None:
     spread = one.frame[0, :, :2] * one.size[0] / np.sqrt(12)
     assert np.allclose(spread @ spread.T, moments / area.sum(), atol=1e-12)
     assert one.weights[0] == pytest.approx(cells.weights[area.argmax()])
+
+
+def test_a_tree_of_many_leaves_keeps_its_trunk(tmp_path: Path) -> None:
+    """Every leaf takes a cell; a spacing so wide that the others are few would leave a trunk of six large Gaussians."""
+    rng = np.random.default_rng(0)
+    foot = rng.uniform((-1, -1, 2), (1, 1, 4), (SAMPLES + 1000, 3))[:, None]
+    leaves = (foot + rng.normal(size=(len(foot), 3, 3)) * 0.03).reshape(-1, 3)
+    crown = trimesh.Trimesh(leaves, np.arange(len(leaves)).reshape(-1, 3), process=False)
+    trunk = trimesh.creation.box((0.2, 0.2, 4)).apply_translation((0, 0, 2))
+    trimesh.util.concatenate([trunk, crown]).export(tmp_path / "tree.ply")
+    cloud = read(tmp_path / "tree.ply", (2, 2, 4), "tree", up="z").cloud
+    below = cloud[cloud.means[:, 2] < 1.5]
+    assert len(cloud) <= 1.01 * SAMPLES  # each mesh rounds its number of points
+    assert len(below) > 50 and float(below.scales.max()) < 0.15
