@@ -141,6 +141,8 @@ def test_no_text_has_endless_readings(words: list[str]) -> None:
         "nobody wants the bench deleted",
         "nobody said the bench should go",
         "they put blue on the bench",
+        "no black chairs?",
+        "I use the lamp here",
         "if the bench is red, delete the lamp",
         "unless the bench is green, delete it",
         "if there is a sofa, delete the lamp",
@@ -168,3 +170,8 @@ def test_what_is_asked_for_beside_what_is_not(text: str, plain: str) -> None:
     ops = PLANNER.plan(text).ops
     assert ops
     assert ops == PLANNER.plan(plain).ops
+
+
+@pytest.mark.parametrize("text", ["I use the lamp too", "I need the lamp as well"])
+def test_what_is_used_is_not_deleted_like_the_thing_before(text: str) -> None:
+    assert all(op.op != "delete" for op in PLANNER.plan(text, previous="delete the bench").ops)

@@ -37,7 +37,7 @@ def following(said: Sequence[str]) -> Iterator[str]:
     text = " ".join(said)
     if found := _DO_TOO.match(text):
         yield f"do the same to {found.group('thing')}"
-    if found := _TOO.match(text):
+    if (found := _TOO.match(text)) and is_thing(tuple(found.group("thing").split())):
         yield f"do the same to {found.group('thing')}"
     if found := _MORE.match(text):
         degree = found.group("degree").strip().removesuffix("even").strip()

@@ -75,7 +75,8 @@ def _readings(said: str, mark: str) -> Iterator[str]:
     for base in dict.fromkeys((said, plain, shortest)):
         yield from fronted(base)
     for base in dict.fromkeys((said, shorter, plain, shortest)):
-        yield from wishes(base)
+        if mark != "?" or not base.startswith("no "):  # "no black chairs?" asks whether there are any
+            yield from wishes(base)
     if asked:
         return
     for reading in (gapped(words), map(str.split, terse(words)), splits(words)):

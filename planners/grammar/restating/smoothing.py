@@ -345,14 +345,7 @@ def _without_event(said: str) -> str:
     """A sentence without what happens before or when somebody does something: "before the neighbours complain"."""
     words = said.split()
     for i in range(2, len(words) - 2):
-        if words[i] in ("before", "when", "whenever", "while") and words[i + 1] in (
-            "the",
-            "my",
-            "our",
-            "your",
-            "any",
-            "people",
-        ):
+        if words[i] in ("before", "when", "whenever", "while") and words[i + 1] in _OWNING:
             end = next((j for j in range(i, len(words)) if words[j] in (",", ".", ";")), len(words))
             if any(w in doings.plain() or w in doings.said_of_one() for w in words[i + 3 : end]):
                 return " ".join([*words[:i], *words[end:]]).replace(" , ,", " ,")

@@ -141,8 +141,8 @@ UNWANTED = tuple(
         rf"(?: (?:for|in having|to have|to keep|in keeping|having|in))? (?P<thing>\S.*?)(?: {NO_MORE})*$",
         rf"^(?:(?:i|we) (?:have|see) )?no (?:room|space|place|need|use|call|more need) for (?P<thing>\S.*?)(?: "
         rf"{NO_MORE})*$",
-        rf"^(?:i|we|you|nobody|no one) {REALLY}(?:do not|no longer|never|will not|does not|will never|would not)? "
-        rf"?{REALLY}"
+        rf"^(?:(?:nobody|no one) {REALLY}(?:will |would |does )?|(?:i|we|you) {REALLY}(?:do not|no longer|never|"
+        rf"will not|does not|will never|would not) {REALLY})"
         rf"(?:ever )?(?:need|needs|want|wants|require|use|uses|miss|care for|wish)(?: to (?:see|have|keep|look at))? "
         rf"(?P<thing>\S.*?)(?: {NO_MORE})+$",
         rf"^(?:i|we) {REALLY}(?:do not|no longer|never|will not|will never) {REALLY}(?:ever )?"
