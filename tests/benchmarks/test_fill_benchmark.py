@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from scenewright.benchmarks import fill
 from scenewright.benchmarks._fill.measure import biharmonic, ssim_map, telea
@@ -28,6 +29,7 @@ def test_ssim_is_one_for_the_same_picture_and_less_for_another() -> None:
     assert ssim_map(a, 1 - a).mean() < 0.2
 
 
+@pytest.mark.slow
 def test_a_quick_run_beats_deleting_alone() -> None:
     found = {m.key: m for m in fill.run(quick=True).metrics}
     assert found["deletions"].value == fill.QUICK_DELETIONS

@@ -12,6 +12,7 @@ from scenewright.gaussians.language.field.language_field import LanguageField
 from scenewright.training import room_groups
 
 
+@pytest.mark.slow
 def test_groups_of_a_room_are_named_after_its_things() -> None:
     room = furnish(3, objects=6, detail=0.5)
     kinds = tuple(o.kind for o in room.truth.objects)

@@ -89,7 +89,7 @@ def oracle(monkeypatch: pytest.MonkeyPatch) -> Oracle:
     return oracle
 
 
-@pytest.mark.parametrize("seed", [0, 5])
+@pytest.mark.parametrize("seed", [0, pytest.param(5, marks=pytest.mark.slow)])
 def test_the_demo_leaves_everything_behind(tmp_path: Path, oracle: Oracle, seed: int) -> None:
     said: list[str] = []
     demo = Demo(tmp_path / "demo", seed, size=(160, 120), say=said.append)

@@ -283,7 +283,7 @@ def test_every_wall_is_a_thing_of_its_own(embedded: Scene, field: LanguageField)
         assert min(wall.box.size[:2]) < 0.1 * max(wall.box.size)  # one plane, not a corner of two
 
 
-@pytest.mark.parametrize("kept", [0, 1])
+@pytest.mark.parametrize("kept", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_dropping_views_changes_no_group(room: Room, embedded: Scene, kept: int) -> None:
     """Where fewer pictures were taken, things are as whole as before: borders are found in space."""
     fewer = embed(room.scene.replace(cameras=room.scene.cameras[:kept]), ENCODER)
