@@ -66,31 +66,21 @@ def _every_case() -> list[dict[str, Any]]:
     return [*_written.cases(), *_written.strangers()]
 
 
-@cache
-def rooms() -> dict[str, str]:
-    """The names of the written rooms by the JSON of the graph that a planner sees."""
-    return {_key(GraphObservation(_written.stage(room)).graph()): room for room in {c["room"] for c in _every_case()}}
-
-
 def _room_of(graph: SceneGraph) -> str | None:
     """The name of the written room that a planner sees, though the instruction before may have taken things away."""
-    if (exact := rooms().get(_key(graph))) is not None:
-        return exact
     seen = _places(graph)
-    return next((name for name, places in _rooms_by_places() if seen < places), None)
+    return next((name for name, places in _rooms() if seen <= places), None)
 
 
 @cache
-def _rooms_by_places() -> tuple[tuple[str, frozenset[Any]], ...]:
-    return tuple((name, _places(SceneGraph.model_validate_json(key))) for key, name in sorted(rooms().items()))
+def _rooms() -> tuple[tuple[str, frozenset[Any]], ...]:
+    """The written rooms, and where what stands in each."""
+    names = sorted({case["room"] for case in _every_case()})
+    return tuple((name, _places(GraphObservation(_written.stage(name)).graph())) for name in names)
 
 
 def _places(graph: SceneGraph) -> frozenset[Any]:
     return frozenset((n.id, n.label, n.position, n.size) for n in graph.nodes)
-
-
-def _key(graph: SceneGraph) -> str:
-    return graph.model_dump_json()
 
 
 def _said(case: dict[str, Any], stage: Stage) -> dict[str, Any]:

@@ -112,14 +112,14 @@ def run(quick: bool) -> Result:
     context = Context(Camera.look_at([3.2, -6, 3], [3.2, 3, 0.5], [0, 0, 1], 512, 384))
     metrics, points = [], []
     repeats = QUICK_REPEATS if quick else REPEATS
-    copying, _ = _best(lambda: _copy(scene.cloud), repeats)
+    copying, _ = best_of(lambda: _copy(scene.cloud), repeats)
     for name, data in (EDITS | WHOLE).items():
         op = parse(data)
 
         def edit() -> Done:
             return carry_out(scene, op, context)  # noqa: B023 (called at once)
 
-        seconds, done = _best(edit, repeats)
+        seconds, done = best_of(edit, repeats)
         points.append(Point("edit", name, seconds, len(done.receipt.checks), scene.cloud.nbytes, name == "recolor"))
         metrics.append(Metric(f"{name}.seconds".replace(" ", "_"), seconds, "s", "lower", 0.3))
         metrics.append(Metric(f"{name}.copies".replace(" ", "_"), seconds / copying, "x a copy", "lower", 0.3))
@@ -155,7 +155,7 @@ def _with_pixels(scene: Scene, context: Context) -> list[Point]:
     op, points = parse(EDITS["recolor"]), []
     for width in (128, 256):
         looking = replace(context, pixel_checks=True, pixel_width=width)
-        seconds, done = _best(lambda: carry_out(scene, op, looking), 2)  # noqa: B023 (called at once)
+        seconds, done = best_of(lambda: carry_out(scene, op, looking), 2)  # noqa: B023 (called at once)
         checks = len(done.receipt.checks)
         points.append(Point("edit and look", f"recolor, {width} px wide", seconds, checks, scene.cloud.nbytes))
     return points
@@ -178,7 +178,7 @@ def _undone(scene: Scene) -> bool:
     return True
 
 
-def _best(edit: Callable[[], T], repeats: int) -> tuple[float, T]:
+def best_of(edit: Callable[[], T], repeats: int) -> tuple[float, T]:
     """The shortest of several runs, seconds of the processor, and the last outcome."""
     best = float("inf")
     for _ in range(repeats):

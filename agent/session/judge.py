@@ -221,10 +221,11 @@ def _grown(scene: Scene, op: EditOp, context: Context, residue: Tensor, bound: S
     assert query is not None
     meant = context.resolve(scene, query).require() if bound is None else bound
     told = f"selected {len(residue):,} more Gaussians that were left behind"
-    if (filed := refiled(scene, meant, residue)) is not None:
+    filed = refiled(scene, meant, residue)
+    if filed is not None and bound is None:
         return _Try(context, None, told, filed)
     selection = replace(meant, ids=torch.unique(torch.cat([meant.ids, residue])))
-    return _Try(context, selection, told)
+    return _Try(context, selection, told, filed)
 
 
 def _other_candidate(scene: Scene, op: EditOp, context: Context) -> Selection | None:

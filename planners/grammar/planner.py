@@ -228,11 +228,9 @@ def _complete_halves(ops: Sequence[Fields]) -> list[Fields]:
             settled[-1] = _without(settled[-1], op["target"])  # "take everything off the desk, leave only the lamp"
             continue
         alone = op["op"] == "isolate" and after is not None and _is_all_else(after)
-        if held == "kept" or (alone and ops[i + 1]["op"] != "delete"):
-            kept = op["target"]
+        if held == "kept" or alone:
+            kept = op["target"]  # "just keep the sofa and remove everything else"
             continue
-        if i and op["op"] == "delete" and settled and settled[-1]["op"] == "isolate" and _is_all_else(op["target"]):
-            continue  # "just keep the sofa and remove everything else"
         if held == "taken off" and after != Query(last=True):
             fields = {"op": "delete", "target": op["target"]}  # "take the picture off the wall"
         elif held in ("taken", "taken off"):

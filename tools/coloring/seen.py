@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
+from ...gaussians.camera import Camera
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.color import rgb_to_lab
 from ...gaussians.language.field.measure import Sample, sample
@@ -30,18 +33,25 @@ _LIT = (0.45, 0.95)  # quantiles of luma between which the lit faces are: withou
 
 def seen_pixels(cloud: GaussianCloud, scene: Scene, views: int = VIEWS, pixels: int = PIXELS) -> Tensor:
     """`[P, 3]` float64 display colours of the pixels that show a cloud rendered alone; P may be 0."""
-    import numpy as np
-
     if not len(cloud):
         return torch.zeros(0, 3, dtype=torch.float64)
     cloud = few_of(cloud, torch.arange(len(cloud))) if len(cloud) > _MOST else cloud
-    middle = scene.language.middle if scene.language is not None else np.zeros(3)
     found = []
-    for camera in cameras_around(cloud.means.double().numpy(), scene.frame, middle, pixels, views):
+    for camera in _around(cloud, scene, pixels, views):
         seen = render(cloud, camera)
         solid = seen.alpha > _SOLID
         found.append((seen.rgb[solid] / seen.alpha[solid][:, None]).clamp(0, 1).double())
     return torch.cat(found)
+
+
+def _around(cloud: GaussianCloud, scene: Scene, pixels: int, views: int) -> list[Camera]:
+    """Cameras that see a cloud of a scene alone from a few sides, towards the middle of the scene first."""
+    return cameras_around(cloud.means.double().numpy(), scene.frame, middle_of(scene), pixels, views)
+
+
+def middle_of(scene: Scene) -> NDArray[np.float64]:
+    """`[3]` the middle of a scene's things; the origin where none are known."""
+    return scene.language.middle if scene.language is not None else np.zeros(3)
 
 
 def few_of(cloud: GaussianCloud, rows: Tensor) -> GaussianCloud:
@@ -84,11 +94,8 @@ def lit_face(colors: Sample) -> Tensor:
 def outline_difference(was: GaussianCloud, now: GaussianCloud, scene: Scene) -> float:
     """Area by which the outlines of two clouds differ, relative to that of the first, in small pictures of each alone
     from a few sides: the same cameras, those of the first."""
-    import numpy as np
-
-    middle = scene.language.middle if scene.language is not None else np.zeros(3)
     apart = area = 0.0
-    for camera in cameras_around(was.means.double().numpy(), scene.frame, middle, PIXELS, VIEWS):
+    for camera in _around(was, scene, PIXELS, VIEWS):
         old, new = (render(cloud, camera).alpha for cloud in (was, now))
         apart += float(((old > _INSIDE) != (new > _INSIDE)).sum())
         area += float((old > _INSIDE).sum())

@@ -11,7 +11,6 @@ F64 = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 _BLOCKS = 4  # cells along a side of the blocks that a large unknown area is solved on first
-_DIRECT = 6_000  # unknown cells that are solved for at once
 
 
 def harmonic(values: F64, known: Mask, unknown: Mask) -> F64:

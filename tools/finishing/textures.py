@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...gaussians.world.finishes import FINISHES
+from ...gaussians.world.finishes import FinishName
 from .noise import F32, cellular, faded, fractal, gradient_noise, random
 
 
@@ -67,9 +67,8 @@ def texture(*names: str) -> Callable[[Texture], Texture]:
     return keep
 
 
-def pigment(finish: str, spots: Spots, look: Look) -> F32:
-    """Display colours `[N, 3]` in [0, 1] of a finish, a key of `FINISHES`, at points."""
-    assert finish in FINISHES
+def pigment(finish: FinishName, look: Look, spots: Spots) -> F32:
+    """Display colours `[N, 3]` in [0, 1] of a finish, at points."""
     return np.clip(TEXTURES[finish](spots, look), 0.0, 1.0).astype(np.float32)
 
 

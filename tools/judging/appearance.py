@@ -18,7 +18,7 @@ from ...gaussians.language.query.query import ALL, BACKGROUND, FLOATERS, Query
 from ...gaussians.language.query.terms import ANYTHING, STRUCTURE
 from ...gaussians.language.segmentation.group_renders import mean_vectors
 from ...gaussians.scene import Frame, Scene
-from ..coloring.seen import seen_pixels
+from ..coloring.seen import middle_of, seen_pixels
 from ..receipt import Check, at_least, report
 
 if TYPE_CHECKING:
@@ -56,8 +56,7 @@ def is_judge_of(encoder: Encoder, scene: Scene) -> bool:
 
 def likeness(encoder: Encoder, word: str, clouds: Sequence[GaussianCloud], scene: Scene) -> NDArray[np.float64]:
     """`[len(clouds)]` probability that each cloud is a `word`, from renders of it alone and its size."""
-    middle = scene.language.middle if scene.language is not None else np.zeros(3)
-    vectors = mean_vectors(encoder, clouds, scene.frame, middle, VIEWS)
+    vectors = mean_vectors(encoder, clouds, scene.frame, middle_of(scene), VIEWS)
     return probability(encoder, word, vectors, _sizes(clouds, scene.frame))
 
 

@@ -22,9 +22,8 @@ from ..coloring.scene_light import light_around, scene_light
 from ..coloring.seen import lit_color, lit_face, outline_difference, seen_colors
 from ..field_update import after_recolor, recount
 from ..finishing.finish import Paint, Painted, mean_pigment, painted
-from ..finishing.noise import F32
 from ..finishing.surface import chart_of
-from ..finishing.textures import Look, Spots, pigment
+from ..finishing.textures import Look, pigment
 from ..new_objects import scene_scale
 from ..operation import ColorName, Context, Length, Outcome, TargetedOp
 from ..placement.bodies import Body, bodies_of
@@ -99,7 +98,7 @@ class Restyle(TargetedOp):
         finish = self._finish
         look = self._look((lit / white.clamp(min=0.05)).clamp(0, 1).tolist(), metres, context.seed)
         scale = look.unit / finish.unit if finish.periodic else 1.0
-        return Paint(partial(_drawn, finish.name, look), white, luma, finish.detail * max(scale, _FINER), finish.shine)
+        return Paint(partial(pigment, finish.name, look), white, luma, finish.detail * max(scale, _FINER), finish.shine)
 
     def _look(self, own: list[float], metres: float, seed: int) -> Look:
         """The colours and the size that the finish gets; `own` is the pigment of the surface before, display RGB."""
@@ -153,10 +152,6 @@ class Restyle(TargetedOp):
         """The outlines are those of before: splitting Gaussians changes no shape."""
         off = outline_difference(before.cloud[was], after.cloud[now], before)
         return at_most("same shape", off, _SHAPE, "1", f"its outlines differ in {off:.1%} of their area")
-
-
-def _drawn(finish: str, look: Look, spots: Spots) -> F32:
-    return pigment(finish, spots, look)
 
 
 def _companion(color: Rgb, *, pattern: bool) -> Rgb:

@@ -29,6 +29,7 @@ from ..field.language_field import Group
 from .color.fallback import is_reliable
 from .query import Query
 from .selection import Selection, nothing
+from .space import of_groups, tally
 from .terms import candidate_of
 
 F64 = NDArray[np.float64]
@@ -82,13 +83,14 @@ def subject_of(scene: Scene) -> Subject | None:
                 told = "the photographs were taken from one side, which does not tell the subject from what is near it"
     if not things:
         return None
-    rows = _rows(scene, (g.id for g in things))
+    rows = of_groups(scene, (g.id for g in things))
     if is_reliable(field):
         return Subject(rows, tuple(g.id for g in things), told)
     chosen = torch.from_numpy(np.flatnonzero(rows)).to(scene.cloud.device)
     rows[chosen.cpu().numpy()[~core_of(scene.cloud, chosen).belongs]] = False
     if focus is None:
-        heaviest = max(float(weight[_rows(scene, (g.id,))].sum()) for g in things)
+        held = np.bincount(scene.cloud.group.cpu().numpy() + 1, weights=weight, minlength=len(field.groups) + 1)[1:]
+        heaviest = max(float(held[list(field.leaves(g.id))].sum()) for g in things)
         sure = heaviest >= _MOSTLY * float(weight[rows].sum())
     kept = tuple(g.id for g in _mostly_within(scene, things, weight, rows))
     return Subject(_with_remains(scene, rows, within), kept, told, sure)
@@ -167,7 +169,7 @@ def _with_remains(scene: Scene, subject: Bool, within: Bool) -> Bool:
     cloud = scene.cloud
     field = scene.language
     assert field is not None
-    structure = _rows(scene, (g.id for g in field.groups if g.level == "structure"))
+    structure = of_groups(scene, (g.id for g in field.groups if g.level == "structure"))
     points = cloud.means.to(torch.float64).cpu().numpy()
     solid: Bool = (cloud.opacities >= least_opacity(cloud.opacities)).cpu().numpy()
     loose = within & ~subject & ~structure & (_ungrouped(scene) | _nearby_pieces(scene, within, subject, structure))
@@ -194,19 +196,7 @@ def _nearby_pieces(scene: Scene, within: Bool, subject: Bool, structure: Bool) -
     """`[N]` bool: Gaussians of things that lie for the most part around the subject and were left out as strays."""
     field = scene.language
     assert field is not None
-    column, size = scene.cloud.group.cpu().numpy(), len(field.groups)
-    known = column >= 0
-    total = np.bincount(column[known], minlength=size)
-    held = np.bincount(column[known & within], minlength=size)
+    total, held = tally(scene, within)
     inside = np.append(held > _MOSTLY * np.maximum(total, 1), False)
-    found: Bool = inside[column] & ~subject & ~structure
-    return found
-
-
-def _rows(scene: Scene, groups: Iterable[int]) -> Bool:
-    """`[N]` bool: the Gaussians of some groups and their parts."""
-    assert scene.language is not None
-    table = np.zeros(len(scene.language.groups) + 1, dtype=bool)
-    table[[leaf for group in groups for leaf in scene.language.leaves(group)]] = True
-    found: Bool = table[scene.cloud.group.cpu().numpy()]
+    found: Bool = inside[scene.cloud.group.cpu().numpy()] & ~subject & ~structure
     return found

@@ -7,7 +7,7 @@ are cut.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -117,7 +117,7 @@ def _cropped(scene: Scene, things: Sequence[Selection]) -> tuple[Bool, str]:
         strays |= mask_of(scene.cloud, found.ids).cpu().numpy() & ~kept
     loose = _whole(scene, space, things) & space & ~strays
     if field is not None:
-        shell = _of_groups(scene, [g.id for g in field.groups if g.level == "structure"])
+        shell = of_groups(scene, [g.id for g in field.groups if g.level == "structure"])
         loose &= ~shell
     return kept | loose, "floor, walls and what lies mostly beyond it are left out"
 
@@ -127,7 +127,7 @@ def _whole(scene: Scene, rows: Bool, things: Sequence[Selection]) -> Bool:
     field = scene.language
     if field is None:
         return rows
-    counts, held = _tally(scene, rows)
+    counts, held = tally(scene, rows)
     made = rows.copy()
     column = scene.cloud.group.cpu().numpy()
     verdict = np.full(len(counts), -1, dtype=np.int8)
@@ -149,7 +149,7 @@ def mostly_in(scene: Scene, rows: Bool) -> frozenset[int]:
     """Ids of the groups of which at least half lies in the rows `[N]`."""
     field = scene.language
     assert field is not None
-    counts, held = _tally(scene, rows)
+    counts, held = tally(scene, rows)
     found = set()
     for group in field.groups:
         leaves = [leaf for leaf in field.leaves(group.id) if leaf < len(counts)]
@@ -164,7 +164,7 @@ def _cut(scene: Scene, rows: Bool) -> str:
     field = scene.language
     if field is None:
         return ""
-    counts, held = _tally(scene, rows)
+    counts, held = tally(scene, rows)
     cut = []
     for group in field.groups:
         if group.level != "object" or group.parent >= 0 or not group.count:
@@ -180,7 +180,7 @@ def _cut(scene: Scene, rows: Bool) -> str:
     return f"; it cuts through {', '.join(names[:_NAMED])}{more}"
 
 
-def _tally(scene: Scene, rows: Bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def tally(scene: Scene, rows: Bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Gaussians of each group of the table, in all and in the rows `[N]`."""
     assert scene.language is not None
     column, size = scene.cloud.group.cpu().numpy() + 1, len(scene.language.groups) + 1
@@ -188,7 +188,7 @@ def _tally(scene: Scene, rows: Bool) -> tuple[NDArray[np.int64], NDArray[np.int6
     return counts, np.bincount(column[rows], minlength=size)[1:]
 
 
-def _of_groups(scene: Scene, groups: Sequence[int]) -> Bool:
+def of_groups(scene: Scene, groups: Iterable[int]) -> Bool:
     """The Gaussians `[N]` of some groups and their parts."""
     assert scene.language is not None
     table = np.zeros(len(scene.language.groups) + 1, dtype=bool)

@@ -11,8 +11,8 @@ from ....gaussians.language.query.query import Query
 from ....gaussians.world.finishes import said as finish_said
 from ....gaussians.world.words import head, plural
 from ..parsing import Node, Refusal, tokens, trees
-from ..restating.materials import surfaced
 from ..vocabulary import nouns, sizes
+from ..vocabulary.materials import surfaced
 from . import places
 from .changes import Fields
 from .described import NounPhrase, existing, union

@@ -10,7 +10,7 @@ from typing import Any
 
 from ....gaussians.language.query.query import Query
 from ..parsing import Node, Refusal, tokens, trees
-from ..restating.materials import meant
+from ..vocabulary.materials import meant
 
 Fields = dict[str, Any]
 

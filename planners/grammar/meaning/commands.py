@@ -17,8 +17,8 @@ from ....gaussians.language.query.query import Query, Region, Relation
 from ....gaussians.world import kinds
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tokens, trees
-from ..restating.materials import is_mark, meant
 from ..vocabulary import nouns
+from ..vocabulary.materials import is_mark, meant
 from . import adding, changes, moving, repeating, shaping
 from .adding import inserted
 from .changes import Fields

@@ -8,7 +8,7 @@ from functools import lru_cache
 from itertools import pairwise
 
 from ..parsing import Refusal, parse
-from ..tagging.lookahead import color_at, compounds, match, may_be_noun
+from ..tagging.lookahead import compounds, match, may_be_noun
 from ..tagging.tagger import clauses
 from ..tagging.tags import Clause, Tag
 from ..tagging.words import Word, bag
@@ -125,8 +125,3 @@ def is_thing(texts: tuple[str, ...]) -> bool:
 def last_of(found: Sequence[Chunk], kind: str) -> Chunk | None:
     """The last chunk of a kind."""
     return next((c for c in reversed(found) if c.kind == kind), None)
-
-
-def begins_hue(texts: Sequence[str], i: int = 0) -> bool:
-    """Whether a colour is at `i`."""
-    return color_at(texts, i) is not None

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead, color_at
+from ..tagging.lookahead import Lookahead, color_at, is_hue
 from ..vocabulary import quantities
 from .chunks import is_thing
 from .elision import JOINTS
@@ -97,7 +97,7 @@ def continued(said: Sequence[str]) -> Iterator[str]:
         yield "more"
     if (found := _SAFER.match(text)) and Lookahead(words).preposition_at(0):
         yield f"put it {found['place']}"
-    if (found := _TRIED.match(text)) and _is_hue(found["hue"]):
+    if (found := _TRIED.match(text)) and is_hue(found["hue"].removeprefix("a ").removeprefix("the ").split()):
         yield f"make it {found['hue']}"
     if found := _ONE_MORE.match(text):
         yield "copy it" if found["n"] in ("one", "another", "a", "1") else f"copy it {found['n']} times"
@@ -127,12 +127,6 @@ def _amounts(words: Sequence[str]) -> Iterator[str]:
     amount = quantities.read(said)
     if amount is not None and amount.taken == len(said) and amount.kind != "ORDINAL":
         yield f"{' '.join(said)} more"
-
-
-def _is_hue(said: str) -> bool:
-    words = said.removeprefix("a ").removeprefix("the ").split()
-    found = color_at(words, 0)
-    return found is not None and found[1] == len(words)
 
 
 def _renamed(words: Sequence[str]) -> Iterator[str]:

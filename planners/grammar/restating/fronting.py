@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead, color_at, match
+from ..tagging.lookahead import Lookahead, color_at, is_hue, match
 from ..vocabulary import lexicon, quantities
 from .chunks import is_thing
 from .elision import JOINTS
@@ -190,7 +190,7 @@ def _changed_first(said: str) -> Iterator[str]:
 def _is_change(words: Sequence[str]) -> bool:
     """Whether words begin with what becomes of a thing, and name none."""
     if color_at(words, 0) is not None:
-        return color_at(words, 0)[1] == len(words)  # type: ignore[index]
+        return is_hue(words)
     degree = match(lexicon.CLOSED_PHRASES, words, 0)
     if degree is not None and degree[0][0] in ("DEGREE", "GROWN", "LIGHT", "DIR", "TIMES", "UPSIDE", "MORE", "LESS"):
         return True

@@ -1,7 +1,6 @@
 """Sentences that ask for a material, with the material as a new colour: "clad it in brick" to "paint it #brick".
 
-All forms of a new colour are then forms of a new material too. A word that begins with "#" and is no hexadecimal value
-stands for a material with its colours: `#marble~dark-green`, `#stripes~red~white`; `meant` reads it.
+`vocabulary.materials` says what such a word stands for.
 """
 
 from __future__ import annotations
@@ -9,15 +8,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from functools import cache
-from typing import Any
 
 from ....gaussians import color as colors
-from ....gaussians.world.finishes import said as finish_said
 from ....gaussians.world.finishes import words
-from ..tagging.words import bag
+from ..vocabulary.materials import COLORS_TOO, mark
 
-_HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6})")
-_MARK = re.compile(r"#[a-z][a-z-]+(?:~[a-z-]+){0,2}")
 _CUE = (
     r"(?:(?:to )?look(?:ing)? (?:like|as if) (?:it (?:is|were|was) )?(?:made )?(?:out )?(?:of )?|"
     r"(?:be )?made (?:out )?(?:of|from) |"
@@ -54,11 +49,6 @@ _VERBS: dict[str, str] = {
 _VERB = re.compile(
     rf"^(?P<before>(?:please )?)(?P<verb>{'|'.join(_VERBS)}) (?P<thing>(?:the|that|this|my|our|all|every|both)\b.+)$"
 )
-# Words that name colours at least as often as materials: they are materials only behind a cue.
-COLORS_TOO = bag(
-    "gold copper bronze brass terracotta clay sand slate stone grass denim chrome iron tin rock ebony "
-    "cherry straw mahogany walnut chestnut bamboo metallic wool cotton linen silk canvas"
-)
 _MOST = 6
 
 
@@ -76,7 +66,7 @@ def _material() -> re.Pattern[str]:
 def in_materials(said: str) -> Iterator[str]:
     """The sentence with each material that it may ask for as a new colour."""
     if found := _VERB.match(said):
-        yield f"{found['before']}paint {found['thing']} {_mark(_VERBS[found['verb']])}"
+        yield f"{found['before']}paint {found['thing']} {mark(_VERBS[found['verb']])}"
     for count, match in enumerate(_material().finditer(said)):
         if count >= _MOST:
             return
@@ -84,7 +74,9 @@ def in_materials(said: str) -> Iterator[str]:
         if not _AFTER.match(behind) or (match["name"] in COLORS_TOO and not _is_cued(match)):
             continue
         before = said[: match.start()].rstrip()
-        yield from _worded(f"{before} {_mark(match['name'], match['one'], match['two'])}{behind}".strip())
+        yield from _worded(
+            f"{before} {mark(match['name'], *filter(None, (match['one'], match['two'])))}{behind}".strip()
+        )
 
 
 def _is_cued(match: re.Match[str]) -> bool:
@@ -94,11 +86,6 @@ def _is_cued(match: re.Match[str]) -> bool:
         any(word in match["cue"] for word in ("of ", "look", "solid ", "real ", "genuine "))
         or len(own) > len(match["name"].split()) + 2
     )
-
-
-def _mark(name: str, one: str | None = None, two: str | None = None) -> str:
-    said = [name, *(c.strip() for c in (one, two) if c)]
-    return "#" + "~".join(word.replace(" ", "-") for word in said)
 
 
 def _worded(said: str) -> Iterator[str]:
@@ -112,25 +99,3 @@ def _worded(said: str) -> Iterator[str]:
         thing = re.sub(r" (?:a|an|some|for|with|to|into|by)$", "", found["thing"])
         yield f"{found['before']}paint {thing} {found['mark']}{said[found.end() :]}"
     yield said
-
-
-def is_mark(hue: str) -> bool:
-    """Whether a colour stands for a material."""
-    return bool(_MARK.fullmatch(hue)) and not _HEX.fullmatch(hue)
-
-
-def meant(hue: str) -> dict[str, Any]:
-    """The fields of a new surface: of a colour, or of the material that a word stands for."""
-    if is_mark(hue):
-        name, *said = (word.replace("-", " ") for word in hue[1:].split("~"))
-        return {**surfaced(name), **dict(zip(("color", "second"), said, strict=False))}
-    if hue not in COLORS_TOO and finish_said(hue) is not None:
-        return surfaced(hue)
-    return {"op": "recolor", "color": hue}
-
-
-def surfaced(name: str) -> dict[str, Any]:
-    """The fields of a new surface of a material by any of its names."""
-    found = finish_said(name)
-    assert found is not None
-    return {"op": "restyle", "material": found.finish, **({"color": found.color} if found.color else {})}

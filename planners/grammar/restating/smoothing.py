@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 
 from ....gaussians.world.words import singular
-from ..tagging.lookahead import Lookahead, color_at
+from ..tagging.lookahead import Lookahead, color_at, is_hue
 from ..tagging.words import Word, bag
 from ..vocabulary import doings, lexicon, nouns, quantities
 from .participles import at, gerunds
@@ -97,10 +97,6 @@ _OPENERS = re.compile(
     r"(?: ,)* )(?=\S)"
 )
 _OPENING_MARKS = re.compile(r"^(?:[,:] )+")
-# Behind a command, these open a reason up to the next mark; "so that it faces" and "so it is" say what to do.
-_OWN_STATE = (
-    r"(?! (?:it|they|that|this) (?:is|are|faces?|looks?|points?|stands?|becomes?|matches|match|sits?|measures?))"
-)
 _REASON = (
     r"(?:because|cos|coz|cuz|'cause|cause|as it is|as they are|since it|since they|since we|since i|since the|"
     r"since there|"
@@ -184,11 +180,6 @@ _TIMES = re.compile(
     r"summer|winter|"
     r"morning|evening|afternoon)s?(?: morning| evening| night)?|tomorrow|tonight|today|asap)(?= [,.;!?]|$)"
 )
-
-
-def _is_command(words: Sequence[str]) -> bool:
-    ahead = Lookahead(words)
-    return ahead.verb(ahead.skip_polite(0)[0]) is not None
 
 
 def _joined_amounts(said: str) -> str:
@@ -277,7 +268,7 @@ def _plain_hues(said: str) -> str:
             continue
         kept.append(word)
     found = _SAME.search(" ".join(kept))
-    if found and (hue := color_at(found.group("hue").split(), 0)) and hue[1] == len(found.group("hue").split()):
+    if found and is_hue(found["hue"].split()):
         return _SAME.sub("the same colour as", " ".join(kept))
     return " ".join(kept)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead, color_at
+from ..tagging.lookahead import Lookahead, color_at, is_hue
 from ..vocabulary import quantities
 from .chunks import is_thing
 from .participles import at, gerunds
@@ -93,14 +93,8 @@ def _emptied(said: str) -> Iterator[str]:
 
 def _hued(said: str) -> Iterator[str]:
     for pattern in HUED:
-        if (found := pattern.match(said)) and _is_hue(found["hue"]):
+        if (found := pattern.match(said)) and is_hue(found["hue"].split()):
             yield f"paint {found['thing']} {found['hue']}"
-
-
-def _is_hue(said: str) -> bool:
-    words = said.split()
-    found = color_at(words, 0)
-    return found is not None and found[1] == len(words)
 
 
 def _best_place(said: str) -> Iterator[str]:

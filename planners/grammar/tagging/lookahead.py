@@ -39,6 +39,12 @@ def color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
     return shade if shade and (known is None or known[1] < shade[1]) else known
 
 
+def is_hue(words: Sequence[str]) -> bool:
+    """Whether some words are the name of a colour, and nothing else."""
+    found = color_at(words, 0)
+    return found is not None and found[1] == len(words)
+
+
 def _named_color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
     """The colour at `i` whose name has a value of its own, and its number of words."""
     for taken in (4, 3, 2, 1):

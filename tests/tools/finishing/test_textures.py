@@ -40,18 +40,18 @@ def test_every_finish_has_a_texture_and_every_texture_a_finish() -> None:
 @pytest.mark.parametrize("name", FINISHES)
 def test_pigments_are_colours_and_the_same_every_time(name: FinishName) -> None:
     spots, look = scattered(500), look_of(name)
-    found = pigment(name, spots, look)
+    found = pigment(name, look, spots)
     assert found.shape == (500, 3)
     assert found.dtype == np.float32
     assert np.isfinite(found).all()
     assert (found >= 0).all()
     assert (found <= 1).all()
-    assert np.array_equal(found, pigment(name, spots, look))
+    assert np.array_equal(found, pigment(name, look, spots))
 
 
 @pytest.mark.parametrize("name", FINISHES)
 def test_a_wide_blur_shows_one_colour_that_is_the_mean(name: FinishName) -> None:
-    sharp, blurred = (pigment(name, scattered(blur=b), look_of(name)) for b in (1e-4, 3.0))
+    sharp, blurred = (pigment(name, look_of(name), scattered(blur=b)) for b in (1e-4, 3.0))
     assert blurred.std(axis=0).max() < 0.03
     assert np.abs(blurred.mean(axis=0) - sharp.mean(axis=0)).max() < 0.06
 
@@ -61,7 +61,7 @@ def test_the_unit_repeats_at_its_length(name: FinishName, unit: float) -> None:
     """Joints along a row of spots are a unit apart, within 5 %."""
     across = np.linspace(0, 12, 24_000, dtype=np.float32)
     look = replace(look_of(name), unit=unit)
-    row = pigment(name, wall(across, np.full_like(across, unit / 6)), look)
+    row = pigment(name, look, wall(across, np.full_like(across, unit / 6)))
     joint = np.linalg.norm(row - np.array(look.second), axis=1) < np.linalg.norm(row - np.array(look.color), axis=1) / 2
     begins = across[1:][joint[1:] & ~joint[:-1]]
     assert len(begins) >= 10 / unit
@@ -71,7 +71,7 @@ def test_the_unit_repeats_at_its_length(name: FinishName, unit: float) -> None:
 def test_a_course_of_bricks_is_shifted_by_half_a_brick() -> None:
     height = BRICK.unit / 3
     across = np.linspace(0, 4.5, 2000, dtype=np.float32)
-    rows = [pigment("brick", wall(across, np.full_like(across, (k + 0.5) * height)), BRICK) for k in (0, 1)]
+    rows = [pigment("brick", BRICK, wall(across, np.full_like(across, (k + 0.5) * height))) for k in (0, 1)]
     joints = [np.linalg.norm(row - np.array(BRICK.second), axis=1) < 0.12 for row in rows]
     places = [np.unwrap(2 * np.pi * across[joint] / BRICK.unit) for joint in joints]
     phase = [np.angle(np.exp(1j * 2 * np.pi * across[joint] / BRICK.unit).mean()) for joint in joints]
