@@ -24,9 +24,9 @@ from .meaning.changes import Fields
 from .meaning.phrases import Phrases
 from .parsing import Refusal
 from .reader import Reader
-from .restating.filling import Request, heard
-from .restating.remarks import is_remark
-from .restating.smoothing import smoothed
+from .restating.changes.filling import Request, heard
+from .restating.speech.remarks import is_remark
+from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import clean, split, without_owners

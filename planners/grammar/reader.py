@@ -17,12 +17,12 @@ from .meaning.changes import Fields, with_parts
 from .meaning.commands import operations_of
 from .meaning.phrases import Phrases
 from .parsing import Refusal, first_words, parse, trees
-from .restating.conditions import has_condition
-from .restating.corrections import corrected, takes_back
-from .restating.elision import about, topic_of
-from .restating.impossible import cannot_be
-from .restating.remarks import is_remark, says_how_far, subject_of
+from .restating.changes.impossible import cannot_be
+from .restating.order.conditions import has_condition
+from .restating.order.elision import about, topic_of
 from .restating.restating import restatements
+from .restating.speech.corrections import corrected, takes_back
+from .restating.speech.remarks import is_remark, says_how_far, subject_of
 from .tagging.non_edits import FORBIDDEN, STATEMENT, empty_refusal, is_chat, refuse_non_edit
 from .tagging.tagger import clauses
 from .tagging.tags import Clause, Tag, sentences

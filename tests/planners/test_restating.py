@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from scenewright.planners.grammar import GrammarPlanner
 from scenewright.planners.grammar.restating.restating import restatements
-from scenewright.planners.grammar.restating.smoothing import smoothed
+from scenewright.planners.grammar.restating.speech.smoothing import smoothed
 from scenewright.planners.grammar.tagging.words import clean, split
 
 CASES = [

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 
 from ..tagging.words import bag
-from .continuing import continued, following
-from .elision import about, gapped, listed, splits, terse, topics
-from .fronting import fronted
-from .materials import in_materials
-from .phrasings import phrasings
-from .remarks import remarks, without_remark
-from .smoothing import unopened, without_reason
-from .wishes import wishes
+from .changes.continuing import continued, following
+from .changes.materials import in_materials
+from .order.elision import about, gapped, listed, splits, terse, topics
+from .order.fronting import fronted
+from .speech.phrasings import phrasings
+from .speech.remarks import remarks, without_remark
+from .speech.smoothing import unopened, without_reason
+from .wishes.wishes import wishes
 
 _BEGINNING = re.compile(
     r"^(?:(?:no|nope|nah|wait|hang on|hold on|sorry|oops|actually|rather|and|or rather|not that|not that one|i "

@@ -6,11 +6,11 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from ..tagging.lookahead import Lookahead
-from ..tagging.words import bag
-from ..vocabulary import doings
-from ..vocabulary.verbs import BLURS
-from .smoothing import unopened
+from ...tagging.lookahead import Lookahead
+from ...tagging.words import bag
+from ...vocabulary import doings
+from ...vocabulary.verbs import BLURS
+from ..speech.smoothing import unopened
 
 _SHELL = re.compile(
     r"\b(?:push|move|pull|shift|raise|lower|lift|extend|knock|widen|enlarge|take|shrink|stretch|rotate|turn|tear|break|"

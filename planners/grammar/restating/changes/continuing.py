@@ -8,11 +8,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead, color_at, is_hue
-from ..vocabulary import quantities
-from .chunks import is_thing
-from .elision import JOINTS
-from .judgements import is_judged
+from ...tagging.lookahead import Lookahead, color_at, is_hue
+from ...vocabulary import quantities
+from ..chunks import is_thing
+from ..order.elision import JOINTS
+from ..wishes.judgements import is_judged
 
 _DO_TOO = re.compile(r"^(?:and |now |then |also )*(?:do|same for|ditto(?: for)?|likewise|so does|so should|so for) "
                      r"(?P<thing>\S.*?)"

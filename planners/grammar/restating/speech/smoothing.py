@@ -9,12 +9,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from ....gaussians.world.words import singular
-from ..tagging.lookahead import Lookahead, color_at, is_hue
-from ..tagging.words import Word, bag
-from ..vocabulary import doings, lexicon, nouns, quantities
+from .....gaussians.world.words import singular
+from ...tagging.lookahead import Lookahead, color_at, is_hue
+from ...tagging.words import Word, bag
+from ...vocabulary import doings, lexicon, nouns, quantities
+from ..changes.rewordings import REWORDED
 from .participles import at, gerunds
-from .rewordings import REWORDED
 
 _SOUNDS = bag("er erm um umm uh uhm uhh hm hmm eh ah aha oh ooh oi yo huh ugh argh ahem")
 # Closing words, after a comma or before the end of a sentence.

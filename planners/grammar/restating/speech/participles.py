@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 
-from ..vocabulary import lexicon
+from ...vocabulary import lexicon
 
 _IRREGULAR = {
     "taken": "take", "thrown": "throw", "put": "put", "set": "set", "got": "get", "gotten": "get", "made": "make",

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead, color_at
-from ..tagging.words import bag
-from ..vocabulary import quantities
-from .chunks import is_thing
-from .participles import at, participles
+from ...tagging.lookahead import Lookahead, color_at
+from ...tagging.words import bag
+from ...vocabulary import quantities
+from ..chunks import is_thing
+from ..speech.participles import at, participles
 from .wish_patterns import GONE
 
 _STATE_WORDS = bag(

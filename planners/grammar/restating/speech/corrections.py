@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead, match
-from ..vocabulary import lexicon
-from .chunks import Chunk, chunks, last_of
+from ...tagging.lookahead import Lookahead, match
+from ...vocabulary import lexicon
+from ..chunks import Chunk, chunks, last_of
 
 _WAIT = r"(?:wait|hang on|hold on|hang about|one sec|stop|oops|whoops|scratch that|strike that|forget that|cancel "\
         r"that|"\

@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead, color_at, is_hue
-from ..vocabulary import quantities
-from .chunks import is_thing
-from .participles import at, gerunds
+from ...tagging.lookahead import Lookahead, color_at, is_hue
+from ...vocabulary import quantities
+from ..chunks import is_thing
+from ..speech.participles import at, gerunds
 from .states import bare_thing, begins_state, command, is_plain, may_end, states
 from .wish_patterns import (
     ASKED,

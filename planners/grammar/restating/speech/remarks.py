@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead, color_at
-from ..tagging.words import bag
-from ..vocabulary import doings, nouns
-from .chunks import is_thing
-from .elision import JOINTS, substitute
-from .judgements import is_judged
-from .states import states
+from ...tagging.lookahead import Lookahead, color_at
+from ...tagging.words import bag
+from ...vocabulary import doings, nouns
+from ..chunks import is_thing
+from ..order.elision import JOINTS, substitute
+from ..wishes.judgements import is_judged
+from ..wishes.states import states
 
 _SUBJECTS = bag(
     "never i we you it they he she nobody everybody everyone someone somebody people guests visitors there this "

@@ -9,9 +9,9 @@ import re
 from collections.abc import Iterator
 from functools import cache
 
-from ....gaussians import color as colors
-from ....gaussians.world.finishes import words
-from ..vocabulary.materials import COLORS_TOO, mark
+from .....gaussians import color as colors
+from .....gaussians.world.finishes import words
+from ...vocabulary.materials import COLORS_TOO, mark
 
 _CUE = (
     r"(?:(?:to )?look(?:ing)? (?:like|as if) (?:it (?:is|were|was) )?(?:made )?(?:out )?(?:of )?|"

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ....gaussians.world.words import singular
-from ..tagging.lookahead import Lookahead, color_at, match
-from ..tagging.words import bag
-from ..vocabulary import lexicon, quantities
-from .chunks import DOING, chunks, is_thing
-from .judgements import is_judged
-from .states import begins_state, states
+from .....gaussians.world.words import singular
+from ...tagging.lookahead import Lookahead, color_at, match
+from ...tagging.words import bag
+from ...vocabulary import lexicon, quantities
+from ..chunks import DOING, chunks, is_thing
+from ..wishes.judgements import is_judged
+from ..wishes.states import begins_state, states
 
 _PRONOUNS = bag("it them they those these this that him her both")
 _PRONOUN_PHRASES = (("this", "one"), ("that", "one"), ("these", "ones"), ("those", "ones"), ("all", "of", "them"),

@@ -9,13 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead, color_at, is_hue, match
-from ..vocabulary import lexicon, quantities
-from .chunks import is_thing
+from ...tagging.lookahead import Lookahead, color_at, is_hue, match
+from ...vocabulary import lexicon, quantities
+from ..chunks import is_thing
+from ..speech.participles import at, participles
+from ..speech.remarks import is_remark
+from ..wishes.states import states
 from .elision import JOINTS
-from .participles import at, participles
-from .remarks import is_remark
-from .states import states
 
 _MOST = 4  # ends of a front that are tried
 _ONLY = r"(?:only|just|solely|nothing but|no more than|none but)"

@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from ..tagging.lookahead import Lookahead, color_at
-from .chunks import is_thing
+from ...tagging.lookahead import Lookahead, color_at
+from ..chunks import is_thing
 
 _LEADING = re.compile(
     r"^(?:(?:and|then|but|please|also) )*(?P<word>if|unless) (?P<thing>[^,]+?) (?:is|are|'s) (?P<state>[^,]+?) , \S"

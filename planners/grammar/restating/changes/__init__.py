@@ -1,0 +1,1 @@
+"""Restates changes that the grammar knows by plainer words: materials, holes, continuations, rewordings."""

@@ -1,0 +1,1 @@
+"""Restates wishes, states and judgements as commands."""
