@@ -31,6 +31,7 @@ class Metric:
         tolerance: relative change in the bad direction that is noise, e.g. 0.1. Times do not carry over to other
             machines; ratios and accuracies do.
         goal: what it should reach in its direction, None if nobody set one.
+        low, high: the least and the greatest of several repeats, of which `value` is the median; None: measured once.
     """
 
     key: str
@@ -39,6 +40,8 @@ class Metric:
     direction: Direction = "neither"
     tolerance: float = 0.0
     goal: float | None = None
+    low: float | None = None
+    high: float | None = None
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.value):
@@ -96,6 +99,7 @@ class Result:
         seeds: seeds of everything random.
         cost: what the points' accuracy is bought with on the chart: time, or bytes.
         name, quick, seconds, machine, versions, revision: stamped by `run`.
+        repeats: how many times it was run; of several, figures are medians.
     """
 
     title: str
@@ -111,6 +115,7 @@ class Result:
     machine: dict[str, Any] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
     revision: str | None = None
+    repeats: int = 1
 
     def __post_init__(self) -> None:
         keys = [metric.key for metric in self.metrics]
@@ -175,7 +180,7 @@ class Result:
                 "| --- | --- | ---: | ---: | ---: | --- |",
             ]
             lines += [
-                f"| {p.method} | {p.setting} | {_duration(p.seconds)} | {p.accuracy:.4g} | {_size(p.bytes)} "
+                f"| {p.method} | {p.setting} | {duration(p.seconds)} | {p.accuracy:.4g} | {_size(p.bytes)} "
                 f"| {', '.join(['default'] * p.default + ['on the front'] * (p in front))} |"
                 for p in self.points
             ]
@@ -183,7 +188,7 @@ class Result:
         if self.metrics:
             lines += ["| figure | value | better | noise |", "| --- | ---: | --- | ---: |"]
             lines += [
-                f"| {m.key} | {m.value:.4g} {m.unit} | {'' if m.direction == 'neither' else m.direction} "
+                f"| {m.key} | {_value(m)} {m.unit} | {'' if m.direction == 'neither' else m.direction} "
                 f"| {f'{m.tolerance:.0%}' if m.direction != 'neither' else ''} |"
                 for m in self.metrics
             ]
@@ -196,7 +201,9 @@ class Result:
         facts = [", ".join(f"{key} {value}" for key, value in part.items()) for part in (self.machine, self.versions)]
         facts += [f"seeds {', '.join(map(str, self.seeds))}"] if self.seeds else []
         facts += [f"revision {self.revision}"] if self.revision else []
-        facts += [f"measured in {self.seconds:.0f} s{', quick: rougher than the full run' if self.quick else ''}"]
+        runs = f", {self.repeats} runs: medians, and the least to the greatest" if self.repeats > 1 else ""
+        rough = ", quick: rougher than the full run" if self.quick else ""
+        facts += [f"measured in {self.seconds:.0f} s{runs}{rough}"]
         return [f"- {fact}" for fact in facts if fact]
 
 
@@ -234,7 +241,15 @@ def run(name: str, quick: bool = False) -> Result:
     )
 
 
-def _duration(seconds: float) -> str:
+def _value(metric: Metric) -> str:
+    """A figure, with its spread where repeats differ."""
+    if metric.low is None or metric.high is None or metric.low == metric.high:
+        return f"{metric.value:.4g}"
+    return f"{metric.value:.4g} ({metric.low:.4g} to {metric.high:.4g})"
+
+
+def duration(seconds: float) -> str:
+    """Seconds in words: milliseconds below one second."""
     return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
 
 

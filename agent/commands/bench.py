@@ -3,33 +3,46 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..options import Debug, Force, Json
 from ..terminal.output import terminal
 
+if TYPE_CHECKING:
+    from ...benchmarks.harness import Result
+
 
 def command(
-    name: Annotated[str | None, typer.Argument(metavar="NAME", help="Benchmark; without it, list them.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(metavar="NAME", help="Benchmark; 'all' for all of them; without it, list them.")
+    ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Much faster and less precise.")] = False,
     chart: Annotated[
         Path | None, typer.Option("--chart", metavar="FILE", help="Draw time against accuracy (.png, .svg, .pdf).")
     ] = None,
     against: Annotated[
-        Path | None, typer.Option("--against", metavar="FILE", help="Earlier --json result; exit code 3 if worse.")
+        Path | None,
+        typer.Option(
+            "--against", metavar="FILE", help="Earlier --json result, or folder of 'all'; exit code 3 if worse."
+        ),
     ] = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FOLDER", help="Where 'all' writes its page and charts.")
+    ] = Path("docs/benchmarks"),
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Run a benchmark and print its figures as a table (Markdown) or, with --json, as data.
 
+    `bench all` runs every benchmark and writes one page with its charts: 3 minutes with --quick, else an hour.
     Times do not carry over to other machines; ratios and accuracies do.
     """
-    from ...gaussians.errors import FileError, UserError
+    from ...gaussians.errors import UserError
 
     try:
         from ...benchmarks import _chart, harness
@@ -45,16 +58,59 @@ def command(
     if name in (None, "list"):
         terminal.result("\n".join(harness.names()), {"benchmarks": list(harness.names())})
         return
+    if name == "all":
+        _all(quick, output, against, force)
+        return
     refuse_existing([chart] if chart else [], force)
-    try:
-        earlier = harness.Result.from_json(against.read_text(encoding="utf-8")) if against else None
-    except OSError as error:
-        raise FileError(f"cannot read {against}: {error.strerror}") from error
+    earlier = [_read(against)] if against else []
     result = harness.run(name, quick)
     if chart is not None:
         terminal.say(f"chart: {_chart.draw(result, chart)}")
     terminal.result(result.to_markdown(), json.loads(result.to_json()))
-    worse = result.regressions(earlier) if earlier is not None else ()
+    _compare([result], earlier)
+
+
+def _all(quick: bool, folder: Path, against: Path | None, force: bool) -> None:
+    """Run every benchmark and write the page of all."""
+    from ...benchmarks import harness
+    from ...benchmarks._all import page, running
+    from ..output_files import make_folder, refuse_existing
+
+    refuse_existing([folder / page.PAGE], force)
+    make_folder(folder)
+    earlier = [_read(path) for path in sorted(against.glob("*.json"))] if against else []
+    found = running.measured(harness.names(), quick, terminal.say)
+    made = page.write(folder, found.results, found.failed)
+    told = {
+        "page": str(made[-1]),
+        "results": [json.loads(r.to_json()) for r in found.results],
+        "failed": dict(found.failed),
+    }
+    terminal.result(f"{made[-1]}: {len(found.results)} benchmarks, {len(found.failed)} failed", told)
+    _compare(found.results, earlier)
+    if found.failed:
+        raise typer.Exit(1)
+
+
+def _read(path: Path) -> Result:
+    """An earlier result.
+
+    Raises:
+        FileError: it cannot be read, or is none.
+    """
+    from ...benchmarks import harness
+    from ...gaussians.errors import FileError
+
+    try:
+        return harness.Result.from_json(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FileError(f"cannot read {path}: {error.strerror}") from error
+
+
+def _compare(results: Sequence[Result], earlier: Sequence[Result]) -> None:
+    """Tell what is worse than in earlier results; exit code 3 if anything is."""
+    before = {result.name: result for result in earlier}
+    worse = [f"{r.name}: {s}" for r in results if r.name in before for s in r.regressions(before[r.name])]
     for sentence in worse:
         terminal.say(f"worse: {sentence}")
     if worse:

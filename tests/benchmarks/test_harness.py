@@ -100,13 +100,36 @@ def test_chart_is_written(tmp_path: Path, kind: str) -> None:
     assert path.stat().st_size > 5000
 
 
-def test_a_chart_of_many_points_names_those_one_would_choose(tmp_path: Path) -> None:
-    many = tuple(Point("dial", f"{i}", 1.0 + i, 10.0 - abs(i - 9), 1, default=i == 12) for i in range(20))
+def test_a_chart_shows_eight_settings_with_the_default_and_the_front(tmp_path: Path) -> None:
+    many = tuple(Point("dial", f"{i}", 1.0 + i, 10.0 - abs(i - 5), 1, default=i == 12) for i in range(20))
     result = Result("many", "dB", (), many)
-    assert {p.setting for p in _chart.labelled(result)} == {"12", "0", "19", *(p.setting for p in result.front())}
-    assert _chart.labelled(RESULT) == RESULT.points
+    shown = {p.setting for p in _chart.shown(result)}
+    assert len(shown) == _chart.MAX_SETTINGS
+    assert shown >= {"12", *(p.setting for p in result.front())}
+    assert _chart.shown(RESULT) == RESULT.points
     pytest.importorskip("matplotlib")
     assert _chart.draw(result, tmp_path / "many.svg").stat().st_size > 5000
+
+
+@given(points, st.integers(0, 8))
+def test_a_chart_never_shows_more_settings_than_can_be_read(some: list[Point], defaults: int) -> None:
+    many = [Point(p.method, f"{i}", p.seconds, p.accuracy, 1, i < defaults) for i, p in enumerate([*some, *some])]
+    shown = _chart.shown(Result("", "", (), tuple(many)))
+    assert len(shown) == min(len(many), _chart.MAX_SETTINGS)
+    assert [p for p in many if p in shown] == list(shown)
+
+
+def test_a_curve_is_drawn_with_its_end(tmp_path: Path) -> None:
+    curve = tuple(Point("a", "end" if i == 9 else "", 1.0 + i, float(i), 1) for i in range(10))
+    assert _chart.shown(Result("", "", (), curve)) == curve
+
+
+def test_a_chart_is_the_same_every_time(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    wide = Result("t", "dB", (), tuple(Point("m", f"{i}", 1.0 + i, float(i), 10**i) for i in range(3)))
+    one, two = (_chart.draw(wide, tmp_path / f"{name}.svg").read_text() for name in "ab")
+    assert one == two
+    assert "bytes (logarithmic" in one and "seconds (logarithmic" in one
 
 
 def test_chart_errors_say_the_fix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,1 @@
+"""`bench all`: every benchmark on one revision of the source, repeated, as one page with its charts."""

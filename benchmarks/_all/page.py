@@ -1,0 +1,92 @@
+"""Writes the page of all benchmarks: what was measured where, each chart with its table, and what failed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from .. import _chart, harness
+from ..harness import Result, duration
+
+PAGE = "README.md"
+_ONCE = "accuracies are shares or likenesses, which do not depend on the machine; times do"
+
+
+def write(folder: Path, results: Sequence[Result], failed: Mapping[str, str]) -> tuple[Path, ...]:
+    """Write `README.md`, and for each result its JSON and, where it has points, its chart; earlier ones are replaced,
+    and those of benchmarks without a result removed.
+
+    Args:
+        folder: an existing folder.
+        failed: names of benchmarks that failed, with the reason in a sentence.
+
+    Raises:
+        BackendError: matplotlib is not installed.
+        FileError: a file cannot be written.
+    """
+    from ...gaussians.files import writing
+
+    made: list[Path] = []
+    for result in results:
+        made.append(folder / f"{result.name}.json")
+        with writing(made[-1], force=True) as file:
+            file.write(result.to_json().encode() + b"\n")
+        if result.points:
+            made.append(_chart.draw(result, folder / f"{result.name}.svg"))
+    for name in harness.names():
+        for old in (folder / f"{name}.json", folder / f"{name}.svg"):
+            if old not in made:
+                old.unlink(missing_ok=True)
+    made.append(folder / PAGE)
+    with writing(made[-1], force=True) as file:
+        file.write(text(results, failed).encode())
+    return tuple(made)
+
+
+def text(results: Sequence[Result], failed: Mapping[str, str]) -> str:
+    """The page in Markdown."""
+    lines = ["# Benchmarks", "", *_head(results, failed), "", *_goals(results), ""]
+    for result in results:
+        lines += [f"## {result.name}", "", f"{result.title}.", ""]
+        if result.points:
+            lines += [f"![{result.title}]({result.name}.svg)", ""]
+        body = result.to_markdown().split("\n", 2)[2].strip()
+        lines += ["<details><summary>All figures</summary>", "", body, "", "</details>", ""]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _head(results: Sequence[Result], failed: Mapping[str, str]) -> list[str]:
+    """How and where all of it was measured."""
+    if not results:
+        return ["Nothing could be measured.", "", *_failures(failed)]
+    first = results[0]
+    facts = (first.machine, first.versions)
+    told = "; ".join(", ".join(f"{key} {value}" for key, value in f.items() if key != "load") for f in facts)
+    seconds = sum(r.seconds for r in results)
+    form = "the quick forms, rougher than the full ones" if first.quick else "the full forms"
+    return [
+        f"`scenewright bench all{' --quick' if first.quick else ''}` wrote this page: {len(results)} benchmarks, "
+        f"{form}, on revision {first.revision or 'unknown'}, in {duration(seconds)}. Every chart and figure here is of "
+        f"this one revision; {_ONCE}.",
+        "",
+        f"{told}.",
+        *(["", *_failures(failed)] if failed else []),
+    ]
+
+
+def _failures(failed: Mapping[str, str]) -> list[str]:
+    return [f"- **{name}** failed: {reason}" for name, reason in failed.items()]
+
+
+def _goals(results: Sequence[Result]) -> list[str]:
+    """How many goals each benchmark meets, and those that it misses."""
+    lines = ["| benchmark | runs | time | goals met | missed |", "| --- | ---: | ---: | ---: | --- |"]
+    for result in results:
+        aimed = [m for m in result.metrics if m.goal is not None]
+        missed = [f"{m.key} {m.value:.3g} of {m.goal:.3g} {m.unit}".rstrip() for m in aimed if not m.met]
+        met = f"{len(aimed) - len(missed)} of {len(aimed)}" if aimed else ""
+        lines.append(
+            f"| [{result.name}](#{result.name}) | {result.repeats} | {duration(result.seconds)} | {met} "
+            f"| {', '.join(missed)} |"
+        )
+    return lines

@@ -1,0 +1,89 @@
+"""Runs every benchmark in a process of its own, and again while time is left.
+
+A process of its own keeps what one benchmark compiles, caches or allocates out of the figures of the next, and the
+failure of one from the others.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from ...gaussians.errors import FileError
+from .. import _fits, _machine
+from ..harness import Result
+from .repeats import merged
+
+# Seconds for all together, on two cores.
+QUICK, WHOLE = 180.0, 3600.0
+MOST_REPEATS = 3
+_STARTS = 5.0  # seconds that a process takes besides its measurement
+_CHANGED = "the source changed while it was measured; leave it alone until all is measured"
+# What long benchmarks measure here, so that all fit the time; each alone does more.
+_PARTS = {"fit": {_fits.ONLY: "default-5,classic-5"}}
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What was measured.
+
+    Attributes:
+        results: of the benchmarks that succeeded, repeats merged.
+        failed: the others, with the reason.
+    """
+
+    results: tuple[Result, ...]
+    failed: Mapping[str, str] = field(default_factory=dict)
+
+
+def measured(names: Sequence[str], quick: bool, say: Callable[[str], None], seconds: float | None = None) -> Measured:
+    """Run benchmarks one after the other, and the shortest ones again while time is left.
+
+    Args:
+        say: gets a sentence about each run.
+        seconds: for all of it; each benchmark runs once even if that takes longer.
+    """
+    until = time.perf_counter() + (seconds or (QUICK if quick else WHOLE))
+    found: dict[str, list[Result]] = {}
+    failed: dict[str, str] = {}
+    revision = _machine.revision()
+    for name in names:
+        outcome = _run(name, quick)
+        if isinstance(outcome, Result) and outcome.revision == revision:
+            found[name] = [outcome]
+            say(f"{name}: {outcome.seconds:.0f} s")
+        else:
+            failed[name] = _CHANGED if isinstance(outcome, Result) else outcome
+            say(f"{name} failed: {failed[name]}")
+    for name in _again(found, until):
+        outcome = _run(name, quick)
+        if isinstance(outcome, Result) and outcome.revision == revision:
+            found[name].append(outcome)
+            say(f"{name} again: {outcome.seconds:.0f} s")
+    return Measured(tuple(merged(found[name]) for name in names if name in found), failed)
+
+
+def _again(found: Mapping[str, Sequence[Result]], until: float) -> Iterator[str]:
+    """Names to repeat, the shortest first, each for as long as it is likely to end in time."""
+    for _ in range(MOST_REPEATS - 1):
+        for name in sorted(found, key=lambda n: found[n][0].seconds):
+            if time.perf_counter() + _STARTS + found[name][0].seconds < until:
+                yield name
+
+
+def _run(name: str, quick: bool) -> Result | str:
+    """The result of a benchmark in a process of its own, or why there is none."""
+    command = [sys.executable, "-m", "scenewright", "bench", name, "--json", *(["--quick"] if quick else [])]
+    surroundings = {**({} if quick else _PARTS.get(name, {})), **os.environ}
+    ended = subprocess.run(command, capture_output=True, text=True, check=False, env=surroundings)
+    if ended.returncode:
+        lines = ended.stderr.strip().splitlines()
+        return lines[-1].removeprefix("scenewright: ") if lines else f"it ended with code {ended.returncode}"
+    try:
+        return Result.from_json(ended.stdout)
+    except FileError as error:
+        return f"{error}"

@@ -1,0 +1,124 @@
+"""All benchmarks in one run: repeats are merged to medians, one revision only, failures are told, the page links."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from scenewright.agent.cli import app
+from scenewright.benchmarks import harness
+from scenewright.benchmarks._all import page, running
+from scenewright.benchmarks._all.repeats import merged
+from scenewright.benchmarks.harness import Metric, Point, Result
+from scenewright.gaussians.errors import UserError
+
+
+def result(value: float = 2.0, name: str = "plan", **fields: Any) -> Result:
+    return Result(
+        "how often plans are right",
+        "share",
+        (Metric("right", value, "share", "higher", 0.05, goal=1.0),),
+        (Point("grammar", "plain", value / 10, value, 100, default=True),),
+        name=name,
+        seconds=value,
+        machine={"cpu": "a", "cores": 2},
+        versions={"python": "3"},
+        revision="abc",
+        **fields,
+    )
+
+
+@given(st.lists(st.floats(0.1, 10), min_size=1, max_size=5))
+def test_of_repeats_the_median_and_the_spread_are_kept(values: list[float]) -> None:
+    found = merged([result(v) for v in values])
+    (metric,) = found.metrics
+    assert metric.low == min(values) and metric.high == max(values)
+    assert metric.low <= metric.value <= metric.high
+    assert found.repeats == len(values) and found.seconds == pytest.approx(sum(values))
+    assert merged([result(v) for v in reversed(values)]).metrics == found.metrics
+    assert Result.from_json(found.to_json()) == found
+
+
+def test_results_of_different_revisions_are_not_merged() -> None:
+    with pytest.raises(ValueError, match="repeats of one benchmark"):
+        merged([result(), replace(result(), revision="def")])
+    with pytest.raises(ValueError, match="repeats of one benchmark"):
+        merged([result(), result(name="ask")])
+
+
+def test_spread_stands_in_the_table() -> None:
+    text = merged([result(1.0), result(2.0), result(4.0)]).to_markdown()
+    assert "2 (1 to 4) share" in text and "3 runs: medians" in text
+
+
+@pytest.fixture
+def processes(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Runs of benchmarks that end at once: "ask" fails, "fit" is of another revision, and "edit" prints no result."""
+    ran: list[str] = []
+
+    def run(command: list[str], **_: Any) -> subprocess.CompletedProcess[str]:
+        name = command[4]
+        ran.append(name)
+        if name == "ask":
+            return subprocess.CompletedProcess(command, 2, "", "warning\nscenewright: no captures\n")
+        text = {"edit": "{}", "fit": replace(result(name="fit"), revision="other").to_json()}
+        return subprocess.CompletedProcess(command, 0, text.get(name, result(name=name).to_json()), "")
+
+    monkeypatch.setattr(running.subprocess, "run", run)
+    monkeypatch.setattr(running._machine, "revision", lambda: "abc")
+    return ran
+
+
+def test_every_benchmark_runs_once_and_again_while_there_is_time(processes: list[str]) -> None:
+    once = running.measured(["plan", "ask"], True, lambda _: None, seconds=1e-9)
+    assert processes == ["plan", "ask"] and once.results[0].repeats == 1
+    processes.clear()
+    thrice = running.measured(["plan", "ask"], True, lambda _: None, seconds=1e6)
+    assert processes == ["plan", "ask", "plan", "plan"] and thrice.results[0].repeats == 3
+    assert thrice.failed == {"ask": "no captures"}
+
+
+def test_what_is_of_another_revision_or_unreadable_is_a_failure(processes: list[str]) -> None:
+    found = running.measured(["plan", "fit", "edit"], True, lambda _: None, seconds=1e-9)
+    assert [r.name for r in found.results] == ["plan"]
+    assert "changed" in found.failed["fit"] and "--json" in found.failed["edit"]
+
+
+def test_the_page_has_each_chart_table_and_failure(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    page.write(tmp_path, [result(0.9), result(1.0, "select")], {"ask": "no captures"})
+    text = (tmp_path / "README.md").read_text()
+    assert "**ask** failed: no captures" in text and "revision abc" in text
+    assert "| [plan](#plan) | 1 | 900 ms | 0 of 1 | right 0.9 of 1 share |" in text
+    for name in ("plan", "select"):
+        assert f"({name}.svg)" in text and (tmp_path / f"{name}.svg").exists()
+        assert Result.from_json((tmp_path / f"{name}.json").read_text()).name == name
+
+
+def test_the_command_writes_the_page_and_tells_what_is_worse(
+    tmp_path: Path, processes: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr(harness, "names", lambda: ("plan", "select"))
+    earlier = tmp_path / "earlier"
+    earlier.mkdir()
+    (earlier / "plan.json").write_text(result(3.0).to_json())
+    command = ["bench", "all", "--quick", "-o", str(tmp_path / "new"), "--json"]
+    done = CliRunner().invoke(app, [*command, "--against", str(earlier)])
+    assert done.exit_code == 3 and "worse: plan: right: 3 -> 2 share" in done.stderr
+    told = json.loads(done.stdout)
+    assert told["page"] == str(tmp_path / "new" / "README.md") and len(told["results"]) == 2
+    with pytest.raises(UserError, match="--force"):
+        CliRunner().invoke(app, command, catch_exceptions=False)
+    monkeypatch.setattr(harness, "names", lambda: ("plan", "ask", "select"))
+    (tmp_path / "new" / "ask.json").write_text("stale")
+    assert CliRunner().invoke(app, [*command, "--force"]).exit_code == 1  # "ask" failed
+    assert not (tmp_path / "new" / "ask.json").exists()
