@@ -20,6 +20,7 @@ demo: $(VENV)/.ready
 
 test: $(VENV)/.ready-dev
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
+	$(BIN)/scenewright bench guard
 
 lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .

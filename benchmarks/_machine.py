@@ -14,7 +14,7 @@ PACKAGES = ("scenewright", "torch", "numpy", "numba", "scipy", "trimesh", "onnxr
 
 def describe() -> dict[str, Any]:
     """Processor, usable cores, memory, system, and how busy the machine was (a loaded machine measures badly)."""
-    facts: dict[str, Any] = {"cpu": _cpu(), "cores": _cores(), "memory": _memory(), "system": platform.platform()}
+    facts: dict[str, Any] = {"cpu": _cpu(), "cores": cores(), "memory": _memory(), "system": platform.platform()}
     if hasattr(os, "getloadavg"):
         facts["load"] = round(os.getloadavg()[0], 1)
     return {key: value for key, value in facts.items() if value}
@@ -55,7 +55,7 @@ def _cpu() -> str:
     return platform.processor() or platform.machine()
 
 
-def _cores() -> int:
+def cores() -> int:
     """How many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def command(
     name: Annotated[
-        str | None, typer.Argument(metavar="NAME", help="Benchmark; 'all' for all of them; without it, list them.")
+        str | None, typer.Argument(metavar="NAME", help="Benchmark, 'all' or 'guard'; without it, list them.")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Much faster and less precise.")] = False,
     chart: Annotated[
@@ -39,8 +39,9 @@ def command(
 ) -> None:
     """Run a benchmark and print its figures as a table (Markdown) or, with --json, as data.
 
-    `bench all` runs every benchmark and writes one page with its charts: 3 minutes with --quick, else an hour.
-    Times do not carry over to other machines; ratios and accuracies do.
+    Times do not carry over to other machines; ratios and accuracies do. `bench all` runs every benchmark and writes one
+    page with its charts: 3 minutes with --quick, else an hour. `bench guard` holds quick accuracies against the
+    committed baseline, exit code 3 if one is worse; with --force it takes them as the new baseline.
     """
     from ...gaussians.errors import UserError
 
@@ -60,6 +61,9 @@ def command(
         return
     if name == "all":
         _all(quick, output, against, force)
+        return
+    if name == "guard":
+        _guard(force)
         return
     refuse_existing([chart] if chart else [], force)
     earlier = [_read(against)] if against else []
@@ -92,6 +96,23 @@ def _all(quick: bool, folder: Path, against: Path | None, force: bool) -> None:
         raise typer.Exit(1)
 
 
+def _guard(update: bool) -> None:
+    """Compare quick accuracies with the committed baseline, or replace it."""
+    from ...benchmarks._all import guard
+    from ...gaussians.files import writing
+
+    now = guard.measured(terminal.say)
+    told = {"figures": {m.key: m.value for m in now.metrics}}
+    if update:
+        with writing(guard.BASELINE, force=True) as file:
+            file.write(now.to_json().encode() + b"\n")
+        terminal.result(f"{guard.BASELINE}: {len(now.metrics)} figures", told)
+        return
+    worse = guard.worse(now, _read(guard.BASELINE))
+    terminal.result(f"{len(now.metrics)} accuracies, {len(worse)} worse than the baseline", {**told, "worse": worse})
+    _tell(worse)
+
+
 def _read(path: Path) -> Result:
     """An earlier result.
 
@@ -110,7 +131,11 @@ def _read(path: Path) -> Result:
 def _compare(results: Sequence[Result], earlier: Sequence[Result]) -> None:
     """Tell what is worse than in earlier results; exit code 3 if anything is."""
     before = {result.name: result for result in earlier}
-    worse = [f"{r.name}: {s}" for r in results if r.name in before for s in r.regressions(before[r.name])]
+    _tell([f"{r.name}: {s}" for r in results if r.name in before for s in r.regressions(before[r.name])])
+
+
+def _tell(worse: Sequence[str]) -> None:
+    """Tell what is worse; exit code 3 if anything is."""
     for sentence in worse:
         terminal.say(f"worse: {sentence}")
     if worse:

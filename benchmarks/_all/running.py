@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 from ...gaussians.errors import FileError
@@ -67,6 +68,20 @@ def measured(names: Sequence[str], quick: bool, say: Callable[[str], None], seco
     return Measured(tuple(merged(found[name]) for name in names if name in found), failed)
 
 
+def side_by_side(names: Sequence[str], say: Callable[[str], None], surroundings: Mapping[str, str]) -> Measured:
+    """Run the quick forms once, as many at a time as there are cores: for accuracies, since their times are spoiled.
+
+    Args:
+        say: gets a sentence about each run.
+        surroundings: variables of the environment that the benchmarks get besides.
+    """
+    say(f"measuring {', '.join(names)}")
+    with ThreadPoolExecutor(_machine.cores()) as pool:
+        outcomes = dict(zip(names, pool.map(lambda name: _run(name, True, surroundings), names), strict=True))
+    results = tuple(o for o in outcomes.values() if isinstance(o, Result))
+    return Measured(results, {name: o for name, o in outcomes.items() if isinstance(o, str)})
+
+
 def _again(found: Mapping[str, Sequence[Result]], until: float) -> Iterator[str]:
     """Names to repeat, the shortest first, each for as long as it is likely to end in time."""
     for _ in range(MOST_REPEATS - 1):
@@ -75,10 +90,10 @@ def _again(found: Mapping[str, Sequence[Result]], until: float) -> Iterator[str]
                 yield name
 
 
-def _run(name: str, quick: bool) -> Result | str:
+def _run(name: str, quick: bool, besides: Mapping[str, str] | None = None) -> Result | str:
     """The result of a benchmark in a process of its own, or why there is none."""
     command = [sys.executable, "-m", "scenewright", "bench", name, "--json", *(["--quick"] if quick else [])]
-    surroundings = {**({} if quick else _PARTS.get(name, {})), **os.environ}
+    surroundings = {**({} if quick else _PARTS.get(name, {})), **os.environ, **(besides or {})}
     ended = subprocess.run(command, capture_output=True, text=True, check=False, env=surroundings)
     if ended.returncode:
         lines = ended.stderr.strip().splitlines()

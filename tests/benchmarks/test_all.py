@@ -15,10 +15,10 @@ from typer.testing import CliRunner
 
 from scenewright.agent.cli import app
 from scenewright.benchmarks import harness
-from scenewright.benchmarks._all import page, running
+from scenewright.benchmarks._all import guard, page, running
 from scenewright.benchmarks._all.repeats import merged
 from scenewright.benchmarks.harness import Metric, Point, Result
-from scenewright.gaussians.errors import UserError
+from scenewright.gaussians.errors import FileError, UserError
 
 
 def result(value: float = 2.0, name: str = "plan", **fields: Any) -> Result:
@@ -122,3 +122,29 @@ def test_the_command_writes_the_page_and_tells_what_is_worse(
     (tmp_path / "new" / "ask.json").write_text("stale")
     assert CliRunner().invoke(app, [*command, "--force"]).exit_code == 1  # "ask" failed
     assert not (tmp_path / "new" / "ask.json").exists()
+
+
+def test_the_guard_tells_what_is_worse_and_what_is_gone_and_looks_at_no_times() -> None:
+    before = Result(
+        "", "", (Metric("a.right", 0.9, "share", "higher", 0.05), Metric("a.said", 0.5, "share", "higher")), ()
+    )
+    now = Result("", "", (Metric("a.right", 0.8, "share", "higher", 0.05), Metric("b.new", 1, "share", "higher")), ())
+    told = guard.worse(now, before)
+    assert told == ("a.right: 0.9 -> 0.8 share", "a.said: was 0.5 share, is not measured")
+    assert guard.worse(before, before) == ()
+    assert not guard.is_accuracy(Metric("a.seconds", 1, "s", "lower"))
+    assert not guard.is_accuracy(Metric("a.asked", 1, "count"))
+    assert guard.is_accuracy(Metric("a.psnr", 30, "dB", "higher"))
+
+
+def test_the_guard_measures_without_data_and_fails_with_a_benchmark(processes: list[str]) -> None:
+    now = guard.measured(lambda _: None, ("plan", "select"))
+    assert {m.key for m in now.metrics} == {"plan.right", "select.right"}
+    with pytest.raises(FileError, match="bench ask failed: no captures"):
+        guard.measured(lambda _: None, ("plan", "ask"))
+
+
+def test_the_committed_baseline_holds_what_is_guarded() -> None:
+    baseline = Result.from_json(guard.BASELINE.read_text())
+    assert {m.key.split(".")[0] for m in baseline.metrics} == set(guard.GUARDED)
+    assert all(guard.is_accuracy(m) for m in baseline.metrics)
