@@ -1,7 +1,8 @@
 """Complete an edit: fill the surfaces that it reveals, and take contact shadows along with what cast them.
 
 This comes after the checks of the operation. It only adds Gaussians, and makes those lighter or darker that lie in a
-contact shadow; all others stay the same bit for bit.
+contact shadow; all others stay the same bit for bit. Where there are photographs that see what was added, it is
+optimised against them.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import torch
 from torch import Tensor
 
 from ..gaussians.language.query.selection import mask_of
+from ..gaussians.rows import mask_of_ids
 from ..gaussians.scene import Scene
 from ..gaussians.timing import timed
 from .cloud_diff import joined
@@ -22,22 +24,46 @@ from .receipt import Filled
 
 
 def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
-    """The result of an operation with what it revealed filled, unless the operation or the context says not to.
+    """The result of an operation with what it revealed filled, unless the operation or the context says not to, and
+    what was filled optimised against the photographs of the context.
 
     Args:
         before: the scene before the operation.
         done: its result.
+
+    Raises:
+        FileError: a photograph cannot be read.
     """
-    query = op.query()
+    done, new = _filled(before, op, context, done)
+    if context.photographs is None or not len(new):
+        return done
+    from .lifting.photographs import with_photographs
+    from .lifting.told import note
+
+    seconds: dict[str, float] = {}
+    with timed(seconds, "lift"):
+        scene, lifted = with_photographs(done.scene, context.photographs, new, context.seed)
+    told = (*done.receipt.notes, note(lifted))
+    spent = {**done.receipt.seconds, **seconds}
+    return done._replace(
+        scene=scene, receipt=done.receipt.model_copy(update={"notes": told, "lifted": lifted, "seconds": spent})
+    )
+
+
+def _filled(before: Scene, op: EditOp, context: Context, done: Done) -> tuple[Done, Tensor]:
+    """The result with what it revealed filled, and the ids of the new Gaussians; `infill` itself made its own."""
+    query, nothing = op.query(), before.cloud.ids[:0]
+    if op.op == "infill":
+        return done, done.scene.cloud.ids[~mask_of_ids(done.scene.cloud.ids, before.cloud.ids)]
     if not (op.reveals and context.infill and getattr(op, "infill", True)) or done.scene is before:
-        return done
+        return done, nothing
     if query is None or query.spatial:
-        return done
+        return done, nothing
     seconds: dict[str, float] = {}
     with timed(seconds, "fill"):
         scene, told, ids = filled(before, done.scene, _moved(before, done.scene) if op.op == "move" else ())
     if not told:
-        return done
+        return done, nothing
     from .filling.told import notes
 
     receipt = done.receipt.model_copy(
@@ -50,7 +76,7 @@ def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
             "seconds": {**done.receipt.seconds, **seconds},
         }
     )
-    return done._replace(scene=scene, receipt=receipt)
+    return done._replace(scene=scene, receipt=receipt), ids
 
 
 def filled(before: Scene, after: Scene, moved: Sequence[Tensor] = ()) -> tuple[Scene, tuple[Filled, ...], Tensor]:

@@ -27,6 +27,7 @@ from .receipt import Check, Pixels, Receipt, SelectionSummary
 
 if TYPE_CHECKING:
     from ..gaussians.assets.modeling.make import Asset
+    from .lifting.behind import Photographs
 
 __all__ = [
     "Affine", "Check", "ColorName", "Context", "Direction", "EditOp", "Encoder", "Length", "Outcome", "Pixels",
@@ -170,6 +171,7 @@ class Context:
         renderer: back end of pixel checks, as `gaussians.render.render` takes it.
         assets: the user's own assets, which are taken before those of the library; None: there are none.
         infill: whether surfaces that an edit reveals are filled afterwards (see `completing`).
+        photographs: of the scene, against which what was filled is optimised where they see it; None: there are none.
     """
 
     viewer: Camera
@@ -182,6 +184,7 @@ class Context:
     renderer: str = "auto"
     assets: AssetSource | None = None
     infill: bool = True
+    photographs: Photographs | None = None
 
     def resolve(self, scene: Scene, query: Query) -> Selection:
         """What `query` means in `scene`; whatever its verdict is (see `Selection.require`).

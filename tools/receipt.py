@@ -143,6 +143,33 @@ class Filled(BaseModel):
     reason: str = ""
 
 
+class Lifted(BaseModel):
+    """How the Gaussians of a fill were optimised against pictures.
+
+    Attributes:
+        source: of the pictures: "photographs", or the model that inpainted them.
+        looked: pictures that show the place.
+        views: those that were used: photographs that see behind what is gone, views that were inpainted.
+        held_out: of these, how many measured the result and were not optimised against; 0: all did both.
+        pixels: of all these pictures, that count.
+        psnr_before, psnr_after: dB in these pixels, with the plain fill and now; None if nothing was measured.
+        seconds: wall time.
+        reason: why the fill stays as it was; "" if it was optimised.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    source: str
+    looked: int = 0
+    views: int = 0
+    held_out: int = 0
+    pixels: int = 0
+    psnr_before: float | None = None
+    psnr_after: float | None = None
+    seconds: float = 0.0
+    reason: str = ""
+
+
 class Receipt(BaseModel):
     """What one operation did; `Receipt.model_validate_json(receipt.to_json()) == receipt`.
 
@@ -161,6 +188,7 @@ class Receipt(BaseModel):
         dry_run: True if nothing was kept.
         judged: what the judge measured, if there was one.
         filled: what was done to the surfaces that the edit revealed.
+        lifted: how the fill was optimised against pictures, if there were any.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -181,6 +209,7 @@ class Receipt(BaseModel):
     dry_run: bool = False
     judged: Judgement | None = None
     filled: tuple[Filled, ...] = ()
+    lifted: Lifted | None = None
 
     @property
     def passed(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..options import (
     Assets,
     Budget,
+    Capture,
     Debug,
     Encoder,
     Infill,
@@ -34,6 +35,7 @@ def command(
     picture: Picture = False,
     judge: Judge = None,
     infill: Infill = True,
+    capture: Capture = None,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -50,7 +52,7 @@ def command(
     session, _ = open_session(
         SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, judge=judge, vlm=vlm, assets=assets, infill=infill,
+            picture=picture, judge=judge, vlm=vlm, assets=assets, infill=infill, capture=capture,
         )
     )  # fmt: skip
     try:

@@ -15,6 +15,7 @@ from ...gaussians.timing import timed
 from ..options import (
     Assets,
     Budget,
+    Capture,
     Debug,
     Encoder,
     Force,
@@ -93,6 +94,7 @@ def command(
     picture: Picture = False,
     judge: Judge = None,
     infill: Infill = True,
+    capture: Capture = None,
     encoder: Encoder = "auto",
     seed: Seed = 0,
     yes: Yes = False,
@@ -129,6 +131,7 @@ def command(
         yes,
         assets,
         infill,
+        capture,
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)

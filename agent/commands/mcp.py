@@ -8,6 +8,7 @@ import typer
 
 from ..options import (
     Budget,
+    Capture,
     Debug,
     Encoder,
     Infill,
@@ -40,6 +41,7 @@ def command(
     picture: Picture = False,
     judge: Judge = None,
     infill: Infill = True,
+    capture: Capture = None,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -71,7 +73,7 @@ def command(
     session, embedded = open_session(
         SessionOptions(
             scene, planner, encoder, view, size, log, seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, judge=judge, vlm=vlm, infill=infill,
+            picture=picture, judge=judge, vlm=vlm, infill=infill, capture=capture,
         ),
         progress,
     )  # fmt: skip

@@ -33,6 +33,7 @@ class SessionOptions:
         accept_unconfirmed: edit without asking what was chosen although its name is not confirmed.
         assets: folder of the user's own assets, or None.
         infill: fill the surfaces that an edit reveals.
+        capture: photographs that the scene was fitted from, or None.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
 
@@ -53,6 +54,7 @@ class SessionOptions:
     accept_unconfirmed: bool = False
     assets: Path | None = None
     infill: bool = True
+    capture: Path | None = None
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -62,7 +64,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         progress: called during long work; by default it is drawn on the terminal.
 
     Raises:
-        FileError: the scene cannot be read.
+        FileError: the scene or the capture cannot be read.
         UserError: the view, size, planner or budget is not valid.
         BackendError: a package, key or file that the planner needs is missing.
     """
@@ -90,6 +92,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         accept_unconfirmed=options.accept_unconfirmed,
         assets=options.assets,
         infill=options.infill,
+        capture=options.capture,
     )
     for note in session.log_notes:
         terminal.say(f"note: {note}")

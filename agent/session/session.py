@@ -41,6 +41,7 @@ from .observation import graph_of, picture_of
 from .offers import PARTS_PAGE, offers_of
 from .offers import chosen as offered_choice
 from .own_assets import own_assets
+from .photographed import photographed
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, is_dismissal, undo_or_redo
 from .refusal import refusal, with_message
@@ -50,6 +51,7 @@ from .sight import needs_sight, point_out
 from .vision_client import VisionClient
 
 if TYPE_CHECKING:
+    from ...gaussians.files.captures.capture import Capture
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.language.query.explain import Explanation
     from ...planners.budget import Budget, Ledger
@@ -89,6 +91,8 @@ class Session:
         accept_unconfirmed: edit what was chosen although its name is not confirmed, without asking; for scripts.
         assets: a folder with assets of your own (.glb, .ply), which are inserted by their names.
         infill: fill the surfaces that deleted, moved and replaced things hid.
+        capture: photographs that the scene was fitted from, a `Capture` or a path that `read_capture` takes: what is
+            filled is optimised against those that see behind what is gone.
         vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
             takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
@@ -102,7 +106,7 @@ class Session:
     Raises:
         UserError: no such planner or judge, or the budget cannot be parsed.
         BackendError: a package, key or file that the planner needs is missing.
-        FileError: the log cannot be opened.
+        FileError: the log cannot be opened, or the capture cannot be read or has no photographs.
         UserError: there is no such folder of assets, or it holds none.
     """
 
@@ -124,6 +128,7 @@ class Session:
         accept_unconfirmed: bool = False,
         assets: str | Path | None = None,
         infill: bool = True,
+        capture: str | Path | Capture | None = None,
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
         # The planner comes first, so that an unknown name creates no log file.
@@ -132,6 +137,7 @@ class Session:
         self._encoder = encoder
         self._assets = own_assets(assets)
         self._infill = infill
+        scene, self._photographs = photographed(scene, capture)
         self._asker = Asker()
         self._viewer = viewer
         self._seed = seed
@@ -243,7 +249,7 @@ class Session:
         encoder = self.encoder if self.scene.language is not None else None
         return Context(
             viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks,
-            assets=self._assets, infill=self._infill,
+            assets=self._assets, infill=self._infill, photographs=self._photographs,
         )  # fmt: skip
 
     # -- planner ----------------------------------------------------------------------------------------------------

@@ -1,0 +1,36 @@
+"""The photographs that a session's scene was fitted from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...gaussians.errors import FileError
+from ...gaussians.scene import Scene
+
+if TYPE_CHECKING:
+    from ...gaussians.files.captures.capture import Capture
+    from ...tools.lifting.behind import Photographs
+
+
+def photographed(scene: Scene, capture: str | Path | Capture | None) -> tuple[Scene, Photographs | None]:
+    """A scene, with the cameras of its photographs if it has none, and the photographs; None without a capture.
+
+    Raises:
+        FileError: the capture cannot be read, or none of its photographs is there.
+    """
+    if capture is None:
+        return scene, None
+    from ...gaussians.files.captures.capture import read_capture
+    from ...gaussians.viewpoints.pictures import present
+    from ...tools.lifting.behind import Photographs
+
+    taken = read_capture(Path(capture)) if isinstance(capture, str | Path) else capture
+    if not present(taken):
+        raise FileError(
+            f"none of the {len(taken.photos)} photographs of {taken.path} is there, such as {taken.photos[0]}; restore "
+            "them, or leave --capture out"
+        )
+    if not scene.cameras:
+        scene = scene.replace(cameras=taken.cameras)
+    return scene, Photographs(taken, scene.cloud)
