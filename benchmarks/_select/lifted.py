@@ -85,11 +85,9 @@ def made(case: Case, eyes: Sequence[Camera], draw: Draw, how: Callable[..., Scen
     return replace(case, scene=scene, seconds=time.perf_counter() - start)
 
 
-def points(rooms: Sequence[Case], encoder: Encoder, quick: bool) -> Part:
+def points(rooms: Sequence[Case], encoder: Encoder) -> Part:
     """Views and resolutions for both kinds of masks lifted alone; the default number of both guiding."""
     settings = [(n, SIZE) for n in MANY_VIEWS] + [(VIEWS, side) for side in SIZES if side != SIZE]
-    if quick:
-        settings = [(8, SIZE), (VIEWS, 128)]
     eyes = [pictures.eyes(room.scene, max(n for n, _ in settings), SIZE) for room in rooms]
 
     def point(method: str, draw: Draw, how: Callable[..., Scene], count: int, side: int, setting: str) -> Point:
@@ -107,8 +105,7 @@ def points(rooms: Sequence[Case], encoder: Encoder, quick: bool) -> Part:
             varied = f"{count} views" if side == SIZE else f"{side} px"
             method = f"{name}, lifted" if side == SIZE else f"{name}, lifted, {VIEWS} views"
             found.append(point(method, draw, alone, count, side, varied))
-        if not quick:
-            found.append(point("masks guide the default", draw, guiding, VIEWS, SIZE, name))
+        found.append(point("masks guide the default", draw, guiding, VIEWS, SIZE, name))
     note = (
         "lifted: groups from masks of rendered views alone; renders of each group (portraits) give its name. True "
         f"masks are those of the objects, with noise of {pictures.SHAKE:.1%} of the picture on their outlines. "
