@@ -36,7 +36,7 @@ from .harness import Metric
 
 SEEDS = tuple(range(7401, 7409))
 QUICK_SEEDS = SEEDS[:1]
-EDITS = 25  # a room, half of them sabotaged
+EDITS, QUICK_EDITS = 25, 6  # a room, half of them sabotaged
 CLEAN = 0.9  # intersection over union with the true object from which a selection is right
 COLORS = ("teal", "red", "blue", "green", "purple", "orange", "yellow", "pink", "brown", "white", "black")
 ASSETS = ("armchair", "potted plant", "floor lamp", "vase", "stool", "chair", "suitcase", "basket", "guitar", "table")
@@ -75,7 +75,9 @@ class Judged:
 def measure(quick: bool) -> list[Metric]:
     """The share of sabotaged edits that are caught, by kind, and of clean ones that are refused."""
     rooms = (room_of(seed) for seed in (QUICK_SEEDS if quick else SEEDS))
-    return figures([one for seed, (scene, truth) in rooms for one in judged(scene, truth, seed)])
+    if quick:
+        return figures([one for seed, room in rooms for one in judged(*room, seed, QUICK_EDITS, hidden=False)])
+    return figures([one for seed, room in rooms for one in judged(*room, seed)])
 
 
 def room_of(seed: int) -> tuple[int, tuple[Scene, Truth]]:
@@ -113,12 +115,12 @@ def _share(found: Sequence[Judged]) -> float:
     return float(np.mean([j.right for j in found])) if found else 0.0
 
 
-def judged(scene: Scene, truth: Truth, seed: int, hidden: bool = True) -> list[Judged]:
-    """`EDITS` judged edits of one room, half of them sabotaged, and as many hidden sabotages as apply."""
+def judged(scene: Scene, truth: Truth, seed: int, edits: int = EDITS, hidden: bool = True) -> list[Judged]:
+    """Judged edits of one room, half of them sabotaged, and a fifth as many of each hidden sabotage as apply."""
     rng = np.random.default_rng([zlib.crc32(b"judge"), seed])
     tries = attempts(scene, truth, rng)
     kinds, found = list(SABOTAGES), list[Judged]()
-    for k in range(EDITS):
+    for k in range(edits):
         if k % 2 == 0:
             attempt, seconds = next(tries)
             found.append(_judge(attempt, attempt.scene, attempt.after, "clean", seconds))
@@ -126,7 +128,7 @@ def judged(scene: Scene, truth: Truth, seed: int, hidden: bool = True) -> list[J
             kind = kinds[k // 2 % len(kinds)]
             found += _sabotaged(tries, kind, SABOTAGES[kind])
     for kind, damage in HIDDEN.items() if hidden else ():
-        for _ in range(EDITS // 5):
+        for _ in range(edits // 5):
             found += _sabotaged(tries, kind, damage)
     return found
 

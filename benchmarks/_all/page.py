@@ -63,7 +63,9 @@ def _head(results: Sequence[Result], failed: Mapping[str, str]) -> list[str]:
     facts = (first.machine, first.versions)
     told = "; ".join(", ".join(f"{key} {value}" for key, value in f.items() if key != "load") for f in facts)
     seconds = sum(r.seconds for r in results)
+    left = sorted(set(harness.names()) - {r.name for r in results} - set(failed))
     form = "the quick forms, rougher than the full ones" if first.quick else "the full forms"
+    form += f" (left out: {', '.join(left)})" if left else ""
     return [
         f"`scenewright bench all{' --quick' if first.quick else ''}` wrote this page: {len(results)} benchmarks, "
         f"{form}, on revision {first.revision or 'unknown'}, in {duration(seconds)}. Every chart and figure here is of "

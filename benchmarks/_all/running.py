@@ -21,6 +21,8 @@ from .repeats import merged
 
 # Seconds for all together, on two cores.
 QUICK, WHOLE = 180.0, 3600.0
+# What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
+LONG = frozenset({"edits", "fit_sizes", "layout", "mcp", "stability", "structure"})
 MOST_REPEATS = 3
 _STARTS = 5.0  # seconds that a process takes besides its measurement
 _CHANGED = "the source changed while it was measured; leave it alone until all is measured"
@@ -42,7 +44,7 @@ class Measured:
 
 
 def measured(names: Sequence[str], quick: bool, say: Callable[[str], None], seconds: float | None = None) -> Measured:
-    """Run benchmarks one after the other, and the shortest ones again while time is left.
+    """Run benchmarks one after the other, and the shortest ones again while time is left; quick runs leave out `LONG`.
 
     Args:
         say: gets a sentence about each run.
@@ -52,6 +54,7 @@ def measured(names: Sequence[str], quick: bool, say: Callable[[str], None], seco
     found: dict[str, list[Result]] = {}
     failed: dict[str, str] = {}
     revision = _machine.revision()
+    names = [name for name in names if not (quick and name in LONG)]
     for name in names:
         outcome = _run(name, quick)
         if isinstance(outcome, Result) and outcome.revision == revision:
