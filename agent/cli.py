@@ -20,7 +20,7 @@ from .terminal.output import error_json, terminal
 
 VERBS = (
     "demo", "info", "embed", "name-all", "select", "ask", "describe", "plan", "schema", "check", "compose", "edit",
-    "chat", "render", "find-view", "convert", "mcp", "fit", "bench", "doctor",
+    "chat", "render", "find-view", "convert", "slim", "mcp", "fit", "bench", "doctor",
 )  # fmt: skip
 
 app = typer.Typer(

@@ -1,0 +1,163 @@
+"""`scenewright slim SCENE -o OUT --psnr 40`: make a scene file smaller without losing more than promised."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from ..options import Capture, Debug, Force, Json, SceneFile
+from ..terminal.output import terminal
+
+if TYPE_CHECKING:
+    from ...gaussians.scene import Scene
+    from ...gaussians.slim import Slimmed
+
+FORMATS = (".compressed.ply", ".ply", ".spz", ".sog", ".splat")  # longest first where one ends with another
+
+
+def command(
+    scene: SceneFile,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="OUT", help="File to write.")],
+    psnr: Annotated[
+        float,
+        typer.Option("--psnr", metavar="DB", help="PSNR that held-out views keep; 'inf' keeps every bit (.ply)."),
+    ] = 40.0,
+    format: Annotated[
+        Literal["ply", "compressed.ply", "spz", "sog", "splat"] | None,
+        typer.Option("--format", help="File format, if the name of OUT does not say it; sog is the smallest."),
+    ] = None,
+    capture: Capture = None,
+    size: Annotated[
+        int, typer.Option("--pixels", min=64, max=2048, metavar="N", help="Longer side of the compared pictures.")
+    ] = 512,
+    ids: Annotated[
+        Path | None,
+        typer.Option("--ids", metavar="FILE", help="Write for each row of OUT its row number in SCENE (.npy)."),
+    ] = None,
+    force: Force = False,
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Make a scene file smaller without losing more than promised.
+
+    Gaussians that show least are left out, then higher harmonics; values are rounded where the format packs them. The
+    strength is chosen by some views and the promise is measured from others: with --capture from the cameras of
+    photographs, without it from computed views around and inside the scene, and from an orbit. A language field is
+    kept: groups, names and vectors stay, and the field is written beside OUT.
+    """
+    from ...gaussians.files.captures.capture import read_capture
+    from ...gaussians.language.field.loading import load
+    from ...gaussians.language.field.store import field_path
+    from ...gaussians.slim import Settings, slim
+    from ..output_files import refuse_existing, require_folder
+
+    target = named(output, format)
+    settings = Settings(psnr, size)
+    require_folder(target)
+    refuse_existing([target, field_path(target), *([ids] if ids else [])], force)
+    started = time.perf_counter()
+    loaded = load(scene)
+    cameras = () if capture is None else read_capture(capture).cameras
+    done = slim(loaded, _suffix(target), settings, cameras, terminal.progress)
+    paths = _write(done, loaded, target, ids, force)
+    data = _data(done, loaded, scene, target, psnr) | paths | {"seconds": round(time.perf_counter() - started, 2)}
+    terminal.result(_text(data), data)
+
+
+def named(output: Path, format: str | None) -> Path:
+    """The path of the file with its suffix.
+
+    Raises:
+        UserError: the name says another format than `format`, or neither says one.
+    """
+    from ...gaussians.errors import UserError
+
+    known = next((suffix for suffix in FORMATS if output.name.lower().endswith(suffix)), None)
+    if known is not None:
+        if format is not None and known != f".{format}":
+            raise UserError(f"{output.name} is a {known} file and --format says {format}; change one of them")
+        return output
+    if format is None:
+        raise UserError(f"{output.name} does not say its format; name it {output.name}.sog or add --format sog")
+    return output.with_name(f"{output.name}.{format}")
+
+
+def _suffix(path: Path) -> str:
+    return next(suffix for suffix in FORMATS if path.name.lower().endswith(suffix))
+
+
+def _write(done: Slimmed, loaded: Scene, target: Path, ids: Path | None, force: bool) -> dict[str, Any]:
+    """Write the scene, its language field, and the row numbers; returns the paths of the latter two."""
+    import io
+
+    import numpy as np
+
+    from ...gaussians.files import writing
+    from ...gaussians.language.field.store import save_field
+
+    with writing(target, force) as file:
+        file.write(done.data)
+    field = None if loaded.language is None else save_field(done.scene, target)
+    if ids is not None:
+        rows = io.BytesIO()
+        np.save(rows, done.scene.cloud.ids.cpu().numpy(), allow_pickle=False)
+        with writing(ids, force) as file:
+            file.write(rows.getvalue())
+    return {"field": str(field) if field else None, "ids": str(ids) if ids else None}
+
+
+def _data(done: Slimmed, loaded: Scene, scene: Path, target: Path, psnr: float) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    from ...gaussians.slim.report import inria_bytes, things_left
+
+    plain = inria_bytes(loaded.cloud)
+    return {
+        "path": str(target),
+        "from": str(scene),
+        "promised_psnr": psnr if psnr < float("inf") else None,
+        "gaussians": len(done.scene.cloud),
+        "gaussians_before": len(loaded.cloud),
+        "bytes": len(done.data),
+        "bytes_as_ply": plain,
+        "times_smaller": round(plain / len(done.data), 2),
+        "strength": asdict(done.strength) if done.strength else None,
+        "held_out": asdict(done.held_out) if done.held_out else None,
+        "choice": asdict(done.choice) if done.choice else None,
+        "format_alone": asdict(done.alone) if done.alone else None,
+        "raised": done.raised,
+        "cameras": done.cameras,
+        "things": things_left(done.scene),
+        "same_thing": done.same_thing,
+    }
+
+
+def _text(data: dict[str, Any]) -> str:
+    count, before = data["gaussians"], data["gaussians_before"]
+    lines = [
+        f"{data['path']}: {count:,} of {before:,} Gaussians",
+        f"size: {data['bytes']:,} bytes, {data['times_smaller']:g} times smaller than as .ply "
+        f"({data['bytes_as_ply']:,}), {data['bytes'] / count:.1f} a Gaussian",
+    ]
+    if (strength := data["strength"]) is not None:
+        kept = [f"harmonics of degree {strength['degree']}"]
+        kept += [f"{strength['dull']:.0%} of the Gaussians without their higher bands"] if strength["dull"] else []
+        kept += [f"{strength['sets']:,} sets of higher coefficients"] if strength["sets"] else []
+        kept += ["values rounded"] if strength["rounding"] else []
+        lines.append("kept: " + ", ".join(kept))
+    if (loss := data["held_out"]) is None:
+        lines.append("pictures: every bit is kept")
+    else:
+        raised = f"; a weaker setting was taken {data['raised']} times for them" if data["raised"] else ""
+        lines += [
+            f"pictures: {loss['psnr']:.2f} dB over {loss['views']} held-out views ({loss['mean']:.1f} on average, "
+            f"{loss['worst']:.1f} at worst), {data['promised_psnr']:g} promised{raised}",
+            f"views: {data['cameras']}; the format alone keeps {data['format_alone']['psnr']:.1f} dB",
+        ]
+    if (things := data["things"]) is not None:
+        same = "" if data["same_thing"] is None else f"; {data['same_thing']:.2%} of the pixels show the same thing"
+        lines.append(f"language field: {things[0]} of {things[1]} things kept{same}, written to {data['field']}")
+    return "\n".join([*lines, f"time: {data['seconds']} s"])
