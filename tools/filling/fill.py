@@ -54,12 +54,12 @@ _BESIDE = 0.05  # of the thing's extent: how far from where it touches a surface
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """One surface that was continued, or could not be.
+    """One surface that was continued, or could not be; or what a view shows behind the thing, completed.
 
     Attributes:
-        plane: the surface.
-        chart: its cells.
-        hole: `[H, W]`, the cells that were hidden and empty.
+        plane: the surface; None for what is of no plane.
+        chart: its cells; None likewise.
+        hole: `[H, W]`, the cells, or pixels of a view, that were hidden and empty.
         cloud: the new Gaussians; their group is that of the surface they continue. Empty if none were made.
         support: share of the hole's border that is known.
         shaded, factor: `[M]`, rows of the surface that lie in the thing's contact shadow, and by what their colours are
@@ -68,10 +68,12 @@ class Patch:
         spread: standard deviation of the surface's texture, display space.
         darkness: of that shadow close to the thing, in [0, 1); 0 without one.
         reason: why nothing was made, "" if something was.
+        extent: `[2, 3]` corners of the box around what a view shows.
+        seen_area: of it, square scene units.
     """
 
-    plane: Plane
-    chart: Chart
+    plane: Plane | None
+    chart: Chart | None
     hole: Mask
     cloud: GaussianCloud
     support: float
@@ -81,11 +83,21 @@ class Patch:
     shaded: Tensor = field(default_factory=lambda: torch.zeros(0, dtype=torch.int64))
     factor: Tensor = field(default_factory=lambda: torch.zeros(0))
     darkness: float = 0.0
+    extent: F64 = field(default_factory=lambda: np.zeros(0))
+    seen_area: float = 0.0
 
     @property
     def area(self) -> float:
         """Of the hole, square scene units."""
-        return float(self.hole.sum()) * self.chart.cell**2
+        return self.seen_area if self.chart is None else float(self.hole.sum()) * self.chart.cell**2
+
+    @property
+    def corners(self) -> F64:
+        """`[2, 3]` the lowest and the highest corner of the box around the hole, world; empty if there is no hole."""
+        if self.chart is None or not self.hole.any():
+            return self.extent
+        points = self.chart.points()[self.hole]
+        return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
 def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = None) -> list[Patch]:
@@ -121,7 +133,38 @@ def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = No
         patch = _patch(scene, (rows, earlier), thing, plane, clips, (low, high, size))
         if patch is not None and (plane.last or len(patch.cloud) or len(patch.shaded)):
             patches.append(patch)  # that a surface among others ends before the thing is nothing to tell
-    return patches
+    return patches + _behind(scene, thing, apart, (low, high), patches)
+
+
+def _behind(
+    scene: Scene, thing: GaussianCloud, apart: Tensor | None, corners: tuple[F64, F64], patches: Sequence[Patch]
+) -> list[Patch]:
+    """What lies behind a thing and is of no plane that was continued."""
+    from .lifted import holes_filled
+    from .views import place_of, without_gloss
+
+    cloud = unshaded(scene, patches)
+    cloud = cloud if apart is None else cloud[~apart]
+    new = merged(scene, patches)
+    cloud = concat([cloud, new]) if len(new) else cloud
+    looking = [c for c in scene.cameras if c.contains(*c.project(((corners[0] + corners[1]) / 2)[None]))[0]]
+    bands, cloud = cloud.degree, without_gloss(cloud, looking)
+    place = place_of(cloud, thing, corners, scene.cameras, scene.frame.up_vector)
+    return [
+        Patch(
+            None,
+            None,
+            h.pixels,
+            h.cloud.with_degree(bands),
+            h.support,
+            h.spread,
+            h.spread,
+            h.reason,
+            extent=h.corners,
+            seen_area=h.area,
+        )
+        for h in holes_filled(cloud, place)
+    ]
 
 
 def _extent(thing: GaussianCloud) -> tuple[float, F64, F64]:

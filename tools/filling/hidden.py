@@ -100,13 +100,13 @@ def _ways(points: F64, normal: F64, cameras: Sequence[Camera], up: F64) -> list[
         found.append((way / np.maximum(length, 1e-12)[:, None], ahead))
     if len(found) >= _FEW:
         return found
-    for way in _around(up):
+    for way in ring_of_directions(up):
         if way @ normal > 0.15:
             found.append((np.broadcast_to(way, points.shape), np.ones(len(points), bool)))
     return found
 
 
-def _around(up: F64) -> F64:
+def ring_of_directions(up: F64) -> F64:
     """`[V, 3]` unit directions in rings above the horizon."""
     side = np.cross(up, np.eye(3)[int(np.abs(up).argmin())])
     side /= np.linalg.norm(side)

@@ -17,8 +17,8 @@ from .charts import Chart
 from .planes import F64
 
 COVER = 0.6  # standard deviation over the side of a cell: no gaps, and edges stay crisp
-_FLAT = 0.08  # thickness over the standard deviation along the surface
-_OPACITY = 0.97
+FLAT = 0.08  # thickness over the standard deviation along the surface
+OPACITY = 0.97
 _SAME = 1e-3  # relative error of the proportions by which a fill is recognised
 _NEIGHBOURS = 8  # Gaussians of the surface whose view-dependent colour a new one takes
 
@@ -49,7 +49,7 @@ def gaussians_of(chart: Chart, look: Look, cloud: GaussianCloud, rows: Tensor) -
     count = len(look.points)
     turn = from_matrix(torch.from_numpy(chart.plane.axes.T.astype(np.float32))[None])[0]
     side = COVER * chart.cell
-    scales = torch.tensor([side, side, _FLAT * side], dtype=torch.float32).expand(count, 3).clone()
+    scales = torch.tensor([side, side, FLAT * side], dtype=torch.float32).expand(count, 3).clone()
     rgb = torch.from_numpy(np.clip(look.rgb, 0.0, 1.0).astype(np.float32))
     sh = torch.zeros(count, cloud.sh.shape[1], 3)
     if cloud.degree and len(rows):
@@ -57,7 +57,7 @@ def gaussians_of(chart: Chart, look: Look, cloud: GaussianCloud, rows: Tensor) -
         rgb = rgb - evaluate(sh, look.ahead)
     sh[:, 0] = color_to_dc(rgb)
     made = GaussianCloud.create(
-        look.points, turn.expand(count, 4).clone(), scales, torch.full((count,), _OPACITY), sh,
+        look.points, turn.expand(count, 4).clone(), scales, torch.full((count,), OPACITY), sh,
         torch.from_numpy(look.group.astype(np.int32)),
     )  # fmt: skip
     return made.to(cloud.device)
@@ -66,13 +66,8 @@ def gaussians_of(chart: Chart, look: Look, cloud: GaussianCloud, rows: Tensor) -
 def is_fill(cloud: GaussianCloud, rows: Tensor) -> Tensor:
     """`[M]` bool: the rows that a fill made, told by their opacity and proportions, which a file keeps."""
     scales = cloud.scales[rows]
-    side = scales[:, 0]
-    round_ = (scales[:, 1] / side - 1).abs() < _SAME
-    return (
-        round_
-        & ((scales[:, 2] / (_FLAT * side) - 1).abs() < _SAME)
-        & ((cloud.opacities[rows] / _OPACITY - 1).abs() < _SAME)
-    )
+    flat = (scales[:, 2] / (FLAT * scales[:, 0]) - 1).abs() < _SAME
+    return flat & ((cloud.opacities[rows] / OPACITY - 1).abs() < _SAME)
 
 
 def _bands(points: Tensor, cloud: GaussianCloud, rows: Tensor) -> Tensor:

@@ -43,9 +43,8 @@ def _sure(patch: Patch) -> float:
 
 def surface_name(scene: Scene, patch: Patch) -> str:
     """ "the floor", "the wall", "the table": by its group, else by how it lies."""
-    normal, up = patch.plane.normal, scene.frame.up_vector
     groups = patch.cloud.group.tolist()
-    if scene.language is not None and groups:
+    if patch.plane is not None and scene.language is not None and groups:
         names, count = np.unique(groups, return_counts=True)
         group = int(names[count.argmax()])
         if group >= 0:
@@ -53,7 +52,9 @@ def surface_name(scene: Scene, patch: Patch) -> str:
             known = scene.language.groups[known.parent] if known.parent >= 0 else known
             if known.label and known.label_score >= _NAMED:
                 return f"the {known.label}"
-    level = float(normal @ up)
+    if patch.plane is None:
+        return "what lies behind it"
+    level = float(patch.plane.normal @ scene.frame.up_vector)
     if level > 0.9:
         return "the floor" if patch.plane.last else "the surface under it"
     if level < -0.9:

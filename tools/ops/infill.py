@@ -52,7 +52,10 @@ class Infill(TargetedOp):
         own = mask_of(scene.cloud, selection.ids)
         found = patches_behind(scene.replace(cloud=scene.cloud[~own]), scene.cloud[rows])
         up = np.array(scene.frame.up)
-        return [p for p in found if (p.plane.normal @ up > _LEVEL) == (self.where == "under") and p.hole.any()]
+        found = [p for p in found if p.hole.any()]
+        if self.where == "behind":
+            return [p for p in found if p.plane is None or p.plane.normal @ up <= _LEVEL]
+        return [p for p in found if p.plane is not None and p.plane.normal @ up > _LEVEL]
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         return (count_matches(before, outcome.scene, outcome),)
