@@ -105,6 +105,17 @@ Assets = Annotated[
 Infill = Annotated[
     bool, typer.Option("--infill/--no-infill", help="Fill the surfaces that deleted, moved and replaced things hid.")
 ]
+References = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--reference", metavar="PHOTO",
+        help="A photograph of a material, which instructions may name: 'the sofa like in the photo'. Repeatable.",
+    ),
+]  # fmt: skip
+ReferenceWidth = Annotated[
+    float | None,
+    typer.Option("--reference-width", metavar="M", help="How many metres the photographs show from left to right."),
+]
 Picture = Annotated[
     bool, typer.Option("--picture", help="Send the viewer's picture to a language model that takes pictures.")
 ]

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol, Self
 
@@ -28,6 +28,7 @@ from .receipt import Check, Pixels, Receipt, SelectionSummary
 if TYPE_CHECKING:
     from ..gaussians.assets.modeling.make import Asset
     from .lifting.behind import Photographs
+    from .finishing.photograph import Photograph
 
 __all__ = [
     "Affine", "Check", "ColorName", "Context", "Direction", "EditOp", "Encoder", "Length", "Outcome", "Pixels",
@@ -172,6 +173,7 @@ class Context:
         assets: the user's own assets, which are taken before those of the library; None: there are none.
         infill: whether surfaces that an edit reveals are filled afterwards (see `completing`).
         photographs: of the scene, against which what was filled is optimised where they see it; None: there are none.
+        references: photographs of materials that the user gave, by the names of their files.
     """
 
     viewer: Camera
@@ -185,6 +187,7 @@ class Context:
     assets: AssetSource | None = None
     infill: bool = True
     photographs: Photographs | None = None
+    references: Mapping[str, Photograph] = field(default_factory=dict)
 
     def resolve(self, scene: Scene, query: Query) -> Selection:
         """What `query` means in `scene`; whatever its verdict is (see `Selection.require`).

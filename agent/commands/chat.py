@@ -14,6 +14,8 @@ from ..options import (
     Log,
     Picture,
     Planner,
+    References,
+    ReferenceWidth,
     Scale,
     SceneFile,
     Seed,
@@ -36,6 +38,8 @@ def command(
     judge: Judge = None,
     infill: Infill = True,
     capture: Capture = None,
+    reference: References = None,
+    reference_width: ReferenceWidth = None,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -53,6 +57,7 @@ def command(
         SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
             picture=picture, judge=judge, vlm=vlm, assets=assets, infill=infill, capture=capture,
+            references=reference or (), reference_width=reference_width,
         )
     )  # fmt: skip
     try:

@@ -26,6 +26,8 @@ from ..options import (
     Output,
     Picture,
     Planner,
+    References,
+    ReferenceWidth,
     Scale,
     SceneFile,
     Seed,
@@ -95,6 +97,8 @@ def command(
     judge: Judge = None,
     infill: Infill = True,
     capture: Capture = None,
+    reference: References = None,
+    reference_width: ReferenceWidth = None,
     encoder: Encoder = "auto",
     seed: Seed = 0,
     yes: Yes = False,
@@ -132,6 +136,8 @@ def command(
         assets,
         infill,
         capture,
+        reference or (),
+        reference_width,
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)

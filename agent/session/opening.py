@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,6 +35,8 @@ class SessionOptions:
         assets: folder of the user's own assets, or None.
         infill: fill the surfaces that an edit reveals.
         capture: photographs that the scene was fitted from, or None.
+        references: photographs of materials that instructions name.
+        reference_width: metres that each of them shows from left to right, or None.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
 
@@ -55,6 +58,8 @@ class SessionOptions:
     assets: Path | None = None
     infill: bool = True
     capture: Path | None = None
+    references: Sequence[Path] = ()
+    reference_width: float | None = None
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -70,8 +75,10 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
     """
     from ...gaussians.files import load_with_report
     from ..pictures.named_cameras import choose_view, with_frame
+    from .own_references import own_references
     from .session import Session
 
+    photographs = own_references(options.references, options.reference_width)  # a bad file is told first
     loaded, report = load_with_report(options.path)
     for note in report.notes:
         terminal.say(f"note: {note}")
@@ -93,6 +100,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         assets=options.assets,
         infill=options.infill,
         capture=options.capture,
+        references=photographs,
     )
     for note in session.log_notes:
         terminal.say(f"note: {note}")

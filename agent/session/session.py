@@ -8,7 +8,7 @@ An instruction is carried out completely or not at all, and its record is on the
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
@@ -42,6 +42,7 @@ from .offers import PARTS_PAGE, offers_of
 from .offers import chosen as offered_choice
 from .own_assets import own_assets
 from .photographed import photographed
+from .own_references import own_references
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, is_dismissal, undo_or_redo
 from .refusal import refusal, with_message
@@ -61,6 +62,7 @@ if TYPE_CHECKING:
     from ...planners.questions.describing import Description
     from ...planners.questions.survey import Survey
     from ...planners.rooms.graph import SceneGraph
+    from ...tools.finishing.photograph import Photograph
     from ...tools.operation import Context
     from .naming import Named
 
@@ -93,6 +95,8 @@ class Session:
         infill: fill the surfaces that deleted, moved and replaced things hid.
         capture: photographs that the scene was fitted from, a `Capture` or a path that `read_capture` takes: what is
             filled is optimised against those that see behind what is gone.
+        references: photographs of materials, which instructions name by their files or as "the photo"; see
+            `add_reference`.
         vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
             takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
@@ -129,6 +133,7 @@ class Session:
         assets: str | Path | None = None,
         infill: bool = True,
         capture: str | Path | Capture | None = None,
+        references: str | Path | Sequence[str | Path] | Mapping[str, Photograph] = (),
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
         # The planner comes first, so that an unknown name creates no log file.
@@ -138,6 +143,7 @@ class Session:
         self._assets = own_assets(assets)
         self._infill = infill
         scene, self._photographs = photographed(scene, capture)
+        self._references = own_references(references)
         self._asker = Asker()
         self._viewer = viewer
         self._seed = seed
@@ -231,6 +237,25 @@ class Session:
         return picture_of(self.scene, self.viewer)
 
     @property
+    def references(self) -> tuple[str, ...]:
+        """The names of the photographs that instructions may name."""
+        return tuple(self._references)
+
+    def add_reference(self, path: str | Path, width: float | None = None) -> str:
+        """Let instructions name a photograph of a material: "the sofa like in the photo"; returns its name.
+
+        Args:
+            width: metres that it shows from left to right, if that is known.
+
+        Raises:
+            FileError: the file is no photograph that can be read.
+            UserError: the width is no length of things.
+        """
+        added = own_references(path, width)
+        self._references = {**self._references, **added}
+        return next(iter(added))
+
+    @property
     def judge(self) -> str | None:
         """The name of who judges edits: "built-in", "vlm", or None."""
         return self._judged_by
@@ -249,7 +274,7 @@ class Session:
         encoder = self.encoder if self.scene.language is not None else None
         return Context(
             viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks,
-            assets=self._assets, infill=self._infill, photographs=self._photographs,
+            assets=self._assets, infill=self._infill, photographs=self._photographs, references=self._references,
         )  # fmt: skip
 
     # -- planner ----------------------------------------------------------------------------------------------------

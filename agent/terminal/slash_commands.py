@@ -174,6 +174,21 @@ def _judge(chat: Conversation, name: str) -> None:
     chat.tell(f"judge: {judge}", {"judge": judge})
 
 
+def _reference(chat: Conversation, arguments: str) -> None:
+    words = shlex.split(arguments)
+    if words:
+        try:
+            width = float(words[1]) if len(words) > 1 else None
+        except ValueError:
+            raise UserError("say /reference FILE, or /reference FILE METRES for how wide the place is") from None
+        if len(words) > 2:
+            raise UserError("say /reference FILE, or /reference FILE METRES for how wide the place is")
+        chat.session.add_reference(words[0], width)
+    known = list(chat.session.references)
+    told = f"photographs: {', '.join(known)}" if known else "no photograph was given; /reference FILE gives one"
+    chat.tell(told, {"references": known})
+
+
 def _history(chat: Conversation, _: str) -> None:
     done = chat.session.done
     chat.tell("\n".join(f"  {i}. {t}" for i, t in enumerate(done, 1)) or "nothing was done yet", {"done": list(done)})
@@ -257,6 +272,10 @@ SLASH_COMMANDS: dict[str, SlashCommand] = {
     "/things": SlashCommand("list the things in the scene", _things),
     "/planner": SlashCommand("[NAME]: the planner and what its models cost; with a name, change the planner", _planner),
     "/judge": SlashCommand("[NAME|on|off]: judge each edit after it was made; alone: who judges", _judge),
+    "/reference": SlashCommand(
+        "[FILE [METRES]]: a photograph that instructions may name ('like in the photo'), and how wide the place is",
+        _reference,
+    ),
     "/history": SlashCommand("list the instructions that led to this scene", _history),
     "/replay": SlashCommand("[ID]: repeat the edits of an earlier session in the log; alone: the last one", _replay),
     "/save": SlashCommand("FILE [--force]: write the scene", _save),
