@@ -27,8 +27,8 @@ from .receipt import Check, Pixels, Receipt, SelectionSummary
 
 if TYPE_CHECKING:
     from ..gaussians.assets.modeling.make import Asset
-    from .lifting.behind import Photographs
     from .finishing.photograph import Photograph
+    from .lifting.behind import Photographs
 
 __all__ = [
     "Affine", "Check", "ColorName", "Context", "Direction", "EditOp", "Encoder", "Length", "Outcome", "Pixels",

@@ -41,8 +41,8 @@ from .observation import graph_of, picture_of
 from .offers import PARTS_PAGE, offers_of
 from .offers import chosen as offered_choice
 from .own_assets import own_assets
-from .photographed import photographed
 from .own_references import own_references
+from .photographed import photographed
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, is_dismissal, undo_or_redo
 from .refusal import refusal, with_message

@@ -25,6 +25,7 @@ from .meaning.phrases import Phrases
 from .parsing import Refusal
 from .reader import Reader
 from .restating.changes.filling import Request, heard
+from .restating.changes.likenesses import with_likenesses, with_photo
 from .restating.speech.remarks import is_remark
 from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
@@ -153,11 +154,13 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     said = heard(cleaned)
     if said.requests or said.leave:
         return _with_holes(said.rest, said.requests, said.leave, previous)
-    words, remarks = correct_spelling(smoothed(without_owners(split(cleaned))))
+    cleaned, file = with_photo(cleaned)
+    words, remarks = correct_spelling(smoothed(with_likenesses(without_owners(split(cleaned)))))
     before = _understand_previous(previous)
     phrases = Phrases(before.antecedent, before.again, before.colors)
     reader = Reader(phrases, cleaned, previous is not None)
     ops = _without_repeats(_complete_halves(reader.read(words)))
+    ops = [{**op, "reference": file} if file and op.get("reference") else op for op in ops]
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
     return _Outcome(

@@ -196,9 +196,12 @@ class _Play:
         return step
 
     def settled(self, op: EditOp) -> EditOp:
-        """The operation with the colour of the thing that it is to be like."""
+        """The operation with the colour of the thing that it is to be like; a surface is not known here."""
         like: Query | None = getattr(op, "like", None)
         if like is None:
+            return op
+        if op.op == "restyle":
+            self._found(like)
             return op
         colors = list(dict.fromkeys(self.stage.color(g) for g in self._found(like).groups))
         if len(colors) > 1 or not colors[0]:

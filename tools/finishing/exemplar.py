@@ -25,7 +25,6 @@ from .textures import Floats, Spots
 FEWEST = 12  # cells along the shorter side of a picture
 _DARK = 0.03  # added to colours before the logarithm
 _SHADE = 0.3  # of the picture's shorter side: standard deviation of the low-pass that counts as shading
-_REPEATS = 1.6  # periods over which shading is averaged at least, so that no pattern is taken for shading
 _PLAIN = 0.012  # standard deviation of a texture that cannot be seen, display values
 _BLEND = 0.2  # of a period: width of the seam between whole periods
 _SEAM = 0.22  # of a picture without a period: how far its ends overlap
@@ -167,30 +166,43 @@ def exemplar_of(picture: Picture) -> Exemplar:
 def flattened(rgb: F64) -> tuple[F64, Periods]:
     """A picture with its shading divided out, mean luma kept, and the periods of what is left.
 
-    Light and pigment multiply, so shading is a low frequency of the logarithm of luma; hues stay.
+    Light and pigment multiply, so shading is a low frequency of the logarithm of luma; hues stay. Where a pattern
+    repeats, luma is averaged over whole periods first.
     """
     short = min(rgb.shape[:2])
     logs = np.log(rgb + _DARK)
     found = periods(logs - _low(logs, _SHADE * short))
-    longest = max((p for p in (found.across, found.up) if p is not None), default=0.0)
     luma = np.log(rgb @ np.array(LUMA) + _DARK)[..., None]
-    shading = _low(luma, max(_SHADE * short, _REPEATS * longest))
+    shading = _low(luma, _SHADE * short, found)
     shading = np.clip(shading - shading.mean(), -np.log(_STEEPEST), np.log(_STEEPEST))
     flat = np.clip(np.exp(logs - shading) - _DARK, 0, 1)
     gain = (rgb @ np.array(LUMA)).mean() / max(float((flat @ np.array(LUMA)).mean()), 1e-6)
     flat = np.clip(flat * gain, 0, 1)
     again = np.log(flat + _DARK)
-    return flat, periods(again - _low(again, max(_SHADE * short, _REPEATS * longest)))
+    return flat, periods(again - _low(again, _SHADE * short, found))
 
 
-def _low(values: F64, sigma: float) -> F64:
-    """A quadratic through values `[H, W, C]` and the low frequencies of the rest, which do not pull at the rim."""
+def _low(values: F64, sigma: float, repeats: Periods | None = None) -> F64:
+    """A quadratic through values `[H, W, C]` and the low frequencies of the rest, which do not pull at the rim.
+
+    Args:
+        repeats: periods over which the values are averaged first; cells within half a period of the rim do not count.
+    """
     h, w, _ = values.shape
+    valid = np.ones((h, w))
+    for axis, period in enumerate((repeats.up, repeats.across)) if repeats is not None else ():
+        size = round(period) if period is not None else 0
+        if 1 < size < 0.6 * values.shape[axis]:
+            values = ndimage.uniform_filter1d(values, size, axis=axis, mode="nearest")
+            index = np.arange(values.shape[axis])
+            inside = (index >= size // 2) & (index < values.shape[axis] - size // 2)
+            valid *= inside[:, None] if axis == 0 else inside[None, :]
     y, x = np.meshgrid(np.linspace(-1, 1, h), np.linspace(-1, 1, w), indexing="ij")
     basis = np.stack([np.ones_like(x), x, y, x * y, x * x, y * y], axis=2).reshape(-1, 6)
-    fitted = basis @ np.linalg.lstsq(basis, values.reshape(h * w, -1), rcond=None)[0]
+    counted = valid.reshape(-1) > 0
+    fitted = basis @ np.linalg.lstsq(basis[counted], values.reshape(h * w, -1)[counted], rcond=None)[0]
     smooth = fitted.reshape(values.shape)
-    return np.asarray(smooth + averaged(values - smooth, np.ones((h, w)), sigma))
+    return np.asarray(smooth + averaged(values - smooth, valid, sigma))
 
 
 def _seamless(flat: F64, found: Periods, cell: float) -> tuple[F64, tuple[float, float]]:

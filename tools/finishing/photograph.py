@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...gaussians.errors import FileError, UserError
 
-FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TIFF", "GIF", "MPO")
+FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TIFF", "GIF")
 _LARGEST = 512  # pixels along the longer side that are kept
 _SMALLEST = 24  # pixels along the shorter side of a usable photograph
 _MOST = 160_000_000  # pixels that are decoded; of a JPEG more, as it is reduced while it is read
@@ -57,12 +57,12 @@ def read_photograph(path: Path, width: float | None = None) -> Photograph:
 
     if width is not None and not 0.001 <= width <= 1000:
         raise UserError(f"a photograph shows 0.001 to 1000 m from left to right, not {width:g}")
-    known = ", ".join(f for f in FORMATS if f != "MPO")
+    known = ", ".join(FORMATS)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the limit on the size is our own
             with Image.open(path, formats=FORMATS) as file:
-                _check_size(path, file.size, file.format == "JPEG")
+                _check_size(path, file.size, file.format in ("JPEG", "MPO"))
                 file.draft("RGB", (2 * _LARGEST, 2 * _LARGEST))
                 upright = ImageOps.exif_transpose(file)
                 rgba = _rgba(upright)

@@ -16,7 +16,7 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.world.finishes import FINISHES, FinishName
 from ...gaussians.world.lengths import in_metres
-from ..alternatives import either, given
+from ..alternatives import NOT_GIVEN, either, given
 from ..checks import count_matches
 from ..cloud_diff import rows_of, selection_of
 from ..color_map import NEAR, distance
@@ -45,7 +45,11 @@ class Restyle(TargetedOp):
     """
 
     model_config = ConfigDict(
-        json_schema_extra=either({"material": given()}, {"like": given()}, {"reference": given()})
+        json_schema_extra=either(
+            {"material": given(), "like": NOT_GIVEN, "reference": NOT_GIVEN, "width": NOT_GIVEN},
+            {"like": given(), "reference": NOT_GIVEN, "width": NOT_GIVEN},
+            {"reference": given(), "like": NOT_GIVEN},
+        )
     )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "make the sofa leather",

@@ -18,7 +18,7 @@ from ....gaussians.world import kinds
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tokens, trees
 from ..vocabulary import nouns
-from ..vocabulary.materials import is_mark, meant
+from ..vocabulary.materials import ANYTHING, is_mark, meant
 from . import adding, changes, moving, repeating, shaping
 from .adding import inserted
 from .changes import Fields
@@ -271,8 +271,17 @@ def give_color(phrases: Phrases, node: Node, painted: bool = False) -> list[Fiel
 
 
 def paint_like(phrases: Phrases, node: Node) -> list[Fields]:
-    """ "paint the chair the same colour as the table"."""
-    return phrases.targeted(node, "recolor", like=goal_of(phrases, trees(node, "np")[0]).full())
+    """ "paint the chair the same colour as the table", "the pattern of the curtain on the sofa"."""
+    return phrases.targeted(node, **_likened(phrases, node))
+
+
+def _likened(phrases: Phrases, node: Node) -> Fields:
+    """The fields of what gets the colour, or the surface, of another thing."""
+    like = goal_of(phrases, trees(node, "np")[0]).full()
+    surface = tokens(node, "COLORLIKE")[0].value
+    if surface is None:
+        return {"op": "recolor", "like": like}
+    return {"op": "restyle", "like": like, **({} if surface == ANYTHING else {"material": surface})}
 
 
 def change_from(phrases: Phrases, node: Node) -> list[Fields]:
@@ -346,7 +355,7 @@ def it_becomes(phrases: Phrases, node: Node) -> list[Fields]:
 def _changed(phrases: Phrases, change: Node) -> Fields:
     """The fields of a change; "the same colour as the table" names a thing, which other changes do not."""
     if change.data == "become_like":
-        return {"op": "recolor", "like": goal_of(phrases, trees(change, "np")[0]).full()}
+        return _likened(phrases, change)
     return changes.change(change)
 
 

@@ -8,6 +8,7 @@ chooses the class in context. The tables are keyed by phrase; `table` turns them
 from __future__ import annotations
 
 from ....gaussians.world import relations
+from ....gaussians.world.finishes import FINISHES
 from ..tagging.words import bag, phrases
 from .verbs import UNSUPPORTED, VERBS, Entry, same
 
@@ -122,7 +123,12 @@ def _same_color() -> dict[str, Entry]:
         for like in likes
     }
     matching = ("to match the ", "matching the ", "in the ")
-    return found | {f"{lead}{color} of": ("COLORLIKE", None) for lead in matching for color in ("colour", "color")}
+    surfaces = {f"like~{name}": ("COLORLIKE", name) for name in ("material", *FINISHES)}  # see `restating.likenesses`
+    return (
+        found
+        | surfaces
+        | {f"{lead}{color} of": ("COLORLIKE", None) for lead in matching for color in ("colour", "color")}
+    )
 
 
 def _standing() -> dict[str, Entry]:

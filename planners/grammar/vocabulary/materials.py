@@ -1,7 +1,9 @@
 """Words for materials among words for colours: which is meant, and a word that stands for a material with its colours.
 
 All forms of a new colour are forms of a new material too. A word that begins with "#" and is no hexadecimal value
-stands for a material with its colours: `#marble~dark-green`, `#stripes~red~white`.
+stands for a material with its colours and the length of what repeats: `#marble~dark-green`, `#stripes~red~white@20-cm`.
+`#photo~tiles@20-cm` stands for a photograph, what it is said to show, and the length of what repeats, or of the
+photograph where nothing is said to; `like~wood` for the surface, said to be wood, of the thing that is named behind it.
 """
 
 from __future__ import annotations
@@ -10,10 +12,13 @@ import re
 from typing import Any
 
 from ....gaussians.world.finishes import said as finish_said
+from ....gaussians.world.lengths import UNITS
 from ..tagging.words import bag
 
 _HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6})")
-_MARK = re.compile(r"#[a-z][a-z-]+(?:~[a-z-]+){0,2}")
+_MARK = re.compile(r"#[a-z][a-z-]+(?:~[a-z-]+){0,2}(?:@[\d.]+-[a-z]+)?")
+LIKE, PHOTO = "like~", "photo"
+ANYTHING = "material"  # what a surface is called that is not said to be wood, brick, ...
 # Words that name colours at least as often as materials: they are materials only where that is said.
 COLORS_TOO = bag(
     "gold copper bronze brass terracotta clay sand slate stone grass denim chrome iron tin rock ebony "
@@ -21,9 +26,10 @@ COLORS_TOO = bag(
 )
 
 
-def mark(name: str, *colors: str) -> str:
-    """The word that stands for a material with its colours."""
-    return "#" + "~".join(word.strip().replace(" ", "-") for word in (name, *colors))
+def mark(name: str, *colors: str, size: tuple[str, str] | None = None) -> str:
+    """The word that stands for a material with its colours, and a length of so many of a unit."""
+    length = f"@{size[0]}-{UNITS[size[1]]}" if size is not None else ""
+    return "#" + "~".join(word.strip().replace(" ", "-") for word in (name, *colors)) + length
 
 
 def is_mark(hue: str) -> bool:
@@ -34,8 +40,15 @@ def is_mark(hue: str) -> bool:
 def meant(hue: str) -> dict[str, Any]:
     """The fields of a new surface: of a colour, or of the material that a word stands for."""
     if is_mark(hue):
-        name, *said = (word.replace("-", " ") for word in hue[1:].split("~"))
-        return {**surfaced(name), **dict(zip(("color", "second"), said, strict=False))}
+        named, _, size = hue[1:].partition("@")
+        name, *said = (word.replace("-", " ") for word in named.split("~"))
+        value, _, unit = size.partition("-")
+        length = {"value": float(value), "unit": unit} if size else None
+        if name == PHOTO:
+            side = {"unit" if said else "width": length} if length is not None else {}
+            return {"op": "restyle", "reference": name, **({"material": said[0]} if said else {}), **side}
+        repeats = {"unit": length} if length is not None else {}
+        return {**surfaced(name), **dict(zip(("color", "second"), said, strict=False)), **repeats}
     if hue not in COLORS_TOO and finish_said(hue) is not None:
         return surfaced(hue)
     return {"op": "recolor", "color": hue}

@@ -11,6 +11,7 @@ from functools import cache
 
 from .....gaussians import color as colors
 from .....gaussians.world.finishes import words
+from .....gaussians.world.lengths import UNITS
 from ...vocabulary.materials import COLORS_TOO, mark
 
 _CUE = (
@@ -23,13 +24,19 @@ _KIND = (
     r"(?: (?:finish|look|texture|surface|effect|pattern|style|material|veneer|cladding|covering|flooring|floor|"
     r"panels|panelling|paneling|wallpaper|design|print|upholstery|fabric))?"
 )
+_UNIT = "|".join(sorted((u for u in UNITS if u.isalpha() and UNITS[u] != "units"), key=lambda u: (-len(u), u)))
+_SIZE = (
+    rf"(?:\d[\d.]* ?(?:{_UNIT})? ?(?:x|by) )?\d[\d.]* ?(?:{_UNIT})\b"
+    r"(?: (?:wide|square|big|large|long|broad|across|tall|high|apart|in size|thick))?"
+)
+_SIZED = re.compile(rf"(?P<n>\d[\d.]*) ?(?P<unit>{_UNIT})\b(?: [a-z]+)*\s*$")
 _AFTER = re.compile(
     r"^(?:$|[,;.]| (?:,|and|please|but|then|instead|too|as well|now|thanks|on|for|to|over|this time|again))"
 )
 # Verbs that give a thing a surface, in place of "paint".
 _COVER = (
     "cover|clad|panel|upholster|reupholster|wrap|finish|refinish|face|line|dress|do|redo|resurface|veneer|plate|remake|"
-    "rebuild|pave|texture|retexture|coat|surface|sheathe|deck|redecorate|remodel|build|restyle|style|redress"
+    "tile|retile|carpet|recarpet|wallpaper|paper|plaster|rebuild|pave|texture|retexture|coat|surface|sheathe|deck|redecorate|remodel|build|restyle|style|redress"
 )
 _COVERED = re.compile(rf"^(?:please )?(?:re )?(?:{_COVER})(?: up| over| out)? ")
 _LAID = re.compile(
@@ -59,7 +66,9 @@ def _material() -> re.Pattern[str]:
     plain = "|".join([*(q for q in colors.QUALIFIERS), *colors.BASIC, "grey"])
     hue = rf"(?:(?:{plain}|navy|cream|teal|turquoise|beige|burgundy|olive|mint|golden|charcoal) ?)+"
     return re.compile(
-        rf"(?<![\w#~-])(?P<cue>{_CUE})(?:(?P<one>{hue}) )??(?:and (?P<two>{hue}) )?(?P<name>{names}){_KIND}(?![\w-])"
+        rf"(?<![\w#~-])(?P<cue>{_CUE})(?P<size>{_SIZE} )?"
+        rf"(?:(?P<one>{hue}) )??(?:and (?P<two>{hue}) )?(?P<name>{names}){_KIND}"
+        rf"(?: (?:of |that are |which are |, )?(?P<after>{_SIZE})(?: each)?)?(?![\w-])"
     )
 
 
@@ -74,9 +83,10 @@ def in_materials(said: str) -> Iterator[str]:
         if not _AFTER.match(behind) or (match["name"] in COLORS_TOO and not _is_cued(match)):
             continue
         before = said[: match.start()].rstrip()
-        yield from _worded(
-            f"{before} {mark(match['name'], *filter(None, (match['one'], match['two'])))}{behind}".strip()
-        )
+        found = _SIZED.search(match["size"] or match["after"] or "")
+        size = (found["n"], found["unit"]) if found is not None else None
+        marked = mark(match["name"], *filter(None, (match["one"], match["two"])), size=size)
+        yield from _worded(f"{before} {marked}{behind}".strip())
 
 
 def _is_cued(match: re.Match[str]) -> bool:
