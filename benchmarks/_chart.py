@@ -6,10 +6,14 @@ import io
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..gaussians.errors import BackendError, FileError, UserError
+from . import _row_chart
 from .harness import Point, Result
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Cost = Literal["seconds", "bytes"]
 
@@ -27,6 +31,8 @@ LETTER_SIZE = (4.4, 9.0)  # width and height of a letter of a label, points
 def draw(result: Result, path: Path) -> Path:
     """Draw time (logarithmic) against accuracy with the Pareto front, the default marked; PNG, SVG or PDF by name.
 
+    A result without points, but with rows, is drawn as the curves of its rows.
+
     Raises:
         BackendError: matplotlib is not installed.
         UserError: the result has no points, or the file's ending is none of these.
@@ -35,15 +41,32 @@ def draw(result: Result, path: Path) -> Path:
     kind = path.suffix.lstrip(".").lower()
     if kind not in FORMATS:
         raise UserError(f"a chart is written as .{', .'.join(FORMATS)}, not {path.name!r}")
-    if not result.points:
+    if not (result.points or result.rows):
         raise UserError(f"benchmark {result.name} has no points of time against accuracy to draw")
     try:
         from matplotlib import rc_context
         from matplotlib.figure import Figure  # no pyplot: no global state, no display
     except ImportError as error:
         raise BackendError("charts need matplotlib; install it with: pip install 'scenewright[bench]'") from error
+    figure = Figure(dpi=110, layout="constrained")
+    if result.points:
+        _draw_points(figure, result)
+    else:
+        _row_chart.fill(figure, result)
+    data = io.BytesIO()
+    with rc_context({"svg.hashsalt": result.name, "svg.fonttype": "none"}):
+        figure.savefig(data, format=kind, metadata=_UNDATED.get(kind))
+    try:
+        path.write_bytes(data.getvalue())
+    except OSError as error:
+        raise FileError(f"cannot write the chart {path}: {error.strerror or error}") from error
+    return path
+
+
+def _draw_points(figure: Figure, result: Result) -> None:
+    """Draw the points with labels that do not overlap."""
     costs = _costs(result)
-    figure = Figure(figsize=(4 + 4.5 * len(costs), 5.5), dpi=110, layout="constrained")
+    figure.set_size_inches(4 + 4.5 * len(costs), 5.5)
     panels = figure.subplots(1, len(costs), sharey=True, squeeze=False)[0]
     for axes, cost in zip(panels, costs, strict=True):
         _fill(axes, result, cost)
@@ -54,14 +77,6 @@ def draw(result: Result, path: Path) -> Path:
     figure.draw_without_rendering()  # labels are placed in pixels, which stand only now
     for axes, cost in zip(panels, costs, strict=True):
         _name(axes, result, cost)
-    data = io.BytesIO()
-    with rc_context({"svg.hashsalt": result.name, "svg.fonttype": "none"}):
-        figure.savefig(data, format=kind, metadata=_UNDATED.get(kind))
-    try:
-        path.write_bytes(data.getvalue())
-    except OSError as error:
-        raise FileError(f"cannot write the chart {path}: {error.strerror or error}") from error
-    return path
 
 
 def shown(result: Result) -> tuple[Point, ...]:

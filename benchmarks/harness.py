@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any, Literal, Self
 
 from ..gaussians.errors import BackendError, FileError, UserError
+from . import _rows
+from ._rows import Row
 
 Direction = Literal["lower", "higher", "neither"]
 
@@ -100,6 +102,7 @@ class Result:
         cost: what the points' accuracy is bought with on the chart: time, or bytes.
         name, quick, seconds, machine, versions, revision: stamped by `run`.
         repeats: how many times it was run; of several, figures are medians.
+        rows: of a stability benchmark: what disturbances do to figures, and where they break.
     """
 
     title: str
@@ -116,6 +119,7 @@ class Result:
     versions: dict[str, str] = field(default_factory=dict)
     revision: str | None = None
     repeats: int = 1
+    rows: tuple[Row, ...] = ()
 
     def __post_init__(self) -> None:
         keys = [metric.key for metric in self.metrics]
@@ -124,7 +128,8 @@ class Result:
 
     def to_json(self) -> str:
         """The whole result as JSON; `from_json` reads it back."""
-        return json.dumps(asdict(self), indent=2, allow_nan=False)
+        data = {**asdict(self), "rows": [row.figures() for row in self.rows]}
+        return json.dumps(data, indent=2, allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> Self:
@@ -137,6 +142,7 @@ class Result:
             data = json.loads(text)
             data["metrics"] = tuple(Metric(**metric) for metric in data["metrics"])
             data["points"] = tuple(Point(**point) for point in data["points"])
+            data["rows"] = tuple(Row.read(row) for row in data.get("rows", ()))
             return cls(**{**data, "notes": tuple(data["notes"]), "seeds": tuple(data["seeds"])})
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise FileError(f"not the JSON of a benchmark's result ({error}); write one with --json") from error
@@ -174,6 +180,7 @@ class Result:
                 for m in goals
             ]
             lines.append("")
+        lines += _rows.table(self.rows)
         if self.points:
             lines += [
                 f"| method | setting | time | {self.accuracy} | {'memory' if self.cost == 'seconds' else 'size'} | |",

@@ -31,7 +31,7 @@ def write(folder: Path, results: Sequence[Result], failed: Mapping[str, str]) ->
         made.append(folder / f"{result.name}.json")
         with writing(made[-1], force=True) as file:
             file.write(result.to_json().encode() + b"\n")
-        if result.points:
+        if result.points or result.rows:
             made.append(_chart.draw(result, folder / f"{result.name}.svg"))
     for name in harness.names():
         for old in (folder / f"{name}.json", folder / f"{name}.svg"):
@@ -48,7 +48,7 @@ def text(results: Sequence[Result], failed: Mapping[str, str]) -> str:
     lines = ["# Benchmarks", "", *_head(results, failed), "", *_goals(results), ""]
     for result in results:
         lines += [f"## {result.name}", "", f"{result.title}.", ""]
-        if result.points:
+        if result.points or result.rows:
             lines += [f"![{result.title}]({result.name}.svg)", ""]
         body = result.to_markdown().split("\n", 2)[2].strip()
         lines += ["<details><summary>All figures</summary>", "", body, "", "</details>", ""]

@@ -15,7 +15,7 @@ from ..harness import Metric, Point
 from . import lifted, pictures, vectors
 from .cases import Case, Part, embedded
 from .stability import names_miou
-from .variants import without_negatives, without_size
+from .variants import forgetful, without_negatives, without_size
 from .vectors import Outcome
 
 WIDTHS = (8, 32, 128)
@@ -47,7 +47,8 @@ def rules(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], Cas
     known = [grouped(room) for room in rooms]
     ways = {"no size": without_size(encoder), "no negatives": without_negatives(encoder)}
     ways["neither"] = without_size(ways["no negatives"])
-    return Part(points=tuple(_embedded_point(name, known, way, method="rule") for name, way in ways.items()))
+    points = (_embedded_point(n, [forgetful(k) for k in known], way, method="rule") for n, way in ways.items())
+    return Part(points=tuple(points))
 
 
 def _embedded_point(

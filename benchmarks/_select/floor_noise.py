@@ -27,7 +27,7 @@ def measure(seeds: tuple[int, ...], grouped: Callable[[Case], Case]) -> Part:
     floors: list[float] = []
     things: list[float] = []
     for noise in NOISES:
-        found = [_agreement(grouped(with_noise(room, noise / 100)), _floor(room)) for room in rooms]
+        found = [agreement(grouped(with_noise(room, noise / 100)), room) for room in rooms]
         floors.append(fmean(f for f, _ in found))
         things.append(fmean(t for _, each in found for t in each))
     metrics = [
@@ -61,9 +61,10 @@ def _floor(case: Case) -> Mask:
     return result
 
 
-def _agreement(case: Case, floor: Mask) -> tuple[float, list[float]]:
-    """IoU of the group called floor, and of the best group of each low thing that stands on it."""
+def agreement(case: Case, clean: Case) -> tuple[float, list[float]]:
+    """IoU of the group called floor with the floor of the clean case, and of the best group of each low thing on it."""
     assert case.scene.language is not None
+    floor = _floor(clean)
     named = [g.id for g in case.scene.language.groups if g.level == "structure" and g.label == "floor"]
     groups = case.groups()
     low = [o for o in case.objects if o.support == "floor" and o.size[2] < LOW]

@@ -14,7 +14,7 @@ from ...gaussians.language.encoders import Encoder
 from .._iou import iou
 from ..harness import Metric
 from .cases import Case, Part, ask
-from .variants import with_threshold
+from .variants import forgetful, with_threshold
 
 THRESHOLDS = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8)
 FLOATERS = (0.02, 0.1)  # of the Gaussians of the scene, added
@@ -51,6 +51,7 @@ def thresholds(known: Sequence[Case], encoder: Encoder) -> Part:
 
 
 def _both(case: Case, encoder: Encoder) -> tuple[float, float]:
+    case = forgetful(case)
     kinds = [k for k in encoder.vocabulary.names if k not in case.present]
     absent = np.random.default_rng(case.seed).choice(kinds, len(case.alone()), replace=False)
     refused = fmean(ask(case, str(k), encoder).verdict == "absent" for k in absent)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...gaussians.language.encoders import Encoder
+from .cases import Case
 
 
 class _Variant:
@@ -37,6 +38,13 @@ def remembering(encoder: Encoder) -> Encoder:
 def with_threshold(encoder: Encoder, threshold: float) -> Encoder:
     """The encoder under another threshold."""
     return cast(Encoder, _Variant(encoder, calibration=replace(encoder.calibration, threshold=threshold)))
+
+
+def forgetful(case: Case) -> Case:
+    """The case with none of the answers that its field keeps: these are kept by the encoder's fingerprint, which
+    variants of one encoder share."""
+    assert case.scene.language is not None
+    return replace(case, scene=case.scene.replace(language=replace(case.scene.language)))
 
 
 def without_size(encoder: Encoder) -> Encoder:
