@@ -103,8 +103,15 @@ Assets = Annotated[
     typer.Option("--assets", metavar="FOLDER", help="Insert the .glb and .ply files in this folder by their names."),
 ]
 Infill = Annotated[
-    bool, typer.Option("--infill/--no-infill", help="Fill the surfaces that deleted, moved and replaced things hid.")
-]
+    str,
+    typer.Option(
+        "--infill", metavar="NAME",
+        help="What fills the surfaces that deleted, moved and replaced things hid: 'scene' (what is around them), "
+        "'none', or also a model that inpaints pictures: 'onnx:FILE' (LaMa), 'diffusers:FOLDER', or 'folder:FOLDER' "
+        "(made elsewhere).",
+    ),
+]  # fmt: skip
+NoInfill = Annotated[bool, typer.Option("--no-infill", help="Leave holes: the same as --infill none.")]
 References = Annotated[
     list[Path] | None,
     typer.Option(
@@ -152,13 +159,16 @@ Seed = Annotated[int, typer.Option("--seed", min=0, help="Random seed; the same 
 
 
 def with_values(arguments: Sequence[str]) -> list[str]:
-    """The arguments with the value of a `--judge` that stands alone; what follows it is then no value of it."""
+    """The arguments with the values of a `--judge` and an `--infill` that stand alone; what follows them is then no
+    value of theirs."""
     from .session.judge import JUDGES
 
     given = list(arguments)
     for k, word in enumerate(given):
         if word == "--":
             break
+        if word == "--infill" and (k + 1 == len(given) or given[k + 1].startswith("-")):
+            given[k] = "--infill=scene"
         if word == "--judge" and given[k + 1 : k + 2] not in ([[j] for j in (*JUDGES, "off")]):
             given[k] = f"--judge={JUDGE}"
     return given

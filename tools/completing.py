@@ -1,8 +1,8 @@
 """Complete an edit: fill the surfaces that it reveals, and take contact shadows along with what cast them.
 
 This comes after the checks of the operation. It only adds Gaussians, and makes those lighter or darker that lie in a
-contact shadow; all others stay the same bit for bit. Where there are photographs that see what was added, it is
-optimised against them.
+contact shadow; all others stay the same bit for bit. Where there is a model that inpaints pictures, what it makes of
+views is lifted into new Gaussians; where photographs see what was added, it is optimised against them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .cloud_diff import joined
 from .execute import Done
 from .field_update import after_recolor, recount
 from .operation import Context, EditOp
-from .receipt import Filled
+from .receipt import Filled, Lifted
 
 
 def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
@@ -35,29 +35,61 @@ def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
         FileError: a photograph cannot be read.
     """
     done, new = _filled(before, op, context, done)
+    if context.inpainter is not None and _may_fill(before, op, context, done):
+        done, new = _inpainted(before, op, context, done, new)
     if context.photographs is None or not len(new):
         return done
     from .lifting.photographs import with_photographs
-    from .lifting.told import note
 
     seconds: dict[str, float] = {}
     with timed(seconds, "lift"):
         scene, lifted = with_photographs(done.scene, context.photographs, new, context.seed)
-    told = (*done.receipt.notes, note(lifted))
-    spent = {**done.receipt.seconds, **seconds}
-    return done._replace(
-        scene=scene, receipt=done.receipt.model_copy(update={"notes": told, "lifted": lifted, "seconds": spent})
+    return _lifted(done, scene, lifted, seconds)
+
+
+def _inpainted(before: Scene, op: EditOp, context: Context, done: Done, new: Tensor) -> tuple[Done, Tensor]:
+    """The result with the hole filled by the model of the context, and the ids of all new Gaussians."""
+    from .filling.revealed import left_their_place
+    from .lifting.inpainted import with_inpainted
+
+    assert context.inpainter is not None
+    if not left_their_place(before, done.scene, _moved(before, done.scene) if op.op == "move" else ()):
+        return done, new
+    seconds: dict[str, float] = {}
+    with timed(seconds, "inpaint"):
+        scene, new, lifted = with_inpainted(before, done.scene, new, context.inpainter, context.seed)
+    return _lifted(done, scene, lifted, seconds), new
+
+
+def _lifted(done: Done, scene: Scene, lifted: Lifted, seconds: dict[str, float]) -> Done:
+    """The result with a scene whose fill was optimised, and with what was measured in its receipt."""
+    from .lifting.told import note
+
+    receipt = done.receipt.model_copy(
+        update={
+            "added": done.receipt.added + lifted.made,
+            "total": len(scene.cloud),
+            "notes": (*done.receipt.notes, note(lifted)),
+            "lifted": (*done.receipt.lifted, lifted),
+            "seconds": {**done.receipt.seconds, **seconds},
+        }
     )
+    return done._replace(scene=scene, receipt=receipt)
+
+
+def _may_fill(before: Scene, op: EditOp, context: Context, done: Done) -> bool:
+    """Whether what an operation revealed is to be filled at all."""
+    query = op.query()
+    wanted = op.reveals and context.infill and getattr(op, "infill", True) and done.scene is not before
+    return bool(wanted) and query is not None and not query.spatial
 
 
 def _filled(before: Scene, op: EditOp, context: Context, done: Done) -> tuple[Done, Tensor]:
     """The result with what it revealed filled, and the ids of the new Gaussians; `infill` itself made its own."""
-    query, nothing = op.query(), before.cloud.ids[:0]
+    nothing = before.cloud.ids[:0]
     if op.op == "infill":
         return done, done.scene.cloud.ids[~mask_of_ids(done.scene.cloud.ids, before.cloud.ids)]
-    if not (op.reveals and context.infill and getattr(op, "infill", True)) or done.scene is before:
-        return done, nothing
-    if query is None or query.spatial:
+    if not _may_fill(before, op, context, done):
         return done, nothing
     seconds: dict[str, float] = {}
     with timed(seconds, "fill"):

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ..gaussians.assets.modeling.make import Asset
     from .finishing.photograph import Photograph
     from .lifting.behind import Photographs
+    from .lifting.inpainters import Inpainter
 
 __all__ = [
     "Affine", "Check", "ColorName", "Context", "Direction", "EditOp", "Encoder", "Length", "Outcome", "Pixels",
@@ -172,6 +173,7 @@ class Context:
         renderer: back end of pixel checks, as `gaussians.render.render` takes it.
         assets: the user's own assets, which are taken before those of the library; None: there are none.
         infill: whether surfaces that an edit reveals are filled afterwards (see `completing`).
+        inpainter: fills what an edit revealed in views of it, beside the fill from the scene itself; None: only that.
         photographs: of the scene, against which what was filled is optimised where they see it; None: there are none.
         references: photographs of materials that the user gave, by the names of their files.
     """
@@ -186,6 +188,7 @@ class Context:
     renderer: str = "auto"
     assets: AssetSource | None = None
     infill: bool = True
+    inpainter: Inpainter | None = None
     photographs: Photographs | None = None
     references: Mapping[str, Photograph] = field(default_factory=dict)
 

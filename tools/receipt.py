@@ -149,6 +149,7 @@ class Lifted(BaseModel):
     Attributes:
         source: of the pictures: "photographs", or the model that inpainted them.
         looked: pictures that show the place.
+        made: Gaussians that were made beside those of the fill, where its surroundings tell nothing.
         views: those that were used: photographs that see behind what is gone, views that were inpainted.
         held_out: of these, how many measured the result and were not optimised against; 0: all did both.
         pixels: of all these pictures, that count.
@@ -161,6 +162,7 @@ class Lifted(BaseModel):
 
     source: str
     looked: int = 0
+    made: int = 0
     views: int = 0
     held_out: int = 0
     pixels: int = 0
@@ -188,7 +190,7 @@ class Receipt(BaseModel):
         dry_run: True if nothing was kept.
         judged: what the judge measured, if there was one.
         filled: what was done to the surfaces that the edit revealed.
-        lifted: how the fill was optimised against pictures, if there were any.
+        lifted: how the fill was optimised against pictures, one entry for each source of them.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -209,7 +211,7 @@ class Receipt(BaseModel):
     dry_run: bool = False
     judged: Judgement | None = None
     filled: tuple[Filled, ...] = ()
-    lifted: Lifted | None = None
+    lifted: tuple[Lifted, ...] = ()
 
     @property
     def passed(self) -> bool:

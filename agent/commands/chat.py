@@ -12,6 +12,7 @@ from ..options import (
     Json,
     Judge,
     Log,
+    NoInfill,
     Picture,
     Planner,
     References,
@@ -36,7 +37,8 @@ def command(
     assets: Assets = None,
     picture: Picture = False,
     judge: Judge = None,
-    infill: Infill = True,
+    infill: Infill = "scene",
+    no_infill: NoInfill = False,
     capture: Capture = None,
     reference: References = None,
     reference_width: ReferenceWidth = None,
@@ -56,8 +58,8 @@ def command(
     session, _ = open_session(
         SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, judge=judge, vlm=vlm, assets=assets, infill=infill, capture=capture,
-            references=reference or (), reference_width=reference_width,
+            picture=picture, judge=judge, vlm=vlm, assets=assets, infill="none" if no_infill else infill,
+            capture=capture, references=reference or (), reference_width=reference_width,
         )
     )  # fmt: skip
     try:

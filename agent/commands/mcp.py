@@ -15,6 +15,7 @@ from ..options import (
     Json,
     Judge,
     Log,
+    NoInfill,
     Picture,
     Planner,
     Scale,
@@ -40,7 +41,8 @@ def command(
     window: Window = None,
     picture: Picture = False,
     judge: Judge = None,
-    infill: Infill = True,
+    infill: Infill = "scene",
+    no_infill: NoInfill = False,
     capture: Capture = None,
     encoder: Encoder = "auto",
     up: Up = None,
@@ -73,7 +75,7 @@ def command(
     session, embedded = open_session(
         SessionOptions(
             scene, planner, encoder, view, size, log, seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, judge=judge, vlm=vlm, infill=infill, capture=capture,
+            picture=picture, judge=judge, vlm=vlm, infill="none" if no_infill else infill, capture=capture,
         ),
         progress,
     )  # fmt: skip

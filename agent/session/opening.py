@@ -33,7 +33,7 @@ class SessionOptions:
         vlm: a vision model, as `Session` takes it.
         accept_unconfirmed: edit without asking what was chosen although its name is not confirmed.
         assets: folder of the user's own assets, or None.
-        infill: fill the surfaces that an edit reveals.
+        infill: what fills the surfaces that an edit reveals: "scene", "none", or a model that inpaints pictures.
         capture: photographs that the scene was fitted from, or None.
         references: photographs of materials that instructions name.
         reference_width: metres that each of them shows from left to right, or None.
@@ -56,7 +56,7 @@ class SessionOptions:
     vlm: str = "auto"
     accept_unconfirmed: bool = False
     assets: Path | None = None
-    infill: bool = True
+    infill: str = "scene"
     capture: Path | None = None
     references: Sequence[Path] = ()
     reference_width: float | None = None

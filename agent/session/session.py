@@ -35,6 +35,7 @@ from .clarify import (
 )
 from .embedding import embedded_by, only_thing
 from .history import History, State
+from .hole_fillers import infill_of, photographed
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
 from .observation import graph_of, picture_of
@@ -42,7 +43,6 @@ from .offers import PARTS_PAGE, offers_of
 from .offers import chosen as offered_choice
 from .own_assets import own_assets
 from .own_references import own_references
-from .photographed import photographed
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, is_dismissal, undo_or_redo
 from .refusal import refusal, with_message
@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from ...planners.questions.survey import Survey
     from ...planners.rooms.graph import SceneGraph
     from ...tools.finishing.photograph import Photograph
+    from ...tools.lifting.inpainters import Inpainter
     from ...tools.operation import Context
     from .naming import Named
 
@@ -92,7 +93,9 @@ class Session:
             model, with pictures before and after. None: do not judge.
         accept_unconfirmed: edit what was chosen although its name is not confirmed, without asking; for scripts.
         assets: a folder with assets of your own (.glb, .ply), which are inserted by their names.
-        infill: fill the surfaces that deleted, moved and replaced things hid.
+        infill: fill the surfaces that deleted, moved and replaced things hid: True or "scene" from the scene itself,
+            False or "none" not at all, else also by a model that inpaints pictures, a name that
+            `tools.lifting.inpainters.load` takes or an `Inpainter`.
         capture: photographs that the scene was fitted from, a `Capture` or a path that `read_capture` takes: what is
             filled is optimised against those that see behind what is gone.
         references: photographs of materials, which instructions name by their files or as "the photo"; see
@@ -131,7 +134,7 @@ class Session:
         vlm: str | ModelBackend | None = "auto",
         accept_unconfirmed: bool = False,
         assets: str | Path | None = None,
-        infill: bool = True,
+        infill: bool | str | Inpainter = True,
         capture: str | Path | Capture | None = None,
         references: str | Path | Sequence[str | Path] | Mapping[str, Photograph] = (),
     ) -> None:
@@ -141,7 +144,7 @@ class Session:
         self._vision = VisionClient(vlm, self._planner.ledger, self._progress)
         self._encoder = encoder
         self._assets = own_assets(assets)
-        self._infill = infill
+        self._infill, self._inpainter = infill_of(infill)
         scene, self._photographs = photographed(scene, capture)
         self._references = own_references(references)
         self._asker = Asker()
@@ -275,6 +278,7 @@ class Session:
         return Context(
             viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks,
             assets=self._assets, infill=self._infill, photographs=self._photographs, references=self._references,
+            assets=self._assets, infill=self._infill, inpainter=self._inpainter, photographs=self._photographs,
         )  # fmt: skip
 
     # -- planner ----------------------------------------------------------------------------------------------------

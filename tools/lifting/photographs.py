@@ -12,11 +12,11 @@ from ..receipt import Lifted
 from .behind import Behind, Photographs, seen_behind
 from .optimise import optimised
 from .target import psnr
+from .told import PHOTOGRAPHS
 
 HELD_EVERY = 8  # of the photographs that see behind, one is kept from the optimisation and measures it
 FEWEST = 3  # photographs that see behind, of which one measures: fewer do not tell how far away a thing is
 PIXELS = 100  # of all photographs: fewer tell nothing
-SOURCE = "photographs"
 
 
 def with_photographs(scene: Scene, photographs: Photographs, new: torch.Tensor, seed: int = 0) -> tuple[Scene, Lifted]:
@@ -34,7 +34,9 @@ def with_photographs(scene: Scene, photographs: Photographs, new: torch.Tensor, 
     started = time.perf_counter()
     behind = seen_behind(photographs, scene.cloud, new)
     if len(behind.targets) < FEWEST or behind.pixels < PIXELS:
-        return scene, Lifted(source=SOURCE, looked=behind.looked, reason=_why_none(behind), seconds=_since(started))
+        return scene, Lifted(
+            source=PHOTOGRAPHS, looked=behind.looked, reason=_why_none(behind), seconds=_since(started)
+        )
     first = min(HELD_EVERY, len(behind.targets)) // 2
     measured = behind.targets[first::HELD_EVERY]
     learnt = [t for k, t in enumerate(behind.targets) if (k - first) % HELD_EVERY]
@@ -50,7 +52,7 @@ def with_photographs(scene: Scene, photographs: Photographs, new: torch.Tensor, 
     was, now = psnr(scene.cloud, measured), psnr(cloud, measured)
     kept = now > was
     told = Lifted(
-        source=SOURCE, looked=behind.looked, views=len(behind.targets), held_out=len(measured),
+        source=PHOTOGRAPHS, looked=behind.looked, views=len(behind.targets), held_out=len(measured),
         pixels=behind.pixels, psnr_before=was, psnr_after=now if kept else was,
         seconds=_since(started),
         reason="" if kept else "the fill is as near to the photographs as it gets",

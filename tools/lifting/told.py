@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from ..receipt import Lifted
 
+PHOTOGRAPHS = "photographs"
+
 
 def note(told: Lifted) -> str:
     """One sentence for a receipt."""
+    if told.source != PHOTOGRAPHS:
+        return _inpainted(told)
     if not told.views:
         return f"the fill was not compared with {told.source}: {told.reason}"
     seen = f"{told.views} of {told.looked} {told.source} that show the place see behind it"
@@ -15,3 +19,13 @@ def note(told: Lifted) -> str:
     there = f"there it went from {told.psnr_before:.1f} to {told.psnr_after:.1f} dB"
     held = f" in {told.held_out} that were kept apart" if told.held_out else ""
     return f"{seen}; the fill was optimised against them: {there}{held}, in {told.seconds:.0f} s"
+
+
+def _inpainted(told: Lifted) -> str:
+    if told.reason:
+        return f"{told.source} filled nothing, so the fill from the scene itself stays: {told.reason}"
+    return (
+        f"{told.source} inpainted {told.views} views of the hole: {told.made:,} Gaussians were made where the "
+        f"surroundings tell nothing, and with the fill were optimised against these views, from {told.psnr_before:.1f} "
+        f"to {told.psnr_after:.1f} dB, in {told.seconds:.0f} s"
+    )

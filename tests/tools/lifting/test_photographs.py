@@ -141,13 +141,13 @@ def test_delete_with_photographs(room: Room, monkeypatch: pytest.MonkeyPatch) ->
     context = Context(viewer=scene.cameras[0], photographs=room.photographs)
     done = completing.completed(scene, op, context, carry_out(scene, op, context, target, seen=False))
     told = done.receipt.lifted
-    assert told is not None and told.views > 0 and done.receipt.added == len(room.new)
-    assert done.receipt.notes[-1] == note(told) and "lift" in done.receipt.seconds
+    assert len(told) == 1 and told[0].views > 0 and done.receipt.added == len(room.new)
+    assert done.receipt.notes[-1] == note(told[0]) and "lift" in done.receipt.seconds
     alone, _ = with_photographs(room.filled, room.photographs, room.new)
     assert _same(done.scene.cloud, alone.cloud)
     plain = replace(context, photographs=None)
     done = completing.completed(scene, op, plain, carry_out(scene, op, plain, target, seen=False))
-    assert done.receipt.lifted is None and done.scene is room.filled
+    assert done.receipt.lifted == () and done.scene is room.filled
 
 
 def test_a_session_takes_a_capture(room: Room, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The photographs that a session's scene was fitted from."""
+"""What a session fills holes with: the scene itself, a model that inpaints pictures, and photographs of the scene."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from ...gaussians.scene import Scene
 if TYPE_CHECKING:
     from ...gaussians.files.captures.capture import Capture
     from ...tools.lifting.behind import Photographs
+    from ...tools.lifting.inpainters import Inpainter
+
+SCENE, NONE = "scene", "none"  # what `--infill` takes besides the name of a model
 
 
 def photographed(scene: Scene, capture: str | Path | Capture | None) -> tuple[Scene, Photographs | None]:
@@ -34,3 +37,16 @@ def photographed(scene: Scene, capture: str | Path | Capture | None) -> tuple[Sc
     if not scene.cameras:
         scene = scene.replace(cameras=taken.cameras)
     return scene, Photographs(taken, scene.cloud)
+
+
+def infill_of(infill: bool | str | Inpainter) -> tuple[bool, Inpainter | None]:
+    """Whether holes are filled, and the model that inpaints them too, if any.
+
+    Raises:
+        BackendError: there is no such model, or its files or packages are missing.
+    """
+    if isinstance(infill, bool) or infill in (SCENE, NONE):
+        return infill not in (False, NONE), None
+    from ...tools.lifting.inpainters import load
+
+    return True, load(infill) if isinstance(infill, str) else infill
