@@ -277,8 +277,8 @@ class Session:
         encoder = self.encoder if self.scene.language is not None else None
         return Context(
             viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks,
-            assets=self._assets, infill=self._infill, photographs=self._photographs, references=self._references,
             assets=self._assets, infill=self._infill, inpainter=self._inpainter, photographs=self._photographs,
+            references=self._references,
         )  # fmt: skip
 
     # -- planner ----------------------------------------------------------------------------------------------------

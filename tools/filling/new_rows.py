@@ -19,7 +19,8 @@ from .planes import F64
 COVER = 0.6  # standard deviation over the side of a cell: no gaps, and edges stay crisp
 FLAT = 0.08  # thickness over the standard deviation along the surface
 OPACITY = 0.97
-_SAME = 1e-3  # relative error of the proportions by which a fill is recognised
+_SAME = 1e-3  # relative error of the proportions and the opacity by which a fill is recognised
+_EXACT = 1e-5  # likewise of the proportions alone: float32 logarithms keep 1e-6
 _NEIGHBOURS = 8  # Gaussians of the surface whose view-dependent colour a new one takes
 
 
@@ -64,10 +65,13 @@ def gaussians_of(chart: Chart, look: Look, cloud: GaussianCloud, rows: Tensor) -
 
 
 def is_fill(cloud: GaussianCloud, rows: Tensor) -> Tensor:
-    """`[M]` bool: the rows that a fill made, told by their opacity and proportions, which a file keeps."""
+    """`[M]` bool: the rows that a fill made, told by their opacity and proportions, which a file keeps.
+
+    Where pictures changed the opacity (see `lifting`), the proportions tell, which they then have to do exactly.
+    """
     scales = cloud.scales[rows]
-    flat = (scales[:, 2] / (FLAT * scales[:, 0]) - 1).abs() < _SAME
-    return flat & ((cloud.opacities[rows] / OPACITY - 1).abs() < _SAME)
+    off = (scales[:, 2] / (FLAT * scales[:, 0]) - 1).abs()
+    return (off < _EXACT) | ((off < _SAME) & ((cloud.opacities[rows] / OPACITY - 1).abs() < _SAME))
 
 
 def _bands(points: Tensor, cloud: GaussianCloud, rows: Tensor) -> Tensor:

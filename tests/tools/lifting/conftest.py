@@ -18,6 +18,7 @@ from scenewright.gaussians.harmonics import color_to_dc
 from scenewright.gaussians.lens import Lens
 from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Scene
+from scenewright.tools.filling.new_rows import FLAT
 from scenewright.tools.lifting.behind import Photographs
 
 STEP = 0.05
@@ -28,7 +29,7 @@ SIZE = (192, 144)
 def sheet(points: np.ndarray, normal: int, rgb: np.ndarray, group: int) -> GaussianCloud:
     """Flat Gaussians at points `[N, 3]`."""
     scales = np.full((len(points), 3), 0.6 * STEP, np.float32)
-    scales[:, normal] = 0.08 * 0.6 * STEP
+    scales[:, normal] = 0.1 * 0.6 * STEP
     return GaussianCloud.create(
         torch.from_numpy(points.astype(np.float32)), torch.tensor([1.0, 0, 0, 0]).repeat(len(points), 1),
         torch.from_numpy(scales), torch.full((len(points),), 0.95),
@@ -116,6 +117,9 @@ def _room(folder: Path, missing: torch.Tensor) -> Room:
     scene = Scene(fitted, cameras=capture.cameras)
     guess = whole[missing]
     grey = color_to_dc(torch.full((len(guess), 3), 0.47))[:, None]
-    new = guess.replace(sh=grey, ids=torch.arange(len(guess)) + len(fitted))
+    proportions = torch.tensor([1.0, 1.0, FLAT]) * 0.6 * STEP
+    new = guess.replace(
+        sh=grey, scales=proportions.expand(len(guess), 3).clone(), ids=torch.arange(len(guess)) + len(fitted)
+    )
     filled = scene.replace(cloud=concat([fitted[fitted.group == FLOOR], new]))
     return Room(scene, filled, new.ids, Photographs(capture, fitted), whole)

@@ -11,6 +11,7 @@ import torch
 
 from scenewright.gaussians.cloud import GaussianCloud, concat
 from scenewright.gaussians.errors import FileError
+from scenewright.gaussians.files import load, save
 from scenewright.gaussians.files.captures.capture import read_capture
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.selection import Selection
@@ -19,6 +20,7 @@ from scenewright.gaussians.rows import mask_of_ids
 from scenewright.gaussians.scene import Scene
 from scenewright.tools import completing
 from scenewright.tools.execute import carry_out
+from scenewright.tools.filling.new_rows import is_fill
 from scenewright.tools.lifting.behind import Photographs, differing, seen_behind
 from scenewright.tools.lifting.photographs import with_photographs
 from scenewright.tools.lifting.told import note
@@ -83,6 +85,15 @@ def test_limits_of_what_may_change(room: Room, lifted: Result) -> None:
     assert bool(((factor > 0.39) & (factor < 2.01)).all())
     assert torch.allclose(factor, factor[:, :1].expand_as(factor), rtol=1e-4)  # proportions stay
     assert bool(((now.opacities > 0) & (now.opacities < 1)).all())
+
+
+def test_an_optimised_fill_is_still_known_as_one(room: Room, lifted: Result, tmp_path: Path) -> None:
+    """Another fill of the place must not take it for what was there; in a file as well."""
+    scene = lifted[0]
+    save(scene, tmp_path / "scene.ply")
+    own = mask_of_ids(scene.cloud.ids, room.new)
+    for cloud in (scene.cloud, load(tmp_path / "scene.ply").cloud):
+        assert bool(is_fill(cloud, own.nonzero().squeeze(1)).all())
 
 
 def test_pixels_that_the_thing_covers_do_not_count(room: Room) -> None:
