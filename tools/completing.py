@@ -67,7 +67,7 @@ def _lifted(done: Done, scene: Scene, lifted: Lifted, seconds: dict[str, float])
 
     receipt = done.receipt.model_copy(
         update={
-            "added": done.receipt.added + lifted.made,
+            "added": done.receipt.added + lifted.made - lifted.replaced,
             "total": len(scene.cloud),
             "notes": (*done.receipt.notes, note(lifted)),
             "lifted": (*done.receipt.lifted, lifted),

