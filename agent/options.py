@@ -123,6 +123,10 @@ ReferenceWidth = Annotated[
     float | None,
     typer.Option("--reference-width", metavar="M", help="How many metres the photographs show from left to right."),
 ]
+Harmony = Annotated[
+    bool,
+    typer.Option("--harmony/--no-harmony", help="Fit what is put into a scene to its light, and let it cast shadows."),
+]
 Picture = Annotated[
     bool, typer.Option("--picture", help="Send the viewer's picture to a language model that takes pictures.")
 ]

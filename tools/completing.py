@@ -1,4 +1,4 @@
-"""Complete an edit: fill the surfaces that it reveals, and take contact shadows along with what cast them.
+"""Complete an edit: fill the surfaces that it reveals, take contact shadows off, and cast them where things are put.
 
 This comes after the checks of the operation. It only adds Gaussians, and makes those lighter or darker that lie in a
 contact shadow; all others stay the same bit for bit. Where there is a model that inpaints pictures, what it makes of
@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor
 
+from ..gaussians.language.field.language_field import LanguageField
 from ..gaussians.language.query.selection import mask_of
 from ..gaussians.rows import mask_of_ids
 from ..gaussians.scene import Scene
@@ -22,10 +23,12 @@ from .field_update import after_recolor, recount
 from .operation import Context, EditOp
 from .receipt import Filled, Lifted
 
+_FEWEST, _MOST = 20, 24  # Gaussians of a thing that casts a shadow, and things that do after one operation
+
 
 def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
-    """The result of an operation with what it revealed filled, unless the operation or the context says not to, and
-    what was filled optimised against the photographs of the context.
+    """The result of an operation with what it revealed filled, unless the operation or the context says not to; what
+    was filled is optimised against the photographs of the context; and what was put somewhere casts its shadow there.
 
     Args:
         before: the scene before the operation.
@@ -34,14 +37,21 @@ def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
     Raises:
         FileError: a photograph cannot be read.
     """
+    plain = done
     done, new = _filled(before, op, context, done)
     if context.inpainter is not None and _may_fill(before, op, context, done):
         done, new = _inpainted(before, op, context, done, new)
-    if context.photographs is None or not len(new):
-        return done
+    if context.photographs is not None and len(new):
+        done = _photographed(context, done, new)
+    return _with_shadows(before, op, context, plain.scene, done)
+
+
+def _photographed(context: Context, done: Done, new: Tensor) -> Done:
+    """The result with the new Gaussians optimised against the photographs."""
     from .lifting.photographs import with_photographs
 
     seconds: dict[str, float] = {}
+    assert context.photographs is not None
     with timed(seconds, "lift"):
         scene, lifted = with_photographs(done.scene, context.photographs, new, context.seed)
     return _lifted(done, scene, lifted, seconds)
@@ -82,6 +92,34 @@ def _may_fill(before: Scene, op: EditOp, context: Context, done: Done) -> bool:
     query = op.query()
     wanted = op.reveals and context.infill and getattr(op, "infill", True) and done.scene is not before
     return bool(wanted) and query is not None and not query.spatial
+
+
+def _with_shadows(before: Scene, op: EditOp, context: Context, placed: Scene, done: Done) -> Done:
+    """The result with the contact shadows of what an operation put somewhere.
+
+    Args:
+        placed: the scene right after the operation, before anything was filled.
+    """
+    query = op.query()
+    if not (op.puts and context.harmony and getattr(op, "harmony", True)) or placed is before:
+        return done
+    if (query is not None and query.spatial) or (op.reveals and not (context.infill and getattr(op, "infill", True))):
+        return done  # a shadow stays where it was
+    put = _put(before, placed, op)
+    if not put:
+        return done
+    seconds: dict[str, float] = {}
+    with timed(seconds, "shadows"):
+        scene, cast, said = _shaded(before, done.scene, put)
+    receipt = done.receipt.model_copy(
+        update={
+            "changed": done.receipt.changed + sum(f.darker for f in cast),
+            "notes": (*done.receipt.notes, *said),
+            "filled": (*done.receipt.filled, *cast),
+            "seconds": {**done.receipt.seconds, **seconds},
+        }
+    )
+    return done._replace(scene=scene, receipt=receipt)
 
 
 def _filled(before: Scene, op: EditOp, context: Context, done: Done) -> tuple[Done, Tensor]:
@@ -127,7 +165,6 @@ def filled(before: Scene, after: Scene, moved: Sequence[Tensor] = ()) -> tuple[S
     for rows in left_their_place(before, after, moved):
         apart = mask_of(scene.cloud, torch.cat(elsewhere)) if elsewhere else None
         patches = patches_behind(scene, before.cloud[rows], apart)
-        darkness = max((p.darkness for p in patches), default=0.0)
         lit, new = unshaded(scene, patches), merged(scene, patches, top)
         told += tell(scene, patches)
         if lit is not scene.cloud:
@@ -138,25 +175,35 @@ def filled(before: Scene, after: Scene, moved: Sequence[Tensor] = ()) -> tuple[S
             cloud = joined(scene.cloud, None, [new])
             scene = scene.replace(cloud=cloud, language=recount(scene.language, cloud))
             ids.append(new.ids)
-        if elsewhere and darkness > 0:
-            scene, cast = _shaded(scene, before.cloud.ids[rows], darkness)
-            told += cast
     return scene, _together(told), torch.cat(ids)
 
 
-def _shaded(scene: Scene, ids: Tensor, darkness: float) -> tuple[Scene, tuple[Filled, ...]]:
-    """The scene with the contact shadow of a moved thing where it stands now."""
-    from .filling.fill import shadow_under
-    from .filling.shadow import multiplied
+def _shaded(
+    before: Scene, scene: Scene, put: Sequence[Tensor]
+) -> tuple[Scene, tuple[Filled, ...], tuple[str, ...]]:  # fmt: skip
+    """The scene with the contact shadows of what was put somewhere, by the ids of each thing; what was done, in words
+    too."""
+    from .harmony.shadows import shadows_under
+    from .harmony.strength import strength_of
+    from .harmony.told import notes
 
-    rows, factor = shadow_under(scene, mask_of(scene.cloud, ids), darkness)
-    if not len(rows):
-        return scene, ()
-    sh = scene.cloud.sh.clone()
-    sh[rows] = multiplied(sh[rows], factor)
-    scene = scene.replace(cloud=scene.cloud.replace(sh=sh))
-    scene = scene.replace(language=after_recolor(scene, scene.cloud.ids[rows]))
-    return scene, (Filled(surface="what it stands on", gaussians=0, area=0.0, sure=0.0, darker=len(rows)),)
+    things = [mask_of(scene.cloud, ids).nonzero().squeeze(1) for ids in put]
+    scene, told = shadows_under(scene, things, strength_of(before))
+    cast = Filled(surface="what it stands on", gaussians=0, area=0.0, sure=0.0, darker=told.darker)
+    return scene, (cast,) if told.darker else (), notes(told)
+
+
+def _put(before: Scene, after: Scene, op: EditOp) -> tuple[Tensor, ...]:
+    """Ids of the Gaussians of each thing that an operation put somewhere: what is new, or what moved."""
+    if op.op == "move":
+        rows = torch.cat(_moved(before, after) or (torch.zeros(0, dtype=torch.int64),))
+    else:
+        rows = (~mask_of(after.cloud, before.cloud.ids)).nonzero().squeeze(1)
+    owner = after.cloud.group[rows]
+    if after.language is not None:
+        owner = _objects(after.language, owner)
+    things = [after.cloud.ids[rows[owner == g]] for g in torch.unique(owner)]
+    return tuple(sorted((t for t in things if len(t) >= _FEWEST), key=len, reverse=True)[:_MOST])
 
 
 def _together(told: Sequence[Filled]) -> tuple[Filled, ...]:
@@ -174,6 +221,13 @@ def _together(told: Sequence[Filled]) -> tuple[Filled, ...]:
             lighter=one.lighter + other.lighter, darker=one.darker + other.darker, reason=one.reason,
         )  # fmt: skip
     return tuple(found.values())
+
+
+def _objects(field: LanguageField, groups: Tensor) -> Tensor:
+    """The object that each group is of; -1 stays."""
+    from .filling.revealed import objects
+
+    return objects(field, groups)
 
 
 def _moved(before: Scene, after: Scene) -> tuple[Tensor, ...]:

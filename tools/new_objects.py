@@ -16,7 +16,7 @@ from ..gaussians.errors import InstructionError
 from ..gaussians.language.field.measure import reach, solid_points
 from ..gaussians.language.field.scale import SHAPE
 from ..gaussians.scene import Scene
-from ..gaussians.world import kinds
+from ..gaussians.world import finishes, kinds
 from ..gaussians.world.box import Axes, Box
 from ..gaussians.world.person import HUNG_AT
 from . import field_update
@@ -31,6 +31,9 @@ from .placement.surroundings import Surroundings
 from .transform import transformed
 
 _ASSUMED_WIDTH = 4.5  # metres, assumed width of a scene that gives no other hint of its scale
+_EYES = 1.35  # metres above the floor at which people hold a camera that they point at a room
+_FEW_EYES = 8  # cameras that tell it
+_FLOOR_BAND, _FLOOR_SHARE = 0.05, 0.03  # of that height, how thick a floor is; of the scene's Gaussians, its share
 _SURE = 0.5  # probability from which a name tells a size
 _WIDER = 1.3  # of the footprint of what is replaced: how wide a thing of unknown scale may be in its place
 _DOOR_HEIGHT = 1.6  # metres: taller objects at walls (doors, curtains, wardrobes) reach down to the floor
@@ -78,6 +81,9 @@ def scene_scale(scene: Scene, anchors: Sequence[tuple[Body, str]] = ()) -> Scene
             f"the scene's scale is unknown; it was judged by the usual length of: {', '.join(name for _, name in long)}"
         )
         return SceneScale(float(np.exp(np.median([value for value, _ in long]))), (said,))
+    if (eyes := _by_eyes(scene)) is not None:
+        said = "the scene's scale is unknown; it was judged by the height from which people photograph a floor"
+        return SceneScale(eyes, (said,), guessed=True)
     across = _across(scene)
     said = f"the scene's scale is unknown; it was taken to be {_ASSUMED_WIDTH:g} m across"
     return SceneScale(across / _ASSUMED_WIDTH, (said,), guessed=True)
@@ -107,6 +113,18 @@ def _long_vote(box: Box, name: str) -> list[tuple[float, str]]:
         return []
     usual = max((low * high) ** 0.5 if low > 0 else high / 2 for low, high in kind.size)
     return [(float(np.log(max(box.size) / usual)), name)]
+
+
+def _by_eyes(scene: Scene) -> float | None:
+    """Scene units per metre if the cameras are as high above the floor as people hold them; None without cameras or
+    where no floor was seen from them."""
+    if len(scene.cameras) < _FEW_EYES or scene.frame.floor is None:
+        return None
+    up, floor = scene.frame.up_vector, scene.frame.floor
+    high = float(np.median([c.position @ up for c in scene.cameras])) - floor
+    points = scene.cloud.means[:: max(1, len(scene.cloud) // 50_000)].to(torch.float64).cpu().numpy()
+    near = np.abs(points @ up - floor) < _FLOOR_BAND * abs(high)
+    return high / _EYES if high > 0 and near.mean() > _FLOOR_SHARE else None
 
 
 def _across(scene: Scene) -> float:
@@ -176,12 +194,25 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
 def _usual_color(request: AssetRequest) -> str | None:
     """A usual colour of a small thing that is called by the very name of its kind: an apple is red or green. None for
     furniture, which comes in any colour, and for what is drawn as something like it."""
+    if (pigment := _material(request.kind)) is not None:
+        return pigment
     kind = kinds.find(request.kind)
     if kind is None or kind.support != "surface" or not kind.colors:
         return None
     said = " ".join(kinds.words_of(request.kind))
     named = {kind.name, *(kind.also or ())}
     return kind.colors[request.seed % len(kind.colors)] if said in named else None
+
+
+def _material(name: str) -> str | None:
+    """The pigment of the material that a name says: "wooden chair"; None if it says none, or names a thing by it."""
+    words, known = name.lower().split(), kinds.find(name)
+    if known is None or known.name == name.lower():
+        return None
+    for length in range(len(words) - 1, 0, -1):
+        if (found := finishes.said(" ".join(words[:length]))) is not None:
+            return found.color or finishes.FINISHES[found.finish].color or None
+    return None
 
 
 def fitted(scale: SceneScale, kind: str, old: Box) -> SceneScale:
@@ -198,6 +229,17 @@ def fitted(scale: SceneScale, kind: str, old: Box) -> SceneScale:
 def set_down(asset: ScaledAsset, foot: Array, axes: Axes) -> GaussianCloud:
     """The asset's Gaussians, rotated so that width, depth and height run along `axes`, standing at `foot`."""
     return transformed(asset.cloud, np.array(axes).T, foot)
+
+
+def in_its_light(cloud: GaussianCloud, scene: Scene, wanted: bool) -> tuple[GaussianCloud, tuple[str, ...]]:
+    """A new thing with its colours fitted to the light of the scene if that is wanted, and a note of what changed."""
+    if not wanted:
+        return cloud, ()
+    from .harmony.matched import matched
+
+    cloud, told = matched(cloud, scene)
+    said = told.describe()
+    return cloud, (f"its colours were fitted to the light of the scene: {said}",) if said else ()
 
 
 def find_spot(around: Surroundings, asset: ScaledAsset, place: Placement | None, start: Array) -> Spot:

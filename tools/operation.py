@@ -176,6 +176,7 @@ class Context:
         inpainter: fills what an edit revealed in views of it, beside the fill from the scene itself; None: only that.
         photographs: of the scene, against which what was filled is optimised where they see it; None: there are none.
         references: photographs of materials that the user gave, by the names of their files.
+        harmony: whether what is put into a scene is fitted to its light and casts a shadow (see `harmony`).
     """
 
     viewer: Camera
@@ -191,6 +192,7 @@ class Context:
     inpainter: Inpainter | None = None
     photographs: Photographs | None = None
     references: Mapping[str, Photograph] = field(default_factory=dict)
+    harmony: bool = True
 
     def resolve(self, scene: Scene, query: Query) -> Selection:
         """What `query` means in `scene`; whatever its verdict is (see `Selection.require`).
@@ -269,6 +271,7 @@ class EditOp(BaseModel):
     op: str
     example: ClassVar[tuple[str, dict[str, Any]]]
     reveals: ClassVar[bool] = False  # whether it takes things from their place, and what they hid may be filled
+    puts: ClassVar[bool] = False  # whether it puts things where they were not, and they cast shadows there
     takes_enclosed: ClassVar[bool] = False  # whether what a thing of a capture encloses is edited with it
 
     def query(self) -> Query | None:

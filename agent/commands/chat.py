@@ -8,6 +8,7 @@ from ..options import (
     Capture,
     Debug,
     Encoder,
+    Harmony,
     Infill,
     Json,
     Judge,
@@ -42,6 +43,7 @@ def command(
     capture: Capture = None,
     reference: References = None,
     reference_width: ReferenceWidth = None,
+    harmony: Harmony = True,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -60,6 +62,7 @@ def command(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
             picture=picture, judge=judge, vlm=vlm, assets=assets, infill="none" if no_infill else infill,
             capture=capture, references=reference or (), reference_width=reference_width,
+            harmony=harmony,
         )
     )  # fmt: skip
     try:

@@ -19,6 +19,7 @@ from ..options import (
     Debug,
     Encoder,
     Force,
+    Harmony,
     Infill,
     Json,
     Judge,
@@ -101,6 +102,7 @@ def command(
     capture: Capture = None,
     reference: References = None,
     reference_width: ReferenceWidth = None,
+    harmony: Harmony = True,
     encoder: Encoder = "auto",
     seed: Seed = 0,
     yes: Yes = False,
@@ -140,6 +142,7 @@ def command(
         capture,
         reference or (),
         reference_width,
+        harmony,
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)

@@ -11,6 +11,7 @@ from ..options import (
     Capture,
     Debug,
     Encoder,
+    Harmony,
     Infill,
     Json,
     Judge,
@@ -44,6 +45,7 @@ def command(
     infill: Infill = "scene",
     no_infill: NoInfill = False,
     capture: Capture = None,
+    harmony: Harmony = True,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -76,6 +78,7 @@ def command(
         SessionOptions(
             scene, planner, encoder, view, size, log, seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
             picture=picture, judge=judge, vlm=vlm, infill="none" if no_infill else infill, capture=capture,
+            harmony=harmony,
         ),
         progress,
     )  # fmt: skip

@@ -37,6 +37,7 @@ class SessionOptions:
         capture: photographs that the scene was fitted from, or None.
         references: photographs of materials that instructions name.
         reference_width: metres that each of them shows from left to right, or None.
+        harmony: fit what is put into the scene to its light, and let it cast shadows.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
 
@@ -60,6 +61,7 @@ class SessionOptions:
     capture: Path | None = None
     references: Sequence[Path] = ()
     reference_width: float | None = None
+    harmony: bool = True
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -101,6 +103,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         infill=options.infill,
         capture=options.capture,
         references=photographs,
+        harmony=options.harmony,
     )
     for note in session.log_notes:
         terminal.say(f"note: {note}")

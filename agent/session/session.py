@@ -100,6 +100,7 @@ class Session:
             filled is optimised against those that see behind what is gone.
         references: photographs of materials, which instructions name by their files or as "the photo"; see
             `add_reference`.
+        harmony: fit what is put into the scene to its light, and let it cast shadows.
         vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
             takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
@@ -137,6 +138,7 @@ class Session:
         infill: bool | str | Inpainter = True,
         capture: str | Path | Capture | None = None,
         references: str | Path | Sequence[str | Path] | Mapping[str, Photograph] = (),
+        harmony: bool = True,
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
         # The planner comes first, so that an unknown name creates no log file.
@@ -147,6 +149,7 @@ class Session:
         self._infill, self._inpainter = infill_of(infill)
         scene, self._photographs = photographed(scene, capture)
         self._references = own_references(references)
+        self._harmony = harmony
         self._asker = Asker()
         self._viewer = viewer
         self._seed = seed
@@ -279,6 +282,7 @@ class Session:
             viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks,
             assets=self._assets, infill=self._infill, inpainter=self._inpainter, photographs=self._photographs,
             references=self._references,
+            harmony=self._harmony,
         )  # fmt: skip
 
     # -- planner ----------------------------------------------------------------------------------------------------

@@ -314,7 +314,8 @@ def test_what_is_inserted_behind_the_viewer_is_told(corner: Scene, context: Cont
     away = replace(context, viewer=Camera.look_at([0, -1, 1.5], [0, -9, 1.5], [0, 0, 1], 96, 64, 50))
     place = {"relation": "on", "anchors": [a("table")]}
     assert "outside the current view" in " ".join(do(corner, away, "insert", asset="mug", place=place).receipt.notes)
-    assert not do(corner, context, "insert", asset="mug", place=place).receipt.notes
+    notes = " ".join(do(corner, context, "insert", asset="mug", place=place).receipt.notes)
+    assert "outside the current view" not in notes
 
 
 def test_what_stood_on_a_deleted_thing_comes_down(corner: Scene, context: Context) -> None:

@@ -26,7 +26,7 @@ from .hidden import VOXELS as HIDING
 from .hidden import hidden, space_of
 from .new_rows import Look, gaussians_of, is_fill
 from .planes import F64, VOXELS, Mask, Plane, planes_near
-from .shadow import Shadow, cast, estimated, multiplied, rows_and_factors, zone_of
+from .shadow import Shadow, estimated, multiplied, rows_and_factors, zone_of
 from .smooth import harmonic
 from .texture import Continued, continued
 
@@ -44,7 +44,6 @@ _ENCLOSED = 0.8  # of such a gap's border that must be of the surface
 _FAR = 1.0  # of the thing's extent: a surface farther from it was seen past it
 _ROUGH = 0.02  # of the thing's extent: noise of a surface on which no shadow can be told
 _CLOSED = 0.5  # of the cells around a thing that its support must cover for its shadow to be told
-_LOW = 0.02  # share of a thing's points below and above its height
 _NEAR = 6  # cells from a hole within which a group must be that is continued into it
 _GROUP = 0.1  # of a surface's cells from which a group is part of it
 _SAMPLE = 60_000  # points of the surroundings
@@ -298,41 +297,6 @@ def _chart(
     slab = rows_in_slab(scene.cloud, rows, coarse, thick, thick)
     chart = chart_of(plane, *window, spacing_of(coarse, scene.cloud, slab))
     return chart, slab
-
-
-def shadow_under(scene: Scene, thing: Tensor, darkness: float) -> tuple[Tensor, Tensor]:
-    """The rows that lie in the contact shadow of a thing where it stands, and by what their colours are multiplied,
-    `[M]` each; empty if it stands on nothing.
-
-    Args:
-        thing: `[N]` bool, its rows.
-        darkness: of the shadow close to the thing, in [0, 1).
-    """
-    nothing = torch.zeros(0, dtype=torch.int64), torch.zeros(0)
-    cloud = scene.cloud[thing]
-    size, low, high = _extent(cloud)
-    if size <= 0:
-        return nothing
-    pad = _AROUND * size
-    rows = rows_between(scene.cloud, low - pad, high + pad)
-    rows = rows[~thing[rows]]
-    solid = rows[scene.cloud.opacities[rows] > OPAQUE]
-    around = spread(scene.cloud, solid[:: max(1, len(solid) // _SAMPLE)], size)
-    own = points_of(cloud, (cloud.opacities > OPAQUE).nonzero().squeeze(1))
-    own = own[((own >= low) & (own <= high)).all(axis=1)]
-    up = scene.frame.up_vector
-    if len(own) < 4:
-        return nothing
-    for plane in planes_near(around, own, up):
-        placed = _chart(scene, rows, plane, (low, high, size)) if plane.carries else None
-        if placed is None:
-            continue
-        chart, slab = placed
-        footprint = seen(chart, cloud).alpha > COVERED
-        height = float(np.ptp(np.quantile(own @ up, [_LOW, 1 - _LOW])))
-        if footprint.any():
-            return rows_and_factors(scene.cloud, slab, chart, cast(footprint, chart, min(height, size / 2), darkness))
-    return nothing
 
 
 def continue_into(

@@ -32,7 +32,7 @@ def left_their_place(before: Scene, after: Scene, moved: Sequence[Tensor]) -> li
         return []
     owner = before.cloud.group[rows]
     if before.language is not None:
-        owner = _objects(before.language, owner)
+        owner = objects(before.language, owner)
         if any(before.language.groups[g].level == "structure" for g in torch.unique(owner).tolist() if g >= 0):
             structure = [g.id for g in before.language.groups if g.level == "structure"]
             whole = torch.isin(owner, torch.tensor(structure, dtype=owner.dtype, device=owner.device))
@@ -48,7 +48,7 @@ def _gone(before: Scene, after: Scene) -> Tensor:
     return ~mask_of_ids(before.cloud.ids, after.cloud.ids)
 
 
-def _objects(field: LanguageField, groups: Tensor) -> Tensor:
+def objects(field: LanguageField, groups: Tensor) -> Tensor:
     """The object that each group is of; -1 stays."""
     table = torch.tensor([g.parent if g.parent >= 0 else g.id for g in field.groups] + [-1], device=groups.device)
     return table[groups.long()]

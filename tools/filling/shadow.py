@@ -1,5 +1,5 @@
 """The contact shadow that a thing casts on a surface: estimated as a ratio of colours against the surface around it,
-divided out where the thing stood, and multiplied in where it is put.
+divided out where the thing stood. What it casts where it is put is in `harmony.shadows`.
 """
 
 from __future__ import annotations
@@ -138,13 +138,6 @@ def _ratio(rgb: F64, clear: F64, inside: Mask, sigma: float) -> F64:
 
     both, own = (rgb * clear).sum(axis=2), (clear * clear).sum(axis=2)
     return np.where(inside, smooth(both) / np.maximum(smooth(own), 1e-9), 1.0)
-
-
-def cast(footprint: Mask, chart: Chart, height: float, depth: float) -> F64:
-    """`[H, W]` ratio of a soft shadow around a footprint, `depth` below it, that fades with the thing's height."""
-    reach = max(0.35 * height / chart.cell, 1.5)
-    blob = ndimage.gaussian_filter(footprint.astype(np.float64), reach / 2, mode="constant")
-    return np.asarray(1 - depth * np.clip(blob / max(float(blob.max()), 1e-9), 0.0, 1.0))
 
 
 def rows_and_factors(cloud: GaussianCloud, rows: Tensor, chart: Chart, factor: F64) -> tuple[Tensor, Tensor]:

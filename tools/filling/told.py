@@ -72,8 +72,6 @@ def notes(told: Sequence[Filled]) -> tuple[str, ...]:
     for f in told:
         if f.lighter:
             lines.append(f"took its contact shadow off {f.surface}: {f.lighter:,} Gaussians are lighter")
-        if f.darker:
-            lines.append(f"its contact shadow went along: {f.darker:,} Gaussians under it are darker")
         if f.reason:
             lines.append(f"left a hole in {f.surface}: {f.reason}")
     return tuple(lines)

@@ -47,6 +47,7 @@ class Duplicate(TargetedOp):
         {"op": "duplicate", "target": {"text": "chair"}, "count": 2, "direction": "right"},
     )
     takes_enclosed: ClassVar[bool] = True
+    puts: ClassVar[bool] = True
     op: Literal["duplicate"] = "duplicate"
     count: Annotated[int, Field(ge=1, le=50)] = 1
     direction: Direction | None = None

@@ -19,6 +19,7 @@ from ..new_objects import (
     add_obstacle,
     affine_of,
     find_spot,
+    in_its_light,
     make_asset,
     scene_scale,
     set_down,
@@ -40,6 +41,7 @@ class Insert(EditOp):
             "place": {"relation": "on", "anchors": [{"text": "coffee table"}]},
         },
     )  # fmt: skip
+    puts: ClassVar[bool] = True
     op: Literal["insert"] = "insert"
     asset: AssetName
     """Kind of object, singular: "armchair", "floor lamp"."""
@@ -48,6 +50,7 @@ class Insert(EditOp):
     height: Length | None = None
     """How tall it is to be; otherwise as tall as such things are."""
     place: Placement | None = None
+    harmony: bool = True  # whether its colours are fitted to the light of the scene, see `harmony`
 
     def subject(self) -> str:
         return f"{self.count} {self.asset}" if self.count > 1 else self.asset
@@ -64,10 +67,13 @@ class Insert(EditOp):
             around.rests = asset.support not in ("wall", "ceiling")
             spot = find_spot(around, asset, self.place, start)
             cloud = set_down(asset, spot.foot, spot.axes)
+            cloud, fitted = in_its_light(cloud, scene, self.harmony and context.harmony)
             add_obstacle(cloud, scene, around)
             hangs = self.place is None and asset.support in ("wall", "ceiling")
-            moved.append(affine_of(objects.add(cloud, asset.label, spot.axes), None if hangs else spot.support))
-            notes |= dict.fromkeys((*asset.notes, *spot.notes))
+            moved.append(
+                affine_of(objects.add(cloud, asset.label, spot.axes), None if hangs else spot.support, spot.touches)
+            )
+            notes |= dict.fromkeys((*asset.notes, *spot.notes, *fitted))
         after, groups = objects.build_scene(context)
         added = objects.ids()
         query = Query(text=objects.entries[0].label, groups=groups)

@@ -60,6 +60,7 @@ class Move(TargetedOp):
     )
     takes_enclosed: ClassVar[bool] = True
     reveals: ClassVar[bool] = True
+    puts: ClassVar[bool] = True
     op: Literal["move"] = "move"
     direction: Direction | None = None
     distance: Length | None = None

@@ -14,6 +14,7 @@ from ..new_objects import (
     add_obstacle,
     affine_of,
     fitted,
+    in_its_light,
     make_asset,
     scene_scale,
     set_down,
@@ -35,11 +36,13 @@ class Replace(TargetedOp):
     )
     takes_enclosed: ClassVar[bool] = True
     reveals: ClassVar[bool] = True
+    puts: ClassVar[bool] = True
     op: Literal["replace"] = "replace"
     asset: AssetName
     """Kind of the new object, singular."""
     color: ColorName | None = None
     infill: bool = True  # whether the surfaces that it hid are filled, see `completing`
+    harmony: bool = True  # whether its colours are fitted to the light of the scene, see `harmony`
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         bodies = bodies_of(scene, selection)
@@ -54,9 +57,10 @@ class Replace(TargetedOp):
             around.rests = asset.support not in ("wall", "ceiling")
             spot = spot_near(around, asset.size, standing_axes(around, [body]), body)
             cloud = set_down(asset, spot.foot, spot.axes)
+            cloud, told = in_its_light(cloud, scene, self.harmony and context.harmony)
             add_obstacle(cloud, scene, around)
             moved.append(affine_of(objects.add(cloud, asset.label, spot.axes), spot.support, spot.touches))
-            notes |= dict.fromkeys((*asset.notes, *spot.notes))
+            notes |= dict.fromkeys((*asset.notes, *spot.notes, *told))
         after, groups = objects.build_scene(context)
         added = objects.ids()
         focus = selection_of(selection, added, groups, f"the new {self.asset}")

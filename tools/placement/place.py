@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
@@ -26,9 +27,16 @@ _CELLS = 220  # most cells along a side of the grid
 _FOOT_CELLS = 10  # cells along the shorter side of a footprint, unless the region is too large for that
 _ASIDE = 0.3  # of the longer side of what is replaced: how far aside the new thing may stand in a capture
 _CROWDED = 0.4  # share of the footprint of what replaces a thing that others may reach into
+_CRAMPED = 0.12  # likewise, of what is put into a capture that has no free place for it
 _NEAR_BY = 0.5  # of its height: how much lower a free spot may be before a crowded one is better
 _LEAST_SUPPORTED = 0.4  # likewise, of its footprint that must lie over the support
 _MIN_SUPPORTED = 0.75  # share of the footprint that must lie over the support's surface
+_CLEARANCE = 0.15  # of a thing's height, up to which points are ignored
+_HAZE = 0.1  # of the points of as much floor of a capture: fewer over it are noise and no thing
+_IN_BOX = 0.5  # of its size: what it costs a thing in a capture to stand in another's box
+_PLACES = 1_500  # on a floor that are looked at
+_FAR = 3.0  # of a room's extent: what a place on its floor costs that nobody sees
+_FLOOR_SEEN, _FLOOR_POINTS = 200, 8_000  # points of a floor that was seen, and most that are compared
 WALL_WORDS = frozenset({"wall", "walls"})
 
 
@@ -89,6 +97,10 @@ def free_spot(around: Surroundings, size: Vec3, axes: Axes, place: Placement | N
     for region in regions:
         if (spot := _elsewhere(around, size, axes, region, anchors)) is not None:
             return spot
+    for region in regions if around.sight is not None else ():
+        foot, _ = _search(around, size, axes, region, anchors, _CRAMPED)
+        if foot is not None:
+            return Spot(foot, region.height, axes, ("there is little room: it touches what stands around it",), True)
     why = "everything there is taken" if crowded else "there is no surface there large enough to carry it"
     raise InstructionError(f"there is no room {where}: {why}; make it smaller, clear a spot or name another place")
 
@@ -196,7 +208,8 @@ def _search(
     origin = region.low - half
     clear = _clearance(around, size)
     blocked = _occupied(around, basis, origin, cell, shape, (region.height + clear, region.height + size[2]))
-    blocked = dilated(blocked, max(1, round(centimetre(around.frame, max(size)) / cell)))  # things do not touch
+    if around.sight is None:  # noise has widened what captures show already
+        blocked = dilated(blocked, max(1, round(centimetre(around.frame, max(size)) / cell)))  # things do not touch
     foot = np.maximum(np.ceil(2 * half / cell).astype(int), 1)  # cells of the footprint
     counts = [np.maximum(s - f + 1, 1) for s, f in zip(shape, foot, strict=True)]
     corner = np.stack(np.meshgrid(*(np.arange(c) for c in counts), indexing="ij"), axis=-1)
@@ -214,11 +227,37 @@ def _search(
     taken = window_sum(blocked.astype(np.int64), foot, counts) / float(foot.prod())
     possible &= taken <= most_taken
     cost = np.where(possible, region.cost(centers) + 2 * max(size[:2]) * taken, np.inf)
+    if around.sight is not None and possible.any():
+        cost = cost + _hidden_cost(around, size, basis, centers, region, possible)
     cost = cost + _overlap_cost(around, size, basis, centers, region.height, clear, anchors)
     best = np.unravel_index(int(np.argmin(cost)), cost.shape)
     if not np.isfinite(cost[best]):
         return None, some
     return centers[best] @ basis[:2] + region.height * around.up, some
+
+
+def _hidden_cost(
+    around: Surroundings, size: Vec3, basis: Array, centers: Array, region: Region, possible: Bool
+) -> Array:
+    """A cost for places of a capture that its pictures do not show: large on the floor of a room, where any place will
+    do, small beside and on a thing."""
+    assert around.sight is not None
+    open_floor = region.walled and region.surface is None and not region.beside
+    weight = _FAR * float(np.linalg.norm(region.high - region.low)) if open_floor else _ASIDE * max(size[:2])
+    cost = np.zeros(possible.shape)
+    chosen = np.argwhere(possible)
+    step = max(1, len(chosen) // _PLACES) if open_floor else 1
+    chosen = chosen[::step]
+    if step > 1:
+        cost[possible] = np.inf
+    places = centers[tuple(chosen.T)]
+    feet = places @ basis[:2] + region.height * around.up
+    hidden = around.sight.hidden(feet, around.up, size[2])
+    if open_floor and len(floor := around.floor_points) >= _FLOOR_SEEN:
+        tree = cKDTree(floor[:: max(1, len(floor) // _FLOOR_POINTS)] @ basis[:2].T.astype(np.float32))
+        hidden = hidden + (tree.query(places)[0] > 0.5 * max(size[:2]))
+    cost[tuple(chosen.T)] = weight * hidden
+    return cost
 
 
 def _closing_cells(surface: Array, cell: float) -> int:
@@ -230,7 +269,8 @@ def _closing_cells(surface: Array, cell: float) -> int:
 def _clearance(around: Surroundings, size: Vec3) -> float:
     """Height above the support up to which points are ignored: rugs, unevenness, the support's own thickness."""
     cm = centimetre(around.frame, max(size))
-    return float(np.clip(0.15 * size[2], 0.5 * cm, 4 * cm))
+    most = _CLEARANCE * size[2] if around.sight is not None else 4 * cm  # floors of captures are noisy
+    return float(np.clip(_CLEARANCE * size[2], 0.5 * cm, most))
 
 
 def _occupied(
@@ -249,7 +289,7 @@ def _occupied(
     points = around.solid[level] @ basis[:2].T.astype(np.float32)
     counts = histogram(points.astype(np.float64), origin, cell, shape)
     nearby = window_sum(np.pad(counts, 1), np.array([3, 3]), list(shape))
-    occupied: Bool = (counts > 0) & (nearby > 1)
+    occupied: Bool = (counts > 0) & (nearby > max(1.0, _HAZE * 9 * cell**2 * around.floor_density))
     return occupied
 
 
@@ -258,6 +298,8 @@ def _overlap_cost(
 ) -> Array:
     """A large cost where the box would overlap another object's box, though no point is there (under a table)."""
     total = np.zeros(centers.shape[:-1])
+    # Things of captures are found in pieces and with strays: their boxes reach over free floor, and points tell more.
+    weight = 1e3 if around.sight is None else _IN_BOX * max(size)
     own = {a.group for a in anchors if a.group >= 0} | around.moving_groups
     for box in [*(box for _, box in neighbours(around.scene, own)), *around.placed]:
         middle = float(np.array(box.center) @ basis[2])
@@ -265,5 +307,5 @@ def _overlap_cost(
             continue
         reach = np.array([box.extent(a) for a in basis[:2]]) / 2 + np.array(size[:2]) / 2
         within = (np.abs(centers - basis[:2] @ np.array(box.center)) < 0.98 * reach).all(axis=-1)
-        total += np.where(within, 1e3, 0.0)
+        total += np.where(within, weight, 0.0)
     return total

@@ -19,6 +19,7 @@ from ...gaussians.world.box import Axes, Box
 from ..operation import Context
 from .bodies import Array, Body, as_vec, centimetre, contact_box, mask_of_bodies
 from .occupancy import column_of, obstacle_points, surface_heights
+from .sight import Sight
 
 _LOW_CEILING = 240.0  # centimetres, height of a low room
 _SAMPLE_SIZE = 50_000  # points from which extents of the room are measured
@@ -27,6 +28,8 @@ _MIN_POINTS = 8  # points under a thing; fewer are floaters
 _TOLERANCE = 0.03
 _RING = 1.8  # times its footprint: where the surface that carries a thing shows around it
 _RING_CELLS = 12  # along each side of that
+_FLOOR = 0.02  # of the scene's height: how thick the floor is
+_FLOOR_CELLS, _FEW_OF_FLOOR = 40, 200  # along each side of it; points that are no floor
 _AROUND = 0.2  # share of the cells around a footprint that a surface fills
 FLOOR_WORDS = frozenset({"floor", "ground", "carpet", "room"})
 
@@ -73,6 +76,34 @@ class Surroundings:
         """`[M]` of the obstacles' points along up."""
         heights: NDArray[np.float32] = self.solid @ self.up.astype(np.float32)
         return heights
+
+    @cached_property
+    def sight(self) -> Sight | None:
+        """What the viewer and the cameras of a capture see; None for other scenes, which are known from all sides."""
+        if self.frame.metres_per_unit is not None:
+            return None
+        return Sight.of(self.context.viewer, self.scene.cameras, self.solid)
+
+    @cached_property
+    def floor_points(self) -> NDArray[np.float32]:
+        """`[M, 3]` solid points of the floor."""
+        span = float(np.ptp(np.quantile(self.heights, [0.01, 0.99]))) if len(self.heights) else 0.0
+        return self.solid[np.abs(self.heights - self.floor) < _FLOOR * span]
+
+    @cached_property
+    def floor_density(self) -> float:
+        """Points of a capture's floor for each square unit of what was seen of it; 0 for other scenes, which have no
+        noise, and where no floor was seen."""
+        points = self.floor_points
+        if self.sight is None or len(points) < _FEW_OF_FLOOR:
+            return 0.0
+        plan = points @ self.frame.basis()[:2].T.astype(np.float32)
+        low, high = np.quantile(plan, [0.02, 0.98], axis=0)
+        cell = max(float((high - low).max()) / _FLOOR_CELLS, 1e-9)
+        index = np.floor((plan - low) / cell).astype(np.int64)
+        index = index[((index >= 0) & (index < _FLOOR_CELLS)).all(axis=1)]
+        counts = np.bincount(index[:, 0] * _FLOOR_CELLS + index[:, 1])
+        return float(np.median(counts[counts > 0])) / cell**2
 
     def add_obstacle(self, points: Array, box: Box) -> None:
         """Add points `[M, 3]` of the world frame and their box to the obstacles."""

@@ -1,0 +1,201 @@
+"""Boxes on a floor: how much light they take, how dark their shadows are, and new things that are fitted to a room."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+
+from scenewright.gaussians import assets
+from scenewright.gaussians.assets.modeling.make import basic_name
+from scenewright.gaussians.camera import Camera
+from scenewright.gaussians.cloud import GaussianCloud, concat
+from scenewright.gaussians.harmonics import color_to_dc, dc_to_color
+from scenewright.gaussians.language.query.query import Query
+from scenewright.gaussians.language.query.selection import Selection
+from scenewright.gaussians.scene import Frame, Scene
+from scenewright.tools.completing import completed
+from scenewright.tools.execute import Done, carry_out
+from scenewright.tools.filling.charts import Chart
+from scenewright.tools.filling.occlusion import blocked
+from scenewright.tools.filling.planes import Plane
+from scenewright.tools.harmony.carrier import carried
+from scenewright.tools.harmony.matched import matched
+from scenewright.tools.harmony.shading import shading_of
+from scenewright.tools.harmony.shadows import shadows_under
+from scenewright.tools.harmony.strength import FAINT, Strength, fitted, strength_of
+from scenewright.tools.operation import Context
+from scenewright.tools.registry import parse
+
+STEP = 0.04
+VIEW = Camera.look_at([0.0, -2.4, 1.6], [0.0, 0.1, 0.2], [0, 0, 1], 160, 120)
+FRAME = Frame((0, 0, 1), 0.0, 1.0, "given", "given")
+GROUND = Plane(np.zeros(3), np.eye(3), 0.0, True, True)
+
+
+def _sheet(points: np.ndarray, normal: int, rgb: np.ndarray, group: int) -> GaussianCloud:
+    scales = np.full((len(points), 3), 0.6 * STEP)
+    scales[:, normal] = 0.002
+    quats = torch.tensor([1.0, 0, 0, 0]).expand(len(points), 4).contiguous()
+    sh = color_to_dc(torch.from_numpy(rgb.astype(np.float32)))[:, None]
+    owner = torch.full((len(points),), group, dtype=torch.int32)
+    means, scale = (torch.from_numpy(a.astype(np.float32)) for a in (points, scales))
+    return GaussianCloud.create(means, quats, scale, torch.full((len(points),), 0.95), sh, owner)
+
+
+def _grid(low: tuple[float, float], high: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    a, b = (np.arange(lo, hi, STEP) + STEP / 2 for lo, hi in zip(low, high, strict=True))
+    x, y = np.meshgrid(a, b, indexing="ij")
+    return x.ravel(), y.ravel()
+
+
+def _floor(tone: float = 0.55) -> GaussianCloud:
+    x, y = _grid((-1.6, -1.6), (1.6, 1.6))
+    tiles = tone + 0.1 * ((np.floor(x / 0.2) + np.floor(y / 0.2)) % 2)
+    return _sheet(np.stack([x, y, 0 * x], 1), 2, np.stack([tiles, tiles, tiles], 1), 0)
+
+
+def _box(
+    middle: tuple[float, float], group: int = 1, size: float = 0.5, light: np.ndarray | None = None
+) -> GaussianCloud:
+    """A red cube on the floor whose faces are brighter towards `light`."""
+    sides = []
+    a, b = _grid((-size / 2, -size / 2), (size / 2, size / 2))
+    for axis in range(3):
+        for end in (-1, 1):
+            bright = 1.0 if light is None else float(np.exp(0.3 * end * light[axis]))
+            points = np.insert(np.stack([a, b], 1), axis, end * size / 2, axis=1)
+            red = np.tile(np.array([0.6, 0.2, 0.15]) * bright, (len(a), 1))
+            sides.append(_sheet(points + np.array([*middle, size / 2]), axis, red, group))
+    return concat(_numbered(sides))
+
+
+def _numbered(clouds: list[GaussianCloud]) -> list[GaussianCloud]:
+    first, out = 0, []
+    for cloud in clouds:
+        out.append(cloud.replace(ids=torch.arange(first, first + len(cloud))))
+        first += len(cloud)
+    return out
+
+
+def _scene(*clouds: GaussianCloud) -> Scene:
+    return Scene(concat(_numbered(list(clouds))), FRAME)
+
+
+def _rows(scene: Scene, group: int = 1) -> torch.Tensor:
+    return (scene.cloud.group == group).nonzero().squeeze(1)
+
+
+def _found(scene: Scene, query: Query, *_: object, **__: object) -> Selection:
+    return Selection(query, "found", scene.cloud.ids[scene.cloud.group == 1], (1,))
+
+
+def _do(scene: Scene, harmony: bool = True, **fields: object) -> Done:
+    op = parse(fields)
+    context = Context(VIEW, resolver=_found, harmony=harmony)
+    return completed(scene, op, context, carry_out(scene, op, context))
+
+
+@pytest.mark.parametrize("height", [0.15, 0.4])
+def test_a_disc_takes_as_much_light_as_its_form_factor(height: float) -> None:
+    """Under the middle of a disc of radius R at height h an even sky loses R² / (R² + h²)."""
+    radius = 0.3
+    x, y = np.meshgrid(np.linspace(-radius, radius, 61), np.linspace(-radius, radius, 61))
+    inside = x**2 + y**2 <= radius**2
+    points = np.stack([x[inside], y[inside], np.full(int(inside.sum()), height)], 1)
+    chart = Chart(GROUND, np.array([-1.0, -1.0]), 2 / 80, (80, 80))
+    share = blocked(points, chart, 0.6).shares
+    expected = radius**2 / (radius**2 + height**2)
+    assert share[0, 39:41, 39:41].mean() == pytest.approx(expected, abs=0.12)  # 60 directions, layers of finite height
+    assert share.min() >= 0 and share.max() <= 1 + 1e-9
+    assert share[0, 0].max() == 0  # nothing beyond its reach
+
+
+def test_a_side_from_which_the_light_comes_is_blocked_by_what_stands_there() -> None:
+    z, y = np.meshgrid(np.linspace(0, 0.5, 30), np.linspace(-0.3, 0.3, 40))
+    wall = np.stack([0 * z.ravel() + 0.3, y.ravel(), z.ravel()], 1)
+    chart = Chart(GROUND, np.array([-1.0, -1.0]), 2 / 80, (80, 80))
+    share = blocked(wall, chart, 0.7).shares[:, 39:41, 46:48].mean(axis=(1, 2))  # at x = 0.175, the wall is on +u
+    assert share[1] > 1.5 * share[0] > 0 and share[3] < 0.3 * share[1]
+
+
+@pytest.mark.parametrize("wanted", [0.4, 1.0])
+def test_the_strength_of_a_cast_shadow_is_measured_again(wanted: float) -> None:
+    scene = _scene(_floor(), _box((0.1, 0.0)))
+    dark, told = shadows_under(scene, [_rows(scene)], Strength(wanted, 1))
+    assert told.darker > 200 and told.missing == 0
+    place = carried(dark, _rows(dark))
+    assert place is not None and place.level
+    assert fitted(dark.cloud, place) == pytest.approx(wanted, abs=0.12)
+
+
+def test_only_colours_of_the_ground_near_the_thing_change() -> None:
+    scene = _scene(_floor(), _box((0.0, 0.0)))
+    dark, told = shadows_under(scene, [_rows(scene)], Strength(0.8, 1))
+    for name, column in scene.cloud.columns():
+        if name != "sh":
+            assert getattr(dark.cloud, name) is column, name
+    changed = (dark.cloud.sh != scene.cloud.sh).any(dim=2).any(dim=1)
+    assert int(changed.sum()) == told.darker
+    assert set(scene.cloud.group[changed].tolist()) == {0}
+    assert float(scene.cloud.means[changed, :2].abs().max()) < 1.0
+    assert bool((dc_to_color(dark.cloud.sh[changed, 0]) <= dc_to_color(scene.cloud.sh[changed, 0])).all())
+
+
+def test_what_hangs_in_the_air_casts_none_and_it_is_told() -> None:
+    lifted = _box((0.0, 0.0))
+    lifted = lifted.replace(means=lifted.means + torch.tensor([0.0, 0.0, 0.6]))
+    scene = _scene(_floor(), lifted)
+    dark, told = shadows_under(scene, [_rows(scene)], Strength(0.8, 1))
+    assert dark is scene and (told.things, told.missing) == (0, 1)
+
+
+def test_light_is_told_by_how_things_are_shaded() -> None:
+    toward = np.array([0.8, 0.0, 0.6])
+    boxes = [_box((x, y), i + 1, light=toward) for i, (x, y) in enumerate([(-1, -1), (1, 1), (-1, 1), (1, -1)])]
+    slope = shading_of(_scene(_floor(), *boxes)).slope
+    assert slope @ toward / np.linalg.norm(slope) > 0.9
+    assert 0.1 < np.linalg.norm(slope) < 0.45
+
+
+def test_nothing_is_dark_in_a_scene_without_light() -> None:
+    """Boxes of one colour on a plain floor: nothing in such a scene is shaded."""
+    flat = _floor()
+    flat = flat.replace(sh=torch.full_like(flat.sh, 0.3))
+    scene = _scene(flat, _box((0.0, 0.4)))
+    assert strength_of(scene) == Strength(0.0, 0, False)
+    done = _do(scene, op="insert", asset="chair")
+    assert torch.equal(done.scene.cloud.sh[: len(scene.cloud)], scene.cloud.sh)
+    assert any("nothing in this scene is shaded" in note for note in done.receipt.notes)
+
+
+def test_an_inserted_thing_stands_in_its_shadow_which_is_told() -> None:
+    boxes = [_box((x, 1.1), i + 1, light=np.array([0, 0, 1.0])) for i, x in enumerate((-1.0, 1.0))]
+    scene = _scene(_floor(), *boxes)
+    assert strength_of(scene).value == FAINT
+    done = _do(scene, op="insert", asset="stool")
+    was, now = scene.cloud, done.scene.cloud
+    changed = (now.sh[: len(was)] != was.sh).any(dim=2).any(dim=1)
+    assert int(changed.sum()) == done.receipt.filled[0].darker > 20
+    assert set(was.group[changed].tolist()) == {0}
+    assert any("contact shadow" in note for note in done.receipt.notes)
+    again = _do(scene, op="insert", asset="stool")
+    assert again.scene.cloud.digest() == now.digest()
+    bare = _do(scene, harmony=False, op="insert", asset="stool")
+    assert torch.equal(bare.scene.cloud.sh[: len(was)], was.sh) and bare.receipt.filled == ()
+
+
+def test_a_new_thing_takes_the_white_of_the_room_and_keeps_its_colour_name() -> None:
+    x, z = _grid((-1.6, 0.0), (1.6, 1.6))
+    wall = _sheet(np.stack([x, 0 * x + 1.6, z], 1), 1, np.tile([0.64, 0.58, 0.5], (len(x), 1)), 3)
+    x, y = _grid((-1.6, -1.6), (1.6, 1.6))
+    floor = _sheet(np.stack([x, y, 0 * x], 1), 2, np.tile([0.5, 0.3, 0.15], (len(x), 1)), 0)
+    scene = _scene(floor, wall, _box((1.0, 1.0), light=np.array([0, 0, 1.0])))
+    chair = assets.make("chair", 0, color="teal")
+    fitted_chair, told = matched(chair.cloud, scene)
+    assert told.describe().split(",")[0].endswith("darker") and "warmer" in told.describe()
+    was, now = (dc_to_color(c.sh[chair.main, 0]).mean(dim=0) for c in (chair.cloud, fitted_chair))
+    assert float(now.sum()) < float(was.sum())
+    assert basic_name(tuple(now.tolist())) == basic_name(tuple(was.tolist()))
+    for name, column in chair.cloud.columns():
+        assert name == "sh" or getattr(fitted_chair, name) is column

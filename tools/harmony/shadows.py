@@ -1,0 +1,86 @@
+"""Cast the contact shadows of things on what carries them: one fast pass for one thing, or for all things of a room."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from ...gaussians.scene import Scene
+from ..field_update import after_recolor
+from ..filling.occlusion import SIDES
+from ..filling.shadow import multiplied
+from .carrier import Carried, carried
+from .shading import shading_of
+from .strength import Strength, strength_of
+
+F64 = NDArray[np.float64]
+_LEAST = 0.01  # logarithm of a colour's change below which a Gaussian stays as it is
+_LEAN = 0.6  # largest share of the light that leans to the side from which most light comes
+_WALL = 0.6  # likewise on walls, to above
+_STRAIGHT = 0.1  # slope of light from above that is taken to be there
+
+
+@dataclass(frozen=True)
+class Told:
+    """What was cast: how many Gaussians are darker, under how many things, how many hang or stand on nothing seen, and
+    how dark the shadows are."""
+
+    darker: int
+    things: int
+    missing: int
+    strength: Strength
+
+
+def shadows_under(scene: Scene, things: Sequence[Tensor], strength: Strength | None = None) -> tuple[Scene, Told]:
+    """The scene with the contact shadows of things where they stand or hang; only colours of other Gaussians change.
+
+    Args:
+        things: rows of each; none of them darkens another's Gaussians.
+        strength: how dark; None: as those that the scene has.
+    """
+    strength = strength_of(scene) if strength is None else strength
+    if strength.value <= 0 or not things:
+        return scene, Told(0, 0, 0, strength)
+    own = torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
+    for rows in things:
+        own[rows] = True
+    dark = torch.zeros(len(scene.cloud), dtype=torch.float64)
+    found = 0
+    for rows in things:
+        place = carried(scene, rows, own)
+        if place is not None:
+            found += 1
+            dark[place.rows.cpu()] += torch.from_numpy(
+                strength.value * place.share(scene.cloud, lobes_of(scene, place))
+            )
+    rows = (dark > _LEAST).nonzero().squeeze(1).to(scene.cloud.device)
+    told = Told(len(rows), found, len(things) - found, strength)
+    if not len(rows):
+        return scene, told
+    sh = scene.cloud.sh.clone()
+    sh[rows] = multiplied(sh[rows], torch.exp(-dark[rows.cpu()]).to(sh))
+    scene = scene.replace(cloud=scene.cloud.replace(sh=sh))
+    return scene.replace(language=after_recolor(scene, scene.cloud.ids[rows])), told
+
+
+def lobes_of(scene: Scene, place: Carried) -> F64:
+    """`[LOBES]` how the light that falls on a surface is spread, as the scene's shading tells."""
+    lean = np.zeros(SIDES)
+    if place.level:
+        slope = shading_of(scene).slope
+        east, north, up = scene.frame.basis()
+        level = np.array([slope @ east, slope @ north])
+        length = float(np.linalg.norm(level))
+        share = min(_LEAN, length / (length + abs(float(slope @ up)) + _STRAIGHT))
+        toward = level / max(length, 1e-12)
+        lean = share * np.maximum(0.0, np.array([toward[0], toward[1], -toward[0], -toward[1]]))
+        lean *= share / max(float(lean.sum()), 1e-12)
+    else:
+        share = _WALL
+        lean[1] = share
+    return np.concatenate([[1 - share], lean])
