@@ -231,13 +231,17 @@ def set_down(asset: ScaledAsset, foot: Array, axes: Axes) -> GaussianCloud:
     return transformed(asset.cloud, np.array(axes).T, foot)
 
 
-def in_its_light(cloud: GaussianCloud, scene: Scene, wanted: bool) -> tuple[GaussianCloud, tuple[str, ...]]:
-    """A new thing with its colours fitted to the light of the scene if that is wanted, and a note of what changed."""
+def in_its_light(cloud: GaussianCloud, scene: Scene, wanted: bool, free: bool) -> tuple[GaussianCloud, tuple[str, ...]]:
+    """A new thing with its colours fitted to the light of the scene if that is wanted, and a note of what changed.
+
+    Args:
+        free: whether nobody asked for a colour of it.
+    """
     if not wanted:
         return cloud, ()
     from .harmony.matched import matched
 
-    cloud, told = matched(cloud, scene)
+    cloud, told = matched(cloud, scene, free)
     said = told.describe()
     return cloud, (f"its colours were fitted to the light of the scene: {said}",) if said else ()
 

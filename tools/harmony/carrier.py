@@ -77,12 +77,12 @@ def carried(scene: Scene, thing: Tensor, without: Tensor | None = None, most: in
     near = near[~own[near] & (cloud.opacities[near] > 0.1)]
     if len(near) < 8:
         return None
-    near = near if most is None else near[:: max(1, len(near) // most)]
     body = _body(cloud, thing, extent)
     for level, plane in _planes(scene.frame, points):
         found = _on(cloud, near, plane, body, extent)
         if found is not None:
-            return Carried(*found, level)
+            shade, rows = found
+            return Carried(shade, rows if most is None else rows[:: max(1, len(rows) // most)], level)
     return None
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.harmonics import SH_C0, dc_to_color
@@ -29,6 +30,8 @@ _AROUND = 2.5  # times the radius of a thing: its surroundings
 _FEWEST = 200  # Gaussians in them, or they are unknown
 _BRIGHT = 0.95  # quantile of their luma that white paint would have
 _BELIEVED, _DIMMEST = 0.6, 0.6  # exponent of what is missing there that is taken for a lack of light; the dimmest place
+_CAST, _CAST_AT_MOST = 0.4, (0.75, 1.25)  # exponent of the hue of what is around that its light has, and its bounds
+_PURE, _PALEST = 0.95, 0.65  # quantile of purity that is compared, and the least that is kept of a thing's chroma
 _DARK = 0.005  # quantile of a scene's luma that its black has
 _RAISED = 0.05  # to which black is raised at most
 _TURNED = 0.35  # logarithm by which a surface becomes brighter or darker at most
@@ -66,11 +69,12 @@ class Fitted:
         return ", ".join(said)
 
 
-def matched(cloud: GaussianCloud, scene: Scene) -> tuple[GaussianCloud, Fitted]:
+def matched(cloud: GaussianCloud, scene: Scene, free: bool = True) -> tuple[GaussianCloud, Fitted]:
     """A new thing, in place, with its colours fitted to a scene; only its harmonics change.
 
     Args:
         cloud: the thing, lit by one lamp as assets are, or photographed in good light.
+        free: whether its colours are free to be less pure, as nobody asked for one.
     """
     light = _light_at(scene, cloud)
     gain = torch.tensor(light.white, dtype=torch.float64)
@@ -78,6 +82,9 @@ def matched(cloud: GaussianCloud, scene: Scene) -> tuple[GaussianCloud, Fitted]:
     raised = _black(scene)
     factor = gain[None] * torch.from_numpy(shade)[:, None]  # [N, 3]
     base = dc_to_color(cloud.sh[:, 0]).clamp(min=0).to(torch.float64) * factor
+    keep = _chroma_kept(base, scene) if free else 1.0
+    grey = (base @ torch.tensor(LUMA, dtype=torch.float64))[:, None]
+    base = grey + keep * (base - grey)
     base = raised + (1 - raised) * base if raised > 0 else base
     sh = cloud.sh * (factor * (1 - raised)).to(cloud.sh)[:, None, :]
     sh[:, 0] = ((base - 0.5) / SH_C0).to(cloud.sh)
@@ -98,9 +105,31 @@ def _light_at(scene: Scene, cloud: GaussianCloud) -> SceneLight:
         return light
     taken = sample(scene.cloud, near, _SAMPLE)
     level = quantile(taken.rgb.clamp(0, 1) @ torch.tensor(LUMA, dtype=torch.float64), taken.weight, _BRIGHT)
+    tint = (taken.rgb.clamp(0, 1) * taken.weight[:, None]).sum(dim=0)
+    whole = sample(scene.cloud, size=_SAMPLE)
+    usual = (whole.rgb.clamp(0, 1) * whole.weight[:, None]).sum(dim=0)
+    cast = (_luma_one(tint) / _luma_one(usual)).clamp(min=0.1) ** _CAST
+    cast = _luma_one(cast.clamp(*_CAST_AT_MOST))
     dim = float(np.clip((level / (WHITE * light.level)) ** _BELIEVED, min(1.0, _DIMMEST / light.level), 1.0))
-    red, green, blue = (dim * w for w in light.white)
+    red, green, blue = (dim * w * float(c) for w, c in zip(light.white, cast, strict=True))
     return SceneLight((red, green, blue), light.share)
+
+
+def _luma_one(rgb: Tensor) -> Tensor:
+    return rgb / (rgb @ torch.tensor(LUMA, dtype=rgb.dtype)).clamp(min=1e-3)
+
+
+def _chroma_kept(rgb: Tensor, scene: Scene) -> float:
+    """By what the chroma of a thing is multiplied so that it is not purer than the scene's pure colours are."""
+    taken = sample(scene.cloud, size=_SAMPLE)
+    theirs = quantile(_purity(taken.rgb.clamp(0, 1)), taken.weight, _PURE)
+    own = float(_purity(rgb).quantile(_PURE)) if len(rgb) else 0.0
+    return float(np.clip(theirs / max(own, 1e-6), _PALEST, 1.0))
+
+
+def _purity(rgb: Tensor) -> Tensor:
+    """`[M]` difference of the largest and the least of red, green and blue."""
+    return rgb.amax(dim=1) - rgb.amin(dim=1)
 
 
 def _black(scene: Scene) -> float:

@@ -24,7 +24,7 @@ from ..color_map import LUMA
 from .carrier import Carried, carried
 
 F64 = NDArray[np.float64]
-FAINT = 0.45  # strength where no shadow of the scene can be measured
+FAINT = 0.7  # strength where no shadow of the scene can be measured
 MOST = 1.6  # strength of the darkest shadows
 _ROWS = 8_000  # Gaussians of the surface around a thing that it is measured on
 _THINGS = 6  # that are measured, the largest that are no room
@@ -35,6 +35,7 @@ _FEW = 25  # Gaussians of each that are needed
 _ROUNDS = 5
 _ERROR = 0.25  # largest standard error of a strength that counts
 _APART = 6.0  # Gaussians of a pattern that vary together: how many fewer there are for the error
+_ENOUGH = 5  # measures that tell the strength alone
 _FLAT = 0.06  # strength below which things cast no shadow
 
 
@@ -71,12 +72,11 @@ def _measured(scene: Scene) -> Strength:
         if place is not None and place.level and (one := fitted(scene.cloud, place)) is not None:
             found.append(one)
     lit = shading_of(scene).lit
-    if not found:
-        return Strength(FAINT if lit else 0.0, 0, lit)
-    value = float(np.clip(np.median(found), 0.0, MOST))
-    if value < _FLAT:
-        return Strength(0.0, len(found), False) if not lit else Strength(value, len(found))
-    return Strength(value, len(found))
+    if not lit:
+        return Strength(0.0, len(found), False)
+    # Few measures are drawn to what is usual: of a capture, the darkest places below things are not seen.
+    value = float(np.clip(np.median([*found, *[FAINT] * max(0, _ENOUGH - len(found))]), 0.0, MOST))
+    return Strength(value if value >= _FLAT else 0.0, len(found))
 
 
 def _things(scene: Scene) -> list[Tensor]:

@@ -67,7 +67,7 @@ class Insert(EditOp):
             around.rests = asset.support not in ("wall", "ceiling")
             spot = find_spot(around, asset, self.place, start)
             cloud = set_down(asset, spot.foot, spot.axes)
-            cloud, fitted = in_its_light(cloud, scene, self.harmony and context.harmony)
+            cloud, fitted = in_its_light(cloud, scene, self.harmony and context.harmony, self.color is None)
             add_obstacle(cloud, scene, around)
             hangs = self.place is None and asset.support in ("wall", "ceiling")
             moved.append(

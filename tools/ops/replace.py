@@ -57,7 +57,7 @@ class Replace(TargetedOp):
             around.rests = asset.support not in ("wall", "ceiling")
             spot = spot_near(around, asset.size, standing_axes(around, [body]), body)
             cloud = set_down(asset, spot.foot, spot.axes)
-            cloud, told = in_its_light(cloud, scene, self.harmony and context.harmony)
+            cloud, told = in_its_light(cloud, scene, self.harmony and context.harmony, self.color is None)
             add_obstacle(cloud, scene, around)
             moved.append(affine_of(objects.add(cloud, asset.label, spot.axes), spot.support, spot.touches))
             notes |= dict.fromkeys((*asset.notes, *spot.notes, *told))

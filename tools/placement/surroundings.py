@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 from torch import Tensor
 
 from ...gaussians.camera import Vec3
@@ -30,6 +31,7 @@ _RING = 1.8  # times its footprint: where the surface that carries a thing shows
 _RING_CELLS = 12  # along each side of that
 _FLOOR = 0.02  # of the scene's height: how thick the floor is
 _FLOOR_CELLS, _FEW_OF_FLOOR = 40, 200  # along each side of it; points that are no floor
+_FLOOR_SPARSE = 0.3  # of the points that a cell of it usually has, below which it is haze
 _AROUND = 0.2  # share of the cells around a footprint that a surface fills
 FLOOR_WORDS = frozenset({"floor", "ground", "carpet", "room"})
 
@@ -94,16 +96,27 @@ class Surroundings:
     def floor_density(self) -> float:
         """Points of a capture's floor for each square unit of what was seen of it; 0 for other scenes, which have no
         noise, and where no floor was seen."""
+        found = self._floor_cells
+        return 0.0 if found is None else found[2]
+
+    @cached_property
+    def _floor_cells(self) -> tuple[Array, Array, float] | None:
+        """Corners `[2]` along the room's axes of the connected floor that a capture shows, and its points for each
+        square unit; None for other scenes, and where no floor was seen."""
         points = self.floor_points
         if self.sight is None or len(points) < _FEW_OF_FLOOR:
-            return 0.0
-        plan = points @ self.frame.basis()[:2].T.astype(np.float32)
-        low, high = np.quantile(plan, [0.02, 0.98], axis=0)
+            return None
+        plan = points @ np.array(self.room_axes[:2]).T.astype(np.float32)
+        low, high = np.quantile(plan, [0.02, 0.98], axis=0).astype(np.float64)
         cell = max(float((high - low).max()) / _FLOOR_CELLS, 1e-9)
         index = np.floor((plan - low) / cell).astype(np.int64)
         index = index[((index >= 0) & (index < _FLOOR_CELLS)).all(axis=1)]
-        counts = np.bincount(index[:, 0] * _FLOOR_CELLS + index[:, 1])
-        return float(np.median(counts[counts > 0])) / cell**2
+        counts = np.bincount(index[:, 0] * _FLOOR_CELLS + index[:, 1], minlength=_FLOOR_CELLS**2)
+        usual = float(np.median(counts[counts > 0]))
+        names, _ = ndimage.label(counts.reshape(_FLOOR_CELLS, -1) >= _FLOOR_SPARSE * usual)
+        widest = int(np.bincount(names.ravel())[1:].argmax()) + 1
+        at = np.argwhere(names == widest)
+        return low + at.min(axis=0) * cell, low + (at.max(axis=0) + 1) * cell, usual / cell**2
 
     def add_obstacle(self, points: Array, box: Box) -> None:
         """Add points `[M, 3]` of the world frame and their box to the obstacles."""
@@ -162,7 +175,10 @@ class Surroundings:
 
     @cached_property
     def room_bounds(self) -> tuple[Array, Array]:
-        """Extent along the room's axes of the points near floor height, without the outermost 0.4 % at each end."""
+        """Extent along the room's axes of the points near floor height, without the outermost 0.4 % at each end;
+        of a capture, that of the floor that it shows."""
+        if self._floor_cells is not None:
+            return self._floor_cells[0], self._floor_cells[1]
         plan = np.array(self.room_axes[:2])
         heights = self.sampled @ self.up.astype(np.float32)
         span = float(np.ptp(np.quantile(heights, [0.01, 0.99]))) if len(heights) else 1.0
