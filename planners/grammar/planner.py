@@ -24,7 +24,7 @@ from .meaning.changes import Fields
 from .meaning.phrases import Phrases
 from .parsing import Refusal
 from .reader import Reader
-from .restating.changes.filling import Request, heard
+from .restating.changes.filling import Heard, heard
 from .restating.changes.likenesses import with_likenesses, with_photo
 from .restating.speech.remarks import is_remark
 from .restating.speech.smoothing import smoothed
@@ -152,8 +152,8 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     said = heard(cleaned)
-    if said.requests or said.leave:
-        return _with_holes(said.rest, said.requests, said.leave, previous)
+    if said.requests or said.leave or said.anyway:
+        return _with_holes(said, previous)
     cleaned, file = with_photo(cleaned)
     words, remarks = correct_spelling(smoothed(with_likenesses(without_owners(split(cleaned)))))
     before = _understand_previous(previous)
@@ -173,17 +173,23 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     )
 
 
-def _with_holes(rest: str, holes: Sequence[Request], leave: bool, previous: str | None) -> _Outcome:
+def _with_holes(said: Heard, previous: str | None) -> _Outcome:
     """An instruction that says to fill holes, or to leave what it reveals as it is.
 
     Raises:
         Refusal: as `_understand`.
     """
+    rest, holes = said.rest, said.requests
     outcome = _understand(rest, previous) if rest or not holes else _understand_previous(previous)
     ops = list(outcome.ops) if rest else []
-    if leave:
+    if said.anyway and not any(op["op"] in _REVEALING for op in ops):
+        raise Refusal("nothing is taken away there that would leave a hole", "fill")
+    if said.leave:
         ops = [{**op, "infill": False} if op["op"] in _REVEALING else op for op in ops]
     for hole in holes:
+        if not hole.what:
+            ops.append({"op": "infill", "target": Query(text="everything", pick="all")})
+            continue
         surface = _understand(f"select {hole.what}", rest or previous)
         for op in surface.ops:
             target: Query = op["target"]

@@ -37,7 +37,11 @@ class Infill(TargetedOp):
         return torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        patches = [p for body in bodies_of(scene, selection) for p in self._patches(scene, selection, body.rows)]
+        query = self.query()
+        if self.where == "in" and query is not None and query.spatial:
+            patches = [p for rows in _surfaces(scene) for p in patches_in(scene, rows)]
+        else:
+            patches = [p for body in bodies_of(scene, selection) for p in self._patches(scene, selection, body.rows)]
         new = merged(scene, patches)
         told = notes(filled(scene, patches))
         if not len(new):
@@ -59,3 +63,10 @@ class Infill(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         return (count_matches(before, outcome.scene, outcome),)
+
+
+def _surfaces(scene: Scene) -> list[Tensor]:
+    """The Gaussians of each floor and wall; all together where no surfaces are known."""
+    groups = () if scene.language is None else scene.language.groups
+    found = [(scene.cloud.group == g.id).nonzero().squeeze(1) for g in groups if g.level == "structure"]
+    return found or [torch.arange(len(scene.cloud), device=scene.cloud.device)]

@@ -1,6 +1,5 @@
-"""What an instruction says of holes: "fill the hole in the wall", "without filling it".
-
-Such words are taken out before the rest is read. What names the surface is read as a thing that is selected.
+"""What an instruction says of holes: "fill the hole in the wall", "there is a gap behind the sofa, close it", "and
+leave the hole". Such words are taken out before the rest is read. What names the surface is read as a selected thing.
 """
 
 from __future__ import annotations
@@ -8,48 +7,146 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-_FILL = r"(?:fill(?: (?:in|up|out))?|patch(?: up)?|infill|inpaint|close(?: up)?|repair|mend|complete)"
-_HOLE = (
-    r"(?:(?:the|this|that|any|all|every|a|an|those|these)(?: (?:of the|the))? )?(?:\w+ )?"
-    r"(?:holes?|gaps?|voids?|black (?:spots?|areas?|patch(?:es)?)|missing (?:parts?|pieces?|bits?|areas?|spots?))"
-    r"(?: (?:that is|that are|left|which is))?"
+_POLITE = r"(?:(?:please|pls|now|then|also|just|and|can you|could you|would you|can we|could we|i want you to) )*"
+_FILL = (
+    r"(?:fill(?: (?:in|up|out))?|patch(?: (?:up|over))?|infill|inpaint|in-paint|close(?: (?:up|off))?|"
+    r"repair|mend|fix(?: up)?|complete|plug(?: up)?|seal(?: up)?|make good)"
 )
-_MISSING = r"(?:what(?:ever)?(?: is|'s|s)? (?:missing|hidden|not there|empty)|the empty (?:space|place))"
-_IT = r"(?:it|that|them|anything|the \w+)"
+_FILLED = r"(?:filled(?: (?:in|up))?|patched(?: up)?|infilled|inpainted|closed(?: up)?|repaired|mended|fixed|completed)"
+_RID = r"(?:get rid of|remove|delete|clear|erase|take away|take out)"
+_KIND = (
+    r"(?:(?:black|empty|blank|bare|missing|see-through|transparent|unfilled|unscanned)[ -]"
+    r"(?:bits?|spots?|areas?|patch(?:es)?|parts?|pieces?|blobs?|regions?|places?|spaces?|stains?)|"
+    r"(?:black |dark |empty |big |small |ugly |huge |little |nasty |open |\w+[ -]shaped )*(?:\w+ )?"
+    r"(?:holes?|gaps?|voids?|cavity|cavities))"
+)
+_HOLE = (
+    r"(?:(?:the|this|that|any|all|every|a|an|those|these|some|my|remaining)(?: (?:of the|the|remaining|other))? )?"
+    rf"{_KIND}(?: (?:that is|that are|that's|left(?: over| behind)?|which is|which are|still|there))*"
+)
+_EMPTY = (
+    r"(?:everything|anything|all) (?:that is|that's|which is)? ?(?:missing|empty)|"
+    r"what(?:ever|'s| is| was)?(?: is| was|'s)? (?:missing|not there|empty|gone)|the empty (?:space|place)"
+)
+_HIDDEN = r"what(?:ever|'s| is| was|s)?(?: is| was|'s)? (?:hidden|revealed|uncovered|left)"
+_MISSING = rf"(?:{_EMPTY}|{_HIDDEN})"
+_IT = r"(?:it|that|them|this|anything|the \w+)"
 _WHERE = {
-    "in": "in", "on": "in", "of": "in", "inside": "in", "within": "in",
+    "in": "in", "on": "in", "of": "in", "inside": "in", "within": "in", "into": "in",
     "under": "under", "below": "under", "beneath": "under", "underneath": "under", "behind": "behind",
 }  # fmt: skip
-_REQUEST = re.compile(
-    rf"^(?:please |now |then |also )*{_FILL} (?:{_HOLE}|{_MISSING})(?: in| up)? "
-    rf"(?P<where>{'|'.join(_WHERE)}) (?P<what>.+?)[.!]*$",
-    re.IGNORECASE,
+_AT = rf"(?:{'|'.join(_WHERE)})"
+_SURFACES = r"(?:floor(?:boards?| boards?)?|ground|walls?|wallpaper|carpet|ceiling|table ?top|pavement|grass|lawn)"
+# What follows a hole and does not name its surface.
+_ONCE = (
+    r"(?: (?:left (?:over )?by [\w ]+?|(?:left )?where|that|which|after) "
+    r"(?:[\w ]+? (?:was|were|used to be|stood|had been|hung|lay|left|sat)"
+    r"(?: (?:before|once|standing))?|i removed [\w ]+|[\w ]+ (?:is|was) (?:gone|removed|deleted)))?"
 )
-_SURFACE = re.compile(
-    rf"^(?:please |now |then |also )*{_FILL}(?: in)? (?:the |this |that )?(?:floor|ground|wall|carpet|table ?top)"
-    r"(?: in| up)? (?P<where>under|below|beneath|underneath|behind) (?P<thing>.+?)[.!]*$",
-    re.IGNORECASE,
+_WITH = r"(?: (?:with|by|using|from) (?:the (?:same )?|more of the |more |some |what is |its )*(?P<with>[\w' ]+?))?"
+_LAST = r"(?: (?:too|again|now|please|pls|as well|for me|properly|up|in|over|there))*[ .!?]*$"
+_REQUEST = re.compile(
+    rf"^{_POLITE}(?:{_FILL}|{_RID}) {_HOLE}{_ONCE} (?P<where>{_AT}) (?P<what>.+?){_ONCE}{_LAST}", re.I
+)
+_LACK = re.compile(rf"^{_POLITE}{_FILL} {_MISSING}(?: in| up)? (?P<where>{_AT}) (?P<what>.+?){_LAST}", re.I)
+_BESIDE = r"(?P<where>under|below|beneath|underneath|behind)"
+_PLACE = rf"(?:the |this |that )?(?:{_SURFACES}|area|space|place|part|bit|background|surface|nothing)"
+_SURFACE = re.compile(rf"^{_POLITE}{_FILL}(?: in)? {_PLACE}(?: in| up)? {_BESIDE} (?P<what>.+?){_WITH}{_LAST}", re.I)
+_SURFACE_ONCE = re.compile(rf"^{_POLITE}{_FILL}(?: in)? (?P<what>(?:the |this |that )?{_SURFACES}){_ONCE}{_LAST}", re.I)
+_GONE = r"(?:is|are|seems|looks) (?:still )?(?:missing|gone|empty|black|see-through|full of holes|not there)"
+_WITH_SURFACE = re.compile(rf"^{_POLITE}{_FILL} (?:{_HOLE}|{_MISSING}){_ONCE}{_WITH}{_LAST}", re.I)
+_FILL_IT = (
+    rf"(?:{_POLITE}{_FILL} (?:it|that|them|this|those)(?: (?:in|up|over))?|"
+    rf"(?:can|could|should|must|may|needs? to) (?:it|that|this|they)? ?be {_FILLED}|"
+    rf"(?:it |that |this |they |please )*(?:should be|must be|needs? to be|has to be) {_FILLED}|"
+    rf"needs? {_FILL}ing|{_POLITE}{_FILL})"
+)
+_REMARK = r"(?: (?:is|are|looks?|bothers?|annoys?|shows?|needs?|should|must|has|have|can|could)\b[^,.;]*?)?"
+_TOLD = re.compile(
+    r"^(?:(?:so|hey|hi|well|oh|look|unfortunately|sadly|now|but) )*"
+    r"(?:there(?: is|'s|s| are|'re)?(?: still| now)?|i (?:can )?(?:still )?see|you left|it left|we have|i have) "
+    rf"{_HOLE} (?P<where>{_AT}) (?P<what>.+?){_ONCE}\s*[,.;:-]+ ?{_FILL_IT}{_WITH}{_LAST}",
+    re.I,
+)
+_STATED = re.compile(
+    rf"^{_HOLE} (?P<where>{_AT}) (?P<what>.+?){_ONCE}{_REMARK}\s*[,.;:-]* ?{_FILL_IT}{_WITH}{_LAST}", re.I
+)
+_HAS = re.compile(
+    rf"^(?P<what>(?:the |my |our )?{_SURFACES}) (?:has|have|got)(?: got)? {_HOLE}{_ONCE}\s*[,.;:-]+ ?"
+    rf"{_FILL_IT}{_WITH}{_LAST}",
+    re.I,
+)
+_LACKS = re.compile(
+    rf"^(?:there is |there's |theres )?{_PLACE} {_BESIDE} (?P<what>.+?)(?: (?:{_GONE}|has {_HOLE}))?"
+    rf"\s*[,.;:-]+ ?{_FILL_IT}{_WITH}{_LAST}",
+    re.I,
+)
+_VANISH = re.compile(
+    rf"^{_POLITE}make {_HOLE} (?P<where>{_AT}) (?P<what>.+?){_ONCE} (?:disappear|vanish|go(?: away)?|invisible){_LAST}",
+    re.I,
+)
+_ANYWHERE = re.compile(
+    r"^(?:(?:so|hey|well|oh|look|but) )*(?:there(?: is|'s|s| are)?(?: still| now)?|"
+    r"i (?:can )?(?:still )?see|you left|it left) "
+    rf"{_HOLE}(?:{_ONCE}|(?: here| there)?)\s*[,.;:-]+ ?{_FILL_IT}{_WITH}{_LAST}",
+    re.I,
 )
 _LEAVE = re.compile(
-    r"(?:,|;|\band\b|\bbut\b)?\s*(?:"
-    r"without (?:filling|infilling|inpainting|patching)"
-    rf"(?: (?:{_IT}|what (?:it|that) (?:hid|leaves|reveals)))?(?: (?:in|up))?|"
-    rf"(?:do not|don't|dont|never) (?:fill|infill|inpaint|patch)(?: {_IT})?(?: (?:in|up))?|"
-    r"with(?:out| no) (?:an )?infill|no (?:infill|filling)|"
-    r"(?:and |but )?leave (?:the|a) (?:hole|gap)(?: (?:open|there|as it is|empty))?"
+    r"(?:,|;|\.|\band\b|\bbut\b)?\s*(?:"
+    r"without (?:filling|infilling|inpainting|patching|closing)"
+    rf"(?: (?:{_HOLE}|{_IT}|what (?:it|that) (?:hid|leaves|reveals)))?(?: (?:in|up))?|"
+    r"(?:please )?(?:do not|don't|dont|never) (?:fill|infill|inpaint|patch|close|mend|repair)"
+    rf"(?: (?:in|up))?(?: (?:{_HOLE}|{_IT}))?(?: (?:in|up))?|"
+    r"with(?:out| no) (?:an? |any )?(?:infill|filling|patching|inpainting)|"
+    r"no (?:infill|filling|patching|inpainting)(?: (?:please|pls))?|"
+    r"(?:and |but |just )?(?:leave|leaving|keep|keeping) (?:the|a|that) (?:black |empty )?"
+    r"(?:hole|gap|void|space|spot|place)"
+    r"(?: (?:open|there|as it is|as is|empty|behind|black|unfilled|visible|where it (?:was|stood)))?|"
+    r"(?:and |but )?(?:leave|leaving|keep|keeping) (?:it|that|the place|the spot|the space|what is behind) "
+    r"(?:open|empty|unfilled|black|blank|bare)"
     r")(?=\s*(?:[,.;!]|$))",
-    re.IGNORECASE,
+    re.I,
 )
-_THEN = re.compile(rf"\s*(?:,|;|\.)?\s*\b(?:and then|and|then|,)\s+(?={_FILL}\b)", re.IGNORECASE)
+_TO_SEE = re.compile(
+    r"[,.;]? *(?:because |as |since |so (?:that )?)?i (?:just )?(?:want|need|like|would like|'d like|wanna|can)"
+    r"(?: to)? (?:see|have|keep|look at) (?:the |a |what )?[\w ]+[.!]*$",
+    re.I,
+)
+_THEN = re.compile(rf"\s*(?:,|;|\.)?\s*\b(?:and then|and also|and|then|,|;|\.)\s*(?={_POLITE}{_FILL}\b)", re.I)
 _LEAVE_FIRST = re.compile(
-    r"^(?P<polite>(?:please |now |then )*)(?:without (?:filling|infilling|inpainting|patching)"
-    rf"(?: (?:{_HOLE}|it|anything))?(?: (?:in|up))?|with(?:out| no) (?:an )?infill)[ ,]+(?=\S)",
-    re.IGNORECASE,
+    r"^(?P<polite>(?:please |now |then )*)(?:"
+    rf"(?:without (?:filling|infilling|inpainting|patching)(?: (?:{_HOLE}|{_IT}))?(?: (?:in|up))?|"
+    r"with(?:out| no) (?:an )?infill)[ ,]+|"
+    rf"(?:do not|don't|dont|never) (?:fill|infill|inpaint|patch)(?: (?:{_HOLE}|{_IT}))?(?: (?:in|up))?"
+    r" (?:when|while|if|after|once) (?:you |we |i )?)(?=\S)",
+    re.I,
+)
+# What every deletion does, said with it: "and fill in what is underneath", "and mend the wall and floor there".
+_OF_IT = (
+    r"(?: (?:under|below|beneath|underneath|behind)(?: (?:it|them|that))?| there"
+    r"| where (?:it|they|that) (?:was|were|stood|is|hung)"
+    r"| (?:that )?it (?:leaves|left|reveals)(?: behind)?| left(?: behind)?| afterwards?| after it)*"
+)
+_ANYWAY = re.compile(
+    rf"^{_POLITE}{_FILL} (?:(?:the |that |any |up |in )*"
+    rf"(?:{_KIND}|{_SURFACES}(?: and (?:the )?{_SURFACES})?|background|spot|place|space)|"
+    r"what(?:ever|'s|s)?(?: is| was| lies| it)? ?"
+    r"(?:hid(?:den)?|underneath|behind|beneath|under|below|missing|revealed|left|there)|"
+    rf"it|that){_OF_IT}{_WITH}{_LAST}",
+    re.I,
+)
+
+
+# With what a hole may be filled: more of what surrounds it. Things that are put there are no filling.
+_MORE = re.compile(
+    rf"\b(?:{_SURFACES}|surface|surroundings?|around(?: it)?|background|rest|texture|pattern|material|colou?r|wood|"
+    r"tiles?|boards?|planks|bricks?|plaster|paint|stone|gravel|rug|same|matching)\b",
+    re.I,
 )
 
 
 class Request(NamedTuple):
-    """A hole to fill: the words of the thing that it is in, under or behind."""
+    """A hole to fill: the words of the thing that it is in, under or behind; "" means anywhere."""
 
     what: str
     where: str
@@ -62,34 +159,60 @@ class Heard(NamedTuple):
         rest: the other words, "" if there are none.
         requests: the holes to fill, behind the rest.
         leave: whether what is revealed is not to be filled.
+        anyway: whether it says of the rest that what it reveals is to be filled.
     """
 
     rest: str
     requests: tuple[Request, ...] = ()
     leave: bool = False
+    anyway: bool = False
 
 
 def heard(text: str) -> Heard:
     """The instruction split into what it says of holes and the rest; all of it is the rest if it says nothing."""
+    if (request := _told(text.strip(" ,;"))) is not None:
+        return Heard("", (request,))
     rest = _LEAVE_FIRST.sub(r"\g<polite>", _LEAVE.sub("", text)).strip(" ,;")
     leave = rest != text.strip(" ,;")
-    if not leave:
-        rest = text
+    rest = _TO_SEE.sub("", rest) if leave else text
     first, *others = _THEN.split(rest)
     parts = [first, *others]
-    requests = list[Request]()
-    while parts and (request := _request(parts[-1])) is not None:
-        requests.insert(0, request)
+    requests, anyway = list[Request](), False
+    while parts:
+        if len(parts) > 1 and _ANYWAY.match(parts[-1].strip(" ,;")):
+            anyway = True
+        elif (request := _request(parts[-1])) is not None:
+            requests.insert(0, request)
+        else:
+            break
         parts.pop()
     if len(parts) > 1:  # something between the requests is no request: nothing is taken out
         return Heard(rest, (), leave)
-    return Heard(parts[0] if parts else "", tuple(requests), leave)
+    return Heard(parts[0] if parts else "", tuple(requests), leave, anyway)
+
+
+def _told(text: str) -> Request | None:
+    """A hole that is told of, and then to be filled: "there is a hole in the floor, fill it"."""
+    for pattern in (_TOLD, _STATED, _HAS, _LACKS, _VANISH):
+        if found := pattern.match(text):
+            return _of(found)
+    return Request("", "in") if _ANYWHERE.match(text) else None
 
 
 def _request(clause: str) -> Request | None:
     clause = clause.strip(" ,;")
-    if (found := _SURFACE.match(clause)) is not None:
-        return Request(found["thing"], _WHERE[found["where"].lower()])
-    if (found := _REQUEST.match(clause)) is not None:
-        return Request(found["what"], _WHERE[found["where"].lower()])
+    for pattern in (_SURFACE, _REQUEST, _LACK, _SURFACE_ONCE):
+        if found := pattern.match(clause):
+            return _of(found)
+    if found := _WITH_SURFACE.match(clause):
+        named = re.search(_SURFACES, found["with"] or "", re.I)
+        return Request(named[0] if named else "", "in") if not found["with"] or _MORE.search(found["with"]) else None
     return None
+
+
+def _of(found: re.Match[str]) -> Request | None:
+    """The request that a pattern found; None if something else is to be put there."""
+    said = found.groupdict()
+    if (said.get("with") and not _MORE.search(said["with"])) or re.search(r" (?:with|using) ", said["what"]):
+        return None
+    return Request(said["what"], _WHERE[said["where"].lower()] if said.get("where") else "in")
