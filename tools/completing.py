@@ -7,6 +7,7 @@ views is lifted into new Gaussians; where photographs see what was added, it is 
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 
 import torch
@@ -21,7 +22,11 @@ from .cloud_diff import joined
 from .execute import Done
 from .field_update import after_recolor, recount
 from .operation import Context, EditOp
-from .receipt import Filled, Lifted
+from .receipt import Filled, Lifted, Vec3
+
+log = logging.getLogger(__name__)
+
+Box = tuple[Vec3, Vec3]  # lowest and highest corner, world
 
 _FEWEST, _MOST = 20, 24  # Gaussians of a thing that casts a shadow, and things that do after one operation
 
@@ -130,8 +135,13 @@ def _filled(before: Scene, op: EditOp, context: Context, done: Done) -> tuple[Do
     if not _may_fill(before, op, context, done):
         return done, nothing
     seconds: dict[str, float] = {}
-    with timed(seconds, "fill"):
-        scene, told, ids = filled(before, done.scene, _moved(before, done.scene) if op.op == "move" else ())
+    try:
+        with timed(seconds, "fill"):
+            scene, told, ids = filled(before, done.scene, _moved(before, done.scene) if op.op == "move" else ())
+    except Exception as error:  # the edit itself is done and checked: it stays
+        log.warning("what the edit revealed could not be filled", exc_info=True)
+        failed = f"what it hid is not filled: filling failed ({type(error).__name__}: {error})"
+        return done._replace(receipt=done.receipt.model_copy(update={"notes": (*done.receipt.notes, failed)})), nothing
     if not told:
         return done, nothing
     from .filling.told import notes
@@ -219,6 +229,7 @@ def _together(told: Sequence[Filled]) -> tuple[Filled, ...]:
         found[key] = Filled(
             surface=one.surface, gaussians=one.gaussians + other.gaussians, area=area, sure=sure,
             lighter=one.lighter + other.lighter, darker=one.darker + other.darker, reason=one.reason,
+            place=_around(one.place, other.place),
         )  # fmt: skip
     return tuple(found.values())
 
@@ -228,6 +239,14 @@ def _objects(field: LanguageField, groups: Tensor) -> Tensor:
     from .filling.revealed import objects
 
     return objects(field, groups)
+
+
+def _around(one: Box | None, other: Box | None) -> Box | None:
+    """The box around two boxes."""
+    if one is None or other is None:
+        return one or other
+    (a, b), (c, d) = one, other
+    return (min(a[0], c[0]), min(a[1], c[1]), min(a[2], c[2])), (max(b[0], d[0]), max(b[1], d[1]), max(b[2], d[2]))
 
 
 def _moved(before: Scene, after: Scene) -> tuple[Tensor, ...]:

@@ -6,6 +6,8 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+Vec3 = tuple[float, float, float]
+
 
 class Check(BaseModel):
     """One post-condition and its measured value.
@@ -130,6 +132,7 @@ class Filled(BaseModel):
         lighter: Gaussians of the surface that lay in the thing's contact shadow and are lighter now.
         darker: Gaussians of the surface that lie in its shadow where it stands now.
         reason: why nothing was made; "" if something was.
+        place: lowest and highest corner of the box around a hole that was left, world; None without one.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -141,6 +144,7 @@ class Filled(BaseModel):
     lighter: int = 0
     darker: int = 0
     reason: str = ""
+    place: tuple[Vec3, Vec3] | None = None
 
 
 class Lifted(BaseModel):

@@ -15,6 +15,7 @@ from ...gaussians.render import render
 from ..session.result import Result
 from .image_files import beside
 from .scene_pictures import MARK, Picture, edge
+from .unfilled import with_unfilled
 
 _SEEN = 2.3  # CIEDE2000 from which two colours side by side are told apart
 
@@ -63,6 +64,7 @@ def change_of(result: Result, camera: Camera) -> Change:
     apart = ciede2000(was, now).cpu().numpy()
     seen: NDArray[np.bool_] = apart >= _SEEN
     before, after = (r.to_uint8() for r in drawn)
+    after = with_unfilled(after, camera, [f for r in result.receipts for f in r.filled])
     marked: Picture = np.where(seen[..., None], after, after // 3 + 20).astype(np.uint8)
     marked[edge(seen)] = MARK
     count = sum(r.changed + r.added + r.removed for r in result.receipts)

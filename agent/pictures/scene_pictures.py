@@ -12,11 +12,12 @@ from ...gaussians.language.query.selection import Candidate, Selection
 from ...gaussians.render import render
 from ...gaussians.scene import Scene
 from ..session.result import Result
+from .unfilled import OUTLINE, with_unfilled
 
 Picture = NDArray[np.uint8]  # [H, W, 3], display space
 
 _SMALL = 96  # side of the picture in which it is looked for, pixels
-MARK = np.array([255, 196, 0], dtype=np.uint8)
+MARK = np.array(OUTLINE, dtype=np.uint8)
 
 
 def picture(scene: Scene, camera: Camera) -> Picture:
@@ -47,10 +48,11 @@ def camera_showing(scene: Scene, selection: Selection, viewer: Camera) -> Camera
 
 
 def after(result: Result, camera: Camera) -> Picture:
-    """The scene after an instruction; if only the selection changed, it is highlighted."""
+    """The scene after an instruction, places that it left open outlined; if only the selection changed, it is
+    highlighted."""
     if result.scene is result.before and result.selection is not None:
         return spotlight(result.scene, camera, result.selection)
-    return picture(result.scene, camera)
+    return with_unfilled(picture(result.scene, camera), camera, [f for r in result.receipts for f in r.filled])
 
 
 def numbered(scene: Scene, camera: Camera, candidates: Sequence[Candidate]) -> Picture:

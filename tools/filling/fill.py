@@ -139,8 +139,9 @@ def _behind(
     scene: Scene, thing: GaussianCloud, apart: Tensor | None, corners: tuple[F64, F64], patches: Sequence[Patch]
 ) -> list[Patch]:
     """What lies behind a thing and is of no plane that was continued."""
-    from .lifted import holes_filled
-    from .views import place_of, without_gloss
+    from .behind.glass import glass_of
+    from .behind.lifted import holes_filled
+    from .behind.views import place_of, without_gloss
 
     cloud = unshaded(scene, patches)
     cloud = cloud if apart is None else cloud[~apart]
@@ -162,7 +163,7 @@ def _behind(
             extent=h.corners,
             seen_area=h.area,
         )
-        for h in holes_filled(cloud, place)
+        for h in holes_filled(cloud, place, glass_of(scene))
     ]
 
 

@@ -17,7 +17,7 @@ from .charts import Chart
 from .planes import F64
 
 COVER = 0.6  # standard deviation over the side of a cell: no gaps, and edges stay crisp
-FLAT = 0.08  # thickness over the standard deviation along the surface
+FLAT = 0.0813  # thickness over the standard deviation along the surface: no other Gaussians have just this one
 OPACITY = 0.97
 _SAME = 1e-3  # relative error of the proportions and the opacity by which a fill is recognised
 _EXACT = 1e-5  # likewise of the proportions alone: float32 logarithms keep 1e-6

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...gaussians.scene import Scene
-from ..receipt import Filled
+from ..receipt import Filled, Vec3
 from .fill import Patch
+from .planes import F64
 
 _SURE, _FAIR = 0.7, 0.45  # from which a fill is told to be sure, and fairly sure
 _ROUGH = 0.1  # disagreement with the border, display space, at which a fill is worth 1 / e
@@ -33,7 +34,21 @@ def _one(name: str, reason: str, patches: list[Patch]) -> Filled:
         sure=0.0 if reason else sure,
         lighter=sum(len(p.shaded) for p in patches),
         reason=reason,
+        place=_place([p.corners for p in patches if len(p.corners)]) if reason else None,
     )
+
+
+def _place(corners: Sequence[F64]) -> tuple[Vec3, Vec3] | None:
+    """The box around some boxes."""
+    if not corners:
+        return None
+    low, high = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
+    return _rounded(low), _rounded(high)
+
+
+def _rounded(point: F64) -> Vec3:
+    x, y, z = (round(float(v), 5) for v in point)
+    return x, y, z
 
 
 def _sure(patch: Patch) -> float:

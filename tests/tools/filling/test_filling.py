@@ -143,6 +143,31 @@ def test_filling_again_adds_nothing(room: Scene) -> None:
         assert len(merged(scene, patches_behind(scene, thing))) == 0
 
 
+def test_a_fill_that_fails_leaves_the_edit_as_it_is(room: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The deletion is done and checked before; the receipt says what went wrong."""
+    from scenewright.tools import completing
+
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("no border")
+
+    monkeypatch.setattr(completing, "filled", broken)
+    bare, done = _delete(room, infill=False), _delete(room)
+    assert done.scene.cloud.digest() == bare.scene.cloud.digest() and done.receipt.passed
+    assert any("not filled" in note and "no border" in note for note in done.receipt.notes)
+
+
+def test_a_hole_that_stays_is_said_with_its_place() -> None:
+    """A box at the edge of all that is seen: what lies behind it on the other side nobody knows."""
+    floor = _floor()
+    done = _delete(_scene(_box(y=0.0), floor[floor.means[:, 0] < 0.1]))
+    left = [f for f in done.receipt.filled if f.reason]
+    for one in left:
+        assert one.place is not None and any(one.reason in note for note in done.receipt.notes)
+        (a, b), middle = one.place, (0.0, 0.0, 0.3)
+        assert all(p - 1.5 < m < q + 1.5 for p, m, q in zip(a, middle, b, strict=True))
+    assert left and not any(f.gaussians for f in left)
+
+
 def test_no_infill_leaves_the_hole(room: Scene) -> None:
     op = parse({"op": "delete", "target": {"groups": [BOX]}})
     context = Context(VIEW, resolver=_found)

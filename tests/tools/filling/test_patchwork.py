@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import ndimage
 
-from scenewright.tools.filling.patchwork import patched
+from scenewright.tools.filling.behind.patchwork import patched
 
 Y, X = np.mgrid[:60, :72]
 HOLE = (np.abs(Y - 30) < 9) & (np.abs(X - 36) < 10)

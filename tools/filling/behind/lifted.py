@@ -16,12 +16,12 @@ import torch
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import spsolve
 
-from ...gaussians.cloud import GaussianCloud, concat
-from ...gaussians.harmonics import color_to_dc
-from ...gaussians.rotations import from_matrix
-from .new_rows import FLAT, OPACITY
+from ....gaussians.cloud import GaussianCloud, concat
+from ....gaussians.harmonics import color_to_dc
+from ....gaussians.rotations import from_matrix
+from ..new_rows import FLAT, OPACITY
+from ..planes import F64, Mask
 from .patchwork import patched
-from .planes import F64, Mask
 from .views import SPECK, VOID, Place, View, seen_again
 
 _SUPPORT, _GUESSED = (
@@ -40,6 +40,9 @@ _TRIED = 20  # depths along a ray
 _FARTHER = 1.3  # times the largest depth around a hole: that of the last
 _UNCOVERED = 0.2  # of a pixel that the thing filled, below which what is behind it was seen
 _OUTSIDE = 3.0  # times the thing's distance: what surrounds a hole and is farther away is the outside of a window
+_TOLD_OF = 0.02  # of the pixels that the thing filled: a hole that stays open is told from this on
+_GLASS = 0.5  # of what surrounds a hole, from which it is in a mirror or a window
+GLASS = "a mirror or a window lies behind it, and what that shows there nobody saw"
 NOTHING_BEHIND = "nothing is seen behind it that could be continued"
 OUTSIDE = "what lies behind it is far away, as through a window"
 
@@ -69,24 +72,27 @@ class Hole:
     reason: str = ""
 
 
-def holes_filled(cloud: GaussianCloud, place: Place) -> list[Hole]:
-    """The holes that views of a place show, each filled.
+def holes_filled(cloud: GaussianCloud, place: Place, glass: frozenset[int] = frozenset()) -> list[Hole]:
+    """The holes that views of a place show, each filled or with the reason why it stays; those that stay once.
 
     Args:
         cloud: the scene without the thing; what was filled by planes is part of it.
+        glass: groups that show something else than themselves: mirrors and windows.
     """
-    now, found = cloud, list[Hole]()
+    now, found, left = cloud, list[Hole](), dict[str, Hole]()
     for k, view in enumerate(place.views):
         view = view if now is cloud else seen_again(view, now)
         open_ = view.open_pixels()
         if not open_.any():
             continue
-        made = _filled(view, k, open_, place.witnesses, cloud.sh.shape[1])
-        found += made
+        made = _filled(view, k, open_, place.witnesses, (cloud.sh.shape[1], glass))
+        found += [h for h in made if not h.reason]
+        for hole in (h for h in made if h.reason):  # every view tells of the same place
+            left[hole.reason] = max(left.get(hole.reason, hole), hole, key=lambda h: h.area)
         new = [h.cloud for h in made if len(h.cloud)]
         if new:
             now = _joined(now, new)
-    return found
+    return [*found, *left.values()]
 
 
 def _joined(cloud: GaussianCloud, new: Sequence[GaussianCloud]) -> GaussianCloud:
@@ -98,8 +104,15 @@ def _joined(cloud: GaussianCloud, new: Sequence[GaussianCloud]) -> GaussianCloud
     return concat([cloud, *numbered])
 
 
-def _filled(view: View, index: int, open_: Mask, witnesses: Sequence[View], bands: int) -> list[Hole]:
-    """The holes of one view."""
+def _filled(
+    view: View, index: int, open_: Mask, witnesses: Sequence[View], told: tuple[int, frozenset[int]]
+) -> list[Hole]:
+    """The holes of one view.
+
+    Args:
+        told: the coefficients of a colour, and the groups of mirrors and windows.
+    """
+    bands, glass = told
     behind = ~open_ & ~view.before & ((view.covers < 0.02) | (view.alpha > 0.5))
     known = behind & view.solid & ~ndimage.binary_dilation(open_, np.ones((3, 3)))
     area, count = ndimage.label(open_, np.ones((3, 3)))
@@ -110,9 +123,10 @@ def _filled(view: View, index: int, open_: Mask, witnesses: Sequence[View], band
         ring = ndimage.binary_dilation(hole, iterations=4) & ~ndimage.binary_dilation(hole, iterations=2) & ~open_
         ring &= ~view.before
         support = float((ring & known).sum()) / max(int(ring.sum()), 1)
-        reason = _refusal(view, ring & known, support)
+        reason = _refusal(view, ring & known, support, glass)
         if reason:
-            refused.append(_hole(view, index, hole, bands, (support, reason)))
+            if hole.sum() >= _TOLD_OF * (view.covers > 0.5).sum():
+                refused.append(_hole(view, index, hole, bands, (support, reason)))
         else:
             holes.append(hole)
     if not holes:
@@ -131,10 +145,12 @@ def _filled(view: View, index: int, open_: Mask, witnesses: Sequence[View], band
     return refused + found
 
 
-def _refusal(view: View, ring: Mask, support: float) -> str:
+def _refusal(view: View, ring: Mask, support: float, glass: frozenset[int]) -> str:
     """Why a hole must not be filled; "" if it may."""
     if support < (_SUPPORT if view.taken else _GUESSED) or not ring.any():
         return NOTHING_BEHIND
+    if glass and np.isin(view.group[ring], list(glass)).mean() > _GLASS:
+        return GLASS
     front = view.front[view.front > 0]
     if len(front) and np.median(view.depth[ring]) > _OUTSIDE * np.median(front):
         return OUTSIDE
@@ -252,7 +268,7 @@ def _discs(points: F64, steps: F64, rgb: F64, groups: np.ndarray, bands: int) ->
     values, axes = np.linalg.eigh(cover)
     values, axes = values[:, ::-1], axes[:, :, ::-1]  # the longest first
     axes = axes * np.where(np.linalg.det(axes) < 0, -1.0, 1.0)[:, None, None]
-    longest = np.sqrt(np.maximum(values[:, 0], 1e-18))
+    longest = np.sqrt(np.maximum(values[:, 0], 1e-18)).astype(np.float32)
     scales = np.stack([longest, np.sqrt(np.maximum(values[:, 1], 1e-18)), FLAT * longest], axis=1)
     scales[:, 1] = np.maximum(scales[:, 1], scales[:, 2])
     sh = torch.zeros(count, bands, 3)

@@ -11,13 +11,13 @@ import torch
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ...gaussians.camera import Camera
-from ...gaussians.cloud import GaussianCloud, concat
-from ...gaussians.harmonics import color_to_dc, to_color
-from ...gaussians.render import render
-from .hidden import ring_of_directions
-from .planes import F64, Mask
-from .smooth import harmonic
+from ....gaussians.camera import Camera
+from ....gaussians.cloud import GaussianCloud, concat
+from ....gaussians.harmonics import color_to_dc, to_color
+from ....gaussians.render import render
+from ..hidden import ring_of_directions
+from ..planes import F64, Mask
+from ..smooth import harmonic
 
 MOST_VIEWS = 6
 _WITNESSES, _SMALL = 14, 160  # photographs that tell what was seen, and pixels along their longer side

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ..smooth import F64, Mask, averaged
 from .patch_search import I32, REACH, aggregate, searched
-from .smooth import F64, Mask, averaged
 
 F32 = NDArray[np.float32]
 _ROUNDS = (8, 5, 3, 2, 2, 2)  # of search and mean, at each size from the coarsest

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...gaussians.compiled import kernel
-from .smooth import F64, Mask
+from ....gaussians.compiled import kernel
+from ..smooth import F64, Mask
 
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
