@@ -111,6 +111,14 @@ Infill = Annotated[
         "(made elsewhere).",
     ),
 ]  # fmt: skip
+RestyleBy = Annotated[
+    str | None,
+    typer.Option(
+        "--restyle", metavar="NAME",
+        help="A model that paints views of what gets another material, which its colours then follow: "
+        "'diffusers:FOLDER'.",
+    ),
+]  # fmt: skip
 NoInfill = Annotated[bool, typer.Option("--no-infill", help="Leave holes: the same as --infill none.")]
 References = Annotated[
     list[Path] | None,

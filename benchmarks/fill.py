@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..gaussians.cloud import GaussianCloud, concat
 from ..tools.filling.fill import merged, patches_behind, unshaded
+from ._fill.lifted import capture_metrics
 from ._fill.measure import Scores, biharmonic, drawn, scored, telea, views_of
 from ._fill.rooms import PLACES, Deletion, deletions
 from .harness import Metric, Point, Result
@@ -47,7 +48,9 @@ def run(quick: bool = False) -> Result:
             if len(found) < wanted and (one := measured(case)) is not None:
                 found.append(one)
         seed += 1
-    return _result(found, tuple(range(SEED, seed)))
+    result = _result(found, tuple(range(SEED, seed)))
+    metrics, notes = capture_metrics(quick)
+    return replace(result, metrics=(*result.metrics, *metrics), notes=(*result.notes, *notes))
 
 
 def measured(case: Deletion) -> _Measured | None:

@@ -42,6 +42,8 @@ def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
     Raises:
         FileError: a photograph cannot be read.
     """
+    if op.op == "restyle" and context.restyler is not None:
+        return _restyled(before, op, context, done)
     plain = done
     done, new = _filled(before, op, context, done)
     if context.inpainter is not None and _may_fill(before, op, context, done):
@@ -54,18 +56,38 @@ def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
 def _photographed(context: Context, done: Done, new: Tensor) -> Done:
     """The result with the new Gaussians optimised against the photographs."""
     from .lifting.photographs import with_photographs
+    from .lifting.told import note
 
     seconds: dict[str, float] = {}
     assert context.photographs is not None
     with timed(seconds, "lift"):
         scene, lifted = with_photographs(done.scene, context.photographs, new, context.seed)
-    return _lifted(done, scene, lifted, seconds)
+    return _lifted(done, scene, lifted, seconds, note(lifted))
+
+
+def _restyled(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
+    """The result of a restyle with the look that the model of the context paints; Gaussians that it left stay."""
+    from .lifting.behind import differing
+    from .lifting.restyled import restyled
+    from .lifting.told import restyle_note
+
+    assert context.restyler is not None
+    changed = done.scene.cloud.ids[differing(before.cloud, done.scene.cloud)[1]]
+    color = getattr(op, "color", None)
+    material = " ".join(filter(None, (color, getattr(op, "called", ""))))
+    seconds: dict[str, float] = {}
+    with timed(seconds, "paint"):
+        scene, lifted = restyled(
+            done.scene, changed, f"a photograph of {op.subject()}, {material}", context.restyler, context.seed
+        )
+    return _lifted(done, scene, lifted, seconds, restyle_note(lifted))
 
 
 def _inpainted(before: Scene, op: EditOp, context: Context, done: Done, new: Tensor) -> tuple[Done, Tensor]:
     """The result with the hole filled by the model of the context, and the ids of all new Gaussians."""
     from .filling.revealed import left_their_place
     from .lifting.inpainted import with_inpainted
+    from .lifting.told import note
 
     assert context.inpainter is not None
     if not left_their_place(before, done.scene, _moved(before, done.scene) if op.op == "move" else ()):
@@ -73,18 +95,16 @@ def _inpainted(before: Scene, op: EditOp, context: Context, done: Done, new: Ten
     seconds: dict[str, float] = {}
     with timed(seconds, "inpaint"):
         scene, new, lifted = with_inpainted(before, done.scene, new, context.inpainter, context.seed)
-    return _lifted(done, scene, lifted, seconds), new
+    return _lifted(done, scene, lifted, seconds, note(lifted)), new
 
 
-def _lifted(done: Done, scene: Scene, lifted: Lifted, seconds: dict[str, float]) -> Done:
-    """The result with a scene whose fill was optimised, and with what was measured in its receipt."""
-    from .lifting.told import note
-
+def _lifted(done: Done, scene: Scene, lifted: Lifted, seconds: dict[str, float], said: str) -> Done:
+    """The result with a scene whose Gaussians were optimised, and with what was measured in its receipt."""
     receipt = done.receipt.model_copy(
         update={
             "added": done.receipt.added + lifted.made - lifted.replaced,
             "total": len(scene.cloud),
-            "notes": (*done.receipt.notes, note(lifted)),
+            "notes": (*done.receipt.notes, said),
             "lifted": (*done.receipt.lifted, lifted),
             "seconds": {**done.receipt.seconds, **seconds},
         }

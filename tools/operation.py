@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .finishing.photograph import Photograph
     from .lifting.behind import Photographs
     from .lifting.inpainters import Inpainter
+    from .lifting.restylers import Restyler
 
 __all__ = [
     "Affine", "Check", "ColorName", "Context", "Direction", "EditOp", "Encoder", "Length", "Outcome", "Pixels",
@@ -174,6 +175,7 @@ class Context:
         assets: the user's own assets, which are taken before those of the library; None: there are none.
         infill: whether surfaces that an edit reveals are filled afterwards (see `completing`).
         inpainter: fills what an edit revealed in views of it, beside the fill from the scene itself; None: only that.
+        restyler: paints views of what was restyled, which its colours then follow; None: the material as it is drawn.
         photographs: of the scene, against which what was filled is optimised where they see it; None: there are none.
         references: photographs of materials that the user gave, by the names of their files.
         harmony: whether what is put into a scene is fitted to its light and casts a shadow (see `harmony`).
@@ -190,6 +192,7 @@ class Context:
     assets: AssetSource | None = None
     infill: bool = True
     inpainter: Inpainter | None = None
+    restyler: Restyler | None = None
     photographs: Photographs | None = None
     references: Mapping[str, Photograph] = field(default_factory=dict)
     harmony: bool = True

@@ -18,6 +18,7 @@ from ..options import (
     Planner,
     References,
     ReferenceWidth,
+    RestyleBy,
     Scale,
     SceneFile,
     Seed,
@@ -41,6 +42,7 @@ def command(
     infill: Infill = "scene",
     no_infill: NoInfill = False,
     capture: Capture = None,
+    restyle: RestyleBy = None,
     reference: References = None,
     reference_width: ReferenceWidth = None,
     harmony: Harmony = True,
@@ -61,7 +63,7 @@ def command(
         SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
             picture=picture, judge=judge, vlm=vlm, assets=assets, infill="none" if no_infill else infill,
-            capture=capture, references=reference or (), reference_width=reference_width,
+            capture=capture, restyle=restyle, references=reference or (), reference_width=reference_width,
             harmony=harmony,
         )
     )  # fmt: skip

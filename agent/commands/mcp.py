@@ -19,6 +19,7 @@ from ..options import (
     NoInfill,
     Picture,
     Planner,
+    RestyleBy,
     Scale,
     SceneFile,
     Seed,
@@ -45,6 +46,7 @@ def command(
     infill: Infill = "scene",
     no_infill: NoInfill = False,
     capture: Capture = None,
+    restyle: RestyleBy = None,
     harmony: Harmony = True,
     encoder: Encoder = "auto",
     up: Up = None,
@@ -78,7 +80,7 @@ def command(
         SessionOptions(
             scene, planner, encoder, view, size, log, seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
             picture=picture, judge=judge, vlm=vlm, infill="none" if no_infill else infill, capture=capture,
-            harmony=harmony,
+            restyle=restyle, harmony=harmony,
         ),
         progress,
     )  # fmt: skip

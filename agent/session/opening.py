@@ -35,6 +35,7 @@ class SessionOptions:
         assets: folder of the user's own assets, or None.
         infill: what fills the surfaces that an edit reveals: "scene", "none", or a model that inpaints pictures.
         capture: photographs that the scene was fitted from, or None.
+        restyle: a model that paints views of what is restyled, or None.
         references: photographs of materials that instructions name.
         reference_width: metres that each of them shows from left to right, or None.
         harmony: fit what is put into the scene to its light, and let it cast shadows.
@@ -59,6 +60,7 @@ class SessionOptions:
     assets: Path | None = None
     infill: str = "scene"
     capture: Path | None = None
+    restyle: str | None = None
     references: Sequence[Path] = ()
     reference_width: float | None = None
     harmony: bool = True
@@ -102,6 +104,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         assets=options.assets,
         infill=options.infill,
         capture=options.capture,
+        restyle=options.restyle,
         references=photographs,
         harmony=options.harmony,
     )

@@ -35,7 +35,6 @@ from .clarify import (
 )
 from .embedding import embedded_by, only_thing
 from .history import History, State
-from .hole_fillers import infill_of, photographed
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
 from .observation import graph_of, picture_of
@@ -43,6 +42,7 @@ from .offers import PARTS_PAGE, offers_of
 from .offers import chosen as offered_choice
 from .own_assets import own_assets
 from .own_references import own_references
+from .picture_models import infill_of, photographed, restyler_of
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, is_dismissal, undo_or_redo
 from .refusal import refusal, with_message
@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from ...planners.rooms.graph import SceneGraph
     from ...tools.finishing.photograph import Photograph
     from ...tools.lifting.inpainters import Inpainter
+    from ...tools.lifting.restylers import Restyler
     from ...tools.operation import Context
     from .naming import Named
 
@@ -96,6 +97,8 @@ class Session:
         infill: fill the surfaces that deleted, moved and replaced things hid: True or "scene" from the scene itself,
             False or "none" not at all, else also by a model that inpaints pictures, a name that
             `tools.lifting.inpainters.load` takes or an `Inpainter`.
+        restyle: a model that paints views of what is restyled, a name that `tools.lifting.restylers.load` takes or a
+            `Restyler`; None: materials are drawn.
         capture: photographs that the scene was fitted from, a `Capture` or a path that `read_capture` takes: what is
             filled is optimised against those that see behind what is gone.
         references: photographs of materials, which instructions name by their files or as "the photo"; see
@@ -137,6 +140,7 @@ class Session:
         assets: str | Path | None = None,
         infill: bool | str | Inpainter = True,
         capture: str | Path | Capture | None = None,
+        restyle: str | Restyler | None = None,
         references: str | Path | Sequence[str | Path] | Mapping[str, Photograph] = (),
         harmony: bool = True,
     ) -> None:
@@ -147,6 +151,7 @@ class Session:
         self._encoder = encoder
         self._assets = own_assets(assets)
         self._infill, self._inpainter = infill_of(infill)
+        self._restyler = restyler_of(restyle)
         scene, self._photographs = photographed(scene, capture)
         self._references = own_references(references)
         self._harmony = harmony
@@ -281,6 +286,7 @@ class Session:
         return Context(
             viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks,
             assets=self._assets, infill=self._infill, inpainter=self._inpainter, photographs=self._photographs,
+            restyler=self._restyler,
             references=self._references,
             harmony=self._harmony,
         )  # fmt: skip

@@ -32,7 +32,7 @@ LAST = 0.1  # of the rates, at the last step
 _REACH = 2.0  # standard deviations of a new Gaussian that its centre may move
 _SMALLEST, _LARGEST = 0.4, 2.0  # of its size
 _FAINTEST, _SOLIDEST = 0.02, 0.99  # opacity
-_LEAST, _HALF = 1.0, 4.0  # pixels that tell of a Gaussian: below which it stays, and at which it changes by half
+_LEAST, _HALF = 1.0, 2.0  # pixels that tell of a Gaussian: below which it stays, and at which it changes by half
 _FLOOR = 1e-6  # distance of an opacity from 0 and 1 before its logit is taken
 
 
@@ -116,7 +116,12 @@ class _Free:
 
 
 def optimised(
-    old: GaussianCloud, new: GaussianCloud, targets: Sequence[Target], seed: int = 0, rates: Rates | None = None
+    old: GaussianCloud,
+    new: GaussianCloud,
+    targets: Sequence[Target],
+    seed: int = 0,
+    rates: Rates | None = None,
+    passes: int = PASSES,
 ) -> GaussianCloud:
     """The new Gaussians, changed so that they and the old ones look like the targets where these count.
 
@@ -126,6 +131,7 @@ def optimised(
         old: all other Gaussians; none of them changes.
         new: float32, on any device.
         seed: of the order of the targets.
+        passes: over all targets, if the work allows.
     """
     targets = [t for t in targets if t.counts.any()]
     if not targets or not len(new):
@@ -134,7 +140,7 @@ def optimised(
     free, rates = _Free.of(new), rates or Rates()
     behind = [_visible(old, target) for target in targets]
     adam = {name: Adam.of(getattr(free, name)) for name in ("shifts", "log_sizes", "logits", "sh")}
-    count = _steps(targets, behind, len(new))
+    count = _steps(targets, behind, len(new), passes)
     order = _order(len(targets), count, seed)
     for step, which in enumerate(order):
         slow = LAST ** (step / max(count - 1, 1))
@@ -178,11 +184,11 @@ def _evidence(old: GaussianCloud, new: GaussianCloud, targets: Sequence[Target])
     return total[len(old) :].astype(np.float32)
 
 
-def _steps(targets: Sequence[Target], behind: Sequence[Columns], new: int) -> int:
+def _steps(targets: Sequence[Target], behind: Sequence[Columns], new: int, passes: int) -> int:
     """How many steps the work allows."""
     one = float(np.mean([t.counts.size + len(b[0]) + new for t, b in zip(targets, behind, strict=True)]))
     return int(
-        np.clip(WORK / max(one * 40, 1.0), LEAST_STEPS, min(MOST_STEPS, max(LEAST_STEPS, PASSES * len(targets))))
+        np.clip(WORK / max(one * 40, 1.0), LEAST_STEPS, min(MOST_STEPS, max(LEAST_STEPS, passes * len(targets))))
     )
 
 

@@ -21,6 +21,13 @@ def note(told: Lifted) -> str:
     return f"{seen}; the fill was optimised against them: {there}{held}, in {told.seconds:.0f} s"
 
 
+def restyle_note(told: Lifted) -> str:
+    """The same of a thing whose views a model painted."""
+    if told.reason:
+        return f"{told.source} painted nothing, so the material stays as it was drawn: {told.reason}"
+    return f"{told.source} painted {told.views} views of it, and its colours follow them, in {told.seconds:.0f} s"
+
+
 def _inpainted(told: Lifted) -> str:
     if told.reason:
         return f"{told.source} filled nothing, so the fill from the scene itself stays: {told.reason}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -98,7 +98,30 @@ def views_of(revealed: Revealed, cameras: Sequence[Camera], up: NDArray[np.float
     count = np.array([revealed.hole(camera).sum() for camera in probed], np.float64)
     found = list[View]()
     for k in _chosen(pool, count, points.mean(dim=0).to(torch.float64).cpu().numpy()):
-        if (view := _view(revealed, pool[k])) is not None:
+        if (view := _view(revealed.hole, pool[k])) is not None:
+            found.append(view)
+    return found
+
+
+def views_showing(cloud: GaussianCloud, own: Tensor, cameras: Sequence[Camera], up: NDArray[np.float64]) -> list[View]:
+    """At most `VIEWS` views that show some Gaussians from different sides, each cut to them; `hole` is where they show.
+
+    Args:
+        own: `[N]` bool.
+    """
+    rows = own.nonzero().squeeze(1)
+    if len(rows) < 4:
+        return []
+    points = cloud.means[rows]
+    pool = _showing(cameras, points) or around(points.to(torch.float64).cpu().numpy(), up)
+
+    def shown(camera: Camera) -> Mask:
+        return np.asarray(shares(cloud, (own,), camera)[..., 0] > _FILLED)
+
+    count = np.array([shown(camera.resized(*_size(camera, _PROBE))).sum() for camera in pool], np.float64)
+    found = list[View]()
+    for k in _chosen(pool, count, points.mean(dim=0).to(torch.float64).cpu().numpy()):
+        if (view := _view(shown, pool[k])) is not None:
             found.append(view)
     return found
 
@@ -142,10 +165,10 @@ def _chosen(cameras: Sequence[Camera], count: NDArray[np.float64], middle: NDArr
     return chosen
 
 
-def _view(revealed: Revealed, camera: Camera) -> View | None:
+def _view(shown: Callable[[Camera], Mask], camera: Camera) -> View | None:
     """The part of a picture around its hole, at most `SIDE` pixels a side; None if the hole is too small."""
     small = camera.resized(*_size(camera, SIDE))
-    hole = revealed.hole(small)
+    hole = shown(small)
     if hole.sum() < _FEWEST:
         return None
     scale = camera.width / small.width
@@ -156,7 +179,7 @@ def _view(revealed: Revealed, camera: Camera) -> View | None:
         cut = part_of(closer, tuple(round(gain * side) for side in box))  # type: ignore[arg-type]
     else:
         cut = part_of(small, box)
-    return View(cut, revealed.hole(cut))
+    return View(cut, shown(cut))
 
 
 def _box(hole: Mask, camera: Camera) -> Box:

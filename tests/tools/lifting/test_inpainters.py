@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from scenewright.agent.session.hole_fillers import infill_of
+from scenewright.agent.session.picture_models import infill_of
 from scenewright.gaussians.errors import BackendError
 from scenewright.tools.lifting.inpainters import Inpainter, Shot, checked, load, names
 from scenewright.tools.lifting.inpainters.sizes import Fitted

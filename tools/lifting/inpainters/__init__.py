@@ -94,10 +94,13 @@ def load(spec: str) -> Inpainter:
     return model
 
 
-def checked(picture: NDArray[np.generic], shot: Shot, name: str) -> F32:
+def checked(picture: NDArray[np.generic], shot: Shot, name: str, *, same_outside: bool = True) -> F32:
     """What a model returned as a picture with values in [0, 1]; outside of the mask it is the one that was given.
 
     Values up to 255 are divided by 255, as exported networks often return them.
+
+    Args:
+        same_outside: refuse a picture that differs outside of the mask; image to image changes that too.
 
     Raises:
         BackendError: another size, values that are not numbers or out of range, or another picture outside the mask.
@@ -118,7 +121,7 @@ def checked(picture: NDArray[np.generic], shot: Shot, name: str) -> F32:
         )
     found = np.clip(found / np.float32(top), 0, 1)
     outside = ~shot.mask
-    if outside.any() and (off := float(np.abs(found - shot.rgb)[outside].mean())) > _APART:
+    if same_outside and outside.any() and (off := float(np.abs(found - shot.rgb)[outside].mean())) > _APART:
         raise BackendError(
             f"{name} returned another picture than it was given: outside of the mask it is off by {off:.2f} of 1; it "
             "expects another order of channels, or values in another range"

@@ -37,7 +37,7 @@ class Diffusers:
         import torch
         from PIL import Image
 
-        fitted = _fitted(shot.mask.shape)
+        fitted = fitted_to(shot.mask.shape)
         height, width = fitted.taken
         try:
             out = self.pipeline(
@@ -56,7 +56,8 @@ class Diffusers:
         return checked(fitted.back((picture / scale).astype(np.float32)), shot, self.name)
 
 
-def _fitted(size: tuple[int, ...]) -> Fitted:
+def fitted_to(size: tuple[int, ...]) -> Fitted:
+    """How a picture is brought to a size that pipelines take."""
     height, width = size
     gain = max(1.0, _LONGEST / max(height, width))
     up = [max(_MULTIPLE, round(gain * side / _MULTIPLE) * _MULTIPLE) for side in (height, width)]
@@ -69,22 +70,35 @@ def load(argument: str) -> Diffusers:
     Raises:
         BackendError: the folder holds no pipeline, diffusers is not installed, or the pipeline cannot be loaded.
     """
+    return Diffusers(f"diffusers:{argument}", pipeline_in(argument, "AutoPipelineForInpainting", "--infill"))
+
+
+def pipeline_in(argument: str, kind: str, option: str) -> Any:
+    """The pipeline in a folder, on the GPU if there is one.
+
+    Args:
+        kind: the class of diffusers that loads it.
+        option: of the command line, for messages.
+
+    Raises:
+        BackendError: as `load`.
+    """
     folder = Path(argument).expanduser()
     if not (folder / "model_index.json").is_file():
         raise BackendError(
-            f"{folder} is no folder of a diffusers pipeline: it has no model_index.json; download an inpainting model "
-            "into it, or save one with save_pretrained"
+            f"{folder} is no folder of a diffusers pipeline: it has no model_index.json; download a model into it, or "
+            "save one with save_pretrained"
         )
     try:
         library = importlib.import_module("diffusers")
     except ImportError as error:
-        raise BackendError("--infill diffusers: needs the package diffusers; run: pip install diffusers") from error
+        raise BackendError(f"{option} diffusers: needs the package diffusers; run: pip install diffusers") from error
     import torch
 
     try:
-        pipeline = library.AutoPipelineForInpainting.from_pretrained(str(folder), local_files_only=True)
+        pipeline = getattr(library, kind).from_pretrained(str(folder), local_files_only=True)
         pipeline = pipeline.to("cuda" if torch.cuda.is_available() else "cpu")
         pipeline.set_progress_bar_config(disable=True)
     except Exception as error:  # missing weights, unknown classes, broken files: each library its own
         raise BackendError(f"cannot load the pipeline in {folder}: {error}; download it again") from error
-    return Diffusers(f"diffusers:{argument}", pipeline)
+    return pipeline

@@ -1,4 +1,4 @@
-"""What a session fills holes with: the scene itself, a model that inpaints pictures, and photographs of the scene."""
+"""The models and photographs of a session that work on pictures: they fill holes, and paint what is restyled."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ...gaussians.files.captures.capture import Capture
     from ...tools.lifting.behind import Photographs
     from ...tools.lifting.inpainters import Inpainter
+    from ...tools.lifting.restylers import Restyler
 
 SCENE, NONE = "scene", "none"  # what `--infill` takes besides the name of a model
 
@@ -50,3 +51,16 @@ def infill_of(infill: bool | str | Inpainter) -> tuple[bool, Inpainter | None]:
     from ...tools.lifting.inpainters import load
 
     return True, load(infill) if isinstance(infill, str) else infill
+
+
+def restyler_of(restyle: str | Restyler | None) -> Restyler | None:
+    """The model that paints views of what is restyled, if any.
+
+    Raises:
+        BackendError: there is no such model, or its files or packages are missing.
+    """
+    if not isinstance(restyle, str):
+        return restyle
+    from ...tools.lifting.restylers import load
+
+    return load(restyle)
