@@ -15,6 +15,7 @@ from ..rooms.check import check
 from .brief import Brief, RefusedError
 from .problems import Posed, problem_of
 from .sentence.read import read
+from .surfaces import with_surfaces
 from .unmet import unmet_wishes
 
 if TYPE_CHECKING:
@@ -99,6 +100,7 @@ def compose(
             again = arranged(second.brief, seed, effort)
             if len(again[1].conflicts) < len(layout.conflicts) and _names_as_much(second.brief, brief):
                 brief, (posed, layout), proposal = second.brief, again, _joined(proposal, second)
+    layout = layout.model_copy(update={"graph": with_surfaces(layout.graph, brief, posed.names)})
     unknown = [f"not understood: {', '.join(brief.unknown)}"] if brief.unknown else []
     remarks = (*unknown, *brief.remarks, *posed.remarks)
     unmet = unmet_wishes(brief, posed, layout)

@@ -10,11 +10,12 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
 from ...gaussians.world import everyday, everyday_names, kinds
+from ...gaussians.world.finishes import described
 from ...gaussians.world.kinds import Kind
 from ...gaussians.world.relations import WishName
 from ...gaussians.world.words import singular
@@ -93,6 +94,22 @@ class RoomKind(_Entry):
         return self
 
 
+Role = Literal["floor", "walls", "ceiling", "counters", "seating", "textiles", "metal", "furniture"]
+# Kinds that a style dresses alike; a kind of two roles takes the first that the style names.
+_ROLES: dict[str, tuple[str, ...]] = {
+    "counters": ("kitchen counter", "kitchen island", "counter", "bar counter", "reception desk"),
+    "seating": ("sofa", "loveseat", "armchair", "ottoman", "beanbag", "office chair"),
+    "textiles": ("curtain", "cushion", "floor cushion", "bedspread", "blanket", "folded towel"),
+    "metal": ("floor lamp", "pendant lamp", "chandelier", "arc lamp", "table lamp", "desk lamp"),
+    "furniture": (
+        "table", "dining table", "round table", "coffee table", "side table", "console table", "cafe table", "desk",
+        "nightstand", "bookshelf", "shelf", "wall shelf", "cabinet", "wardrobe", "wall cabinet", "dresser", "sideboard",
+        "tv stand", "bench", "chair", "stool", "bar stool", "rocking chair", "bed", "chest", "kitchen counter",
+        "kitchen island", "kitchen cabinet", "workbench",
+    ),
+}  # fmt: skip
+
+
 class Style(_Entry):
     """What a style word changes.
 
@@ -101,6 +118,7 @@ class Style(_Entry):
         adds: things that are added first.
         colors: preferred colours of things without a stated colour.
         unshown: what the word also means and boxes cannot show.
+        materials: surfaces of what nothing else is said of, by role: "floor", "walls", "ceiling", or a role of `roles`.
     """
 
     name: Name
@@ -109,6 +127,13 @@ class Style(_Entry):
     adds: tuple[Name, ...] = ()
     colors: tuple[Name, ...] = ()
     unshown: Annotated[str, Field(max_length=80)] = ""
+    materials: dict[Role, Annotated[str, Field(max_length=60)]] = {}
+
+    @model_validator(mode="after")
+    def _known(self) -> Self:
+        if strange := sorted(phrase for phrase in self.materials.values() if described(phrase) is None):
+            raise ValueError(f"{self.name}: {strange} are no materials")
+        return self
 
 
 @cache
@@ -129,6 +154,11 @@ def rooms() -> Mapping[str, RoomKind]:
 def _asked(room: RoomKind) -> set[str]:
     """Names of the things that a room holds or seats people on."""
     return {h.thing for h in room.habits} | {s.thing for s in room.seats}
+
+
+def roles() -> Mapping[str, tuple[str, ...]]:
+    """The kinds of things that each role of a style means."""
+    return MappingProxyType(_ROLES)
 
 
 @cache

@@ -36,6 +36,7 @@ from .asset_folder import AssetFolder
 from .designs import AssetMaker
 from .node import Drawn, Node, NodeId
 from .rest_heights import loads, rest_boxes
+from .surfacing import COMPOSED_COVER, with_materials
 
 if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
@@ -50,7 +51,7 @@ _GREEN = ("tree", "bush", "rock", "tent")  # shapes of what stands on grass
 _SPARE = 256  # ids up to this much above the number of nodes are kept as they are, with empty rows between them
 _LEVEL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 # Composed rooms are made for viewing: this cover of Gaussians lets no light from behind the walls through.
-ANY_LOOK = Look(cover=0.68)
+ANY_LOOK = Look(cover=COMPOSED_COVER)
 _SKIN = 0.001  # metres: floor, walls and ceiling are as thin in the table
 
 
@@ -134,6 +135,9 @@ def construct(
         boxes = {n.id: t.box.box for n, t in zip(drawn, layout.things, strict=True)}
         scene = _with_table(graph, drawn, room, rows, boxes, encoder, notes)
         cameras = (*_given(graph), overview(layout, closed), *eye_views(layout))
+    with timed(seconds, "materials"):
+        scene, more = with_materials(scene, graph, rows)
+    notes = tuple(dict.fromkeys((*notes, *more)))
     blocks = tuple(key for key, one in made.items() if one.block)
     return Built(scene.replace(cameras=cameras), rows, blocks, notes, seconds)
 

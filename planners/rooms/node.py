@@ -32,6 +32,7 @@ class Node(BaseModel):
         position: centre of that box.
         yaw: degrees counter-clockwise seen from above, of the box's width against world x, in (-180, 180].
         support: id of the node it stands on, or "floor", "wall", "ceiling".
+        material: its surface in words ("oak", "red and white stripes"), "" for that of its design.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -43,6 +44,7 @@ class Node(BaseModel):
     position: Point
     yaw: Annotated[float, Field(gt=-360, le=360, allow_inf_nan=False)] = 0.0
     support: Support = "floor"
+    material: Annotated[str, Field(max_length=60)] = ""
 
     @property
     def yaw_box(self) -> YawBox:
@@ -76,6 +78,7 @@ class RoomShape(BaseModel):
     """The room: width (x), depth (y) and height (z) in metres, and where up is, which is always +z.
 
     `outdoor`: it has no ceiling, and walls only where something hangs on them; its height is that of what stands in it.
+    `floor`, `walls` and `ceiling`: their surfaces in words ("oak planks", "exposed brick", "pale green"), "" for any.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -83,6 +86,9 @@ class RoomShape(BaseModel):
     size: Size
     up: Point = (0.0, 0.0, 1.0)
     outdoor: bool = False
+    floor: Annotated[str, Field(max_length=60)] = ""
+    walls: Annotated[str, Field(max_length=60)] = ""
+    ceiling: Annotated[str, Field(max_length=60)] = ""
 
     @model_validator(mode="after")
     def _upright(self) -> Self:

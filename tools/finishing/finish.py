@@ -90,12 +90,16 @@ def mean_pigment(pattern: Pattern) -> Tensor:
     return torch.from_numpy(pattern(spots)).double().mean(dim=0)
 
 
-def painted(cloud: GaussianCloud, rows: Tensor, chart: Chart, paint: Paint) -> Painted:
-    """Paint some rows `[M]` of a cloud, M > 0; the rest of the cloud is not looked at."""
+def painted(cloud: GaussianCloud, rows: Tensor, chart: Chart, paint: Paint, most: int | None = None) -> Painted:
+    """Paint some rows `[M]` of a cloud, M > 0; the rest of the cloud is not looked at.
+
+    Args:
+        most: how many Gaussians splitting may add; None: the usual limit.
+    """
     normals = normals_of(chart, cloud, rows)
     own = cloud[rows]
     light = _light(own, Shading.of(cloud, rows).at(own.means), paint.lit)
-    counts = _counts(own, normals, chart, paint)
+    counts = _counts(own, normals, chart, paint, max(_NEW, _MORE * len(own)) if most is None else most)
     whole = (counts == 1).all(dim=1)
     kept, divided = whole.nonzero().squeeze(1), (~whole).nonzero().squeeze(1)
     children, parents = subdivided(own[divided], counts[divided])
@@ -107,19 +111,21 @@ def painted(cloud: GaussianCloud, rows: Tensor, chart: Chart, paint: Paint) -> P
     return Painted(rows[kept], sh, rows[divided], painted_children)
 
 
-def _counts(own: GaussianCloud, normals: F32, chart: Chart, paint: Paint) -> Tensor:
+def _counts(own: GaussianCloud, normals: F32, chart: Chart, paint: Paint, most: float) -> Tensor:
     """`[M, 2]` int64: into how many each Gaussian is split along its longest and its second axis."""
     ordered = own.scales.sort(dim=1, descending=True)
     sides = ordered.values[:, :2] * chart.metres
     finest = _FINEST * paint.detail
     counts = torch.ones(len(own), 2, dtype=torch.int64)
+    if most <= 0:
+        return counts
     coarse = ((sides[:, 0] > finest) & (own.opacities > _FAINT)).nonzero().squeeze(1)
     if not len(coarse):
         return counts
     gains = _varies(own[coarse], ordered.indices[coarse], normals[coarse.numpy()], chart, paint)
     coarse = coarse[gains > _VARIES]
     opacities = own.opacities[coarse]
-    limit = len(own) + max(_NEW, _MORE * len(own))
+    limit = len(own) + most
     low, high = finest, max(finest, float(sides.max()))  # the finest size that keeps to the limit, by bisection
     wanted = low
     for _ in range(_STEPS):

@@ -326,7 +326,19 @@ def _gravel(s: Spots, look: Look) -> F32:
     return _mixed(look, gap + 0.36 * (1 - shown), 1 + 0.5 * shown * (cells.chance - 0.5))
 
 
-@texture("plastic", "porcelain")
+@texture("terrazzo")
+def _terrazzo(s: Spots, look: Look) -> F32:
+    """Chips of stone of four tones in a pale cement."""
+    chips = cellular(s.xyz, look.unit, look.seed)
+    shown = faded(s.blur, 0.5 * look.unit)
+    inside = shown * _step(chips.edge - 0.22, s.blur / look.unit) * (chips.chance < 0.62)
+    tones = np.array([[0.62, 0.33, 0.24], [0.30, 0.31, 0.33], [0.93, 0.91, 0.87], [0.66, 0.57, 0.42]], np.float32)
+    chip = tones[np.minimum((chips.chance / 0.155).astype(np.int64), 3)]
+    body = _toned(look, 1 + 0.05 * fractal(s.xyz, 0.02, s.blur, look.seed + 3, 2))
+    return np.asarray(body + inside[:, None] * (chip - body), dtype=np.float32)
+
+
+@texture("plastic", "porcelain", "glass")
 def _plain(s: Spots, look: Look) -> F32:
     """One even pigment."""
     return _toned(look, np.ones(len(s.xyz), np.float32))
@@ -358,3 +370,60 @@ def _dots(s: Spots, look: Look) -> F32:
     off = np.stack([across - np.floor(across) - 0.5, p[:, 1] - row - 0.5], axis=1)
     inside = _step((0.29 - np.linalg.norm(off, axis=1)).astype(np.float32), s.blur / look.unit)
     return _mixed(look, np.asarray(0.26 + faded(s.blur, 0.6 * look.unit) * (inside - 0.26), np.float32))
+
+
+def _motif(s: Spots, look: Look) -> tuple[F32, F32, NDArray[np.int32], F32]:
+    """Places in cells of half the unit, whose rows are shifted by half a cell: radius and angle about the middle, the
+    cell, and a blur in cells."""
+    p = s.plane / np.float32(0.5 * look.unit)
+    row = np.floor(p[:, 1])
+    across = p[:, 0] + 0.5 * (row % 2)
+    cell = _columns(across, row)
+    off = np.stack([across - np.floor(across) - 0.5, p[:, 1] - row - 0.5], axis=1).astype(np.float32)
+    radius = np.linalg.norm(off, axis=1).astype(np.float32)
+    angle = np.arctan2(off[:, 1], off[:, 0]).astype(np.float32)
+    return radius, angle, cell, (s.blur / np.float32(0.5 * look.unit)).astype(np.float32)
+
+
+@texture("floral")
+def _floral(s: Spots, look: Look) -> F32:
+    """Flowers of five petals with leaves, each turned its own way, in rows that are shifted."""
+    radius, angle, cell, blur = _motif(s, look)
+    turn = 2 * np.pi * random(cell, look.seed)
+    shown = faded(s.blur, 0.3 * look.unit)[:, None]
+    petals = _step(0.20 + 0.09 * np.cos(5 * (angle + turn)) - radius, blur)
+    middle = _step(0.07 - radius, blur)
+    leaves = _step(0.36 + 0.10 * np.cos(3 * (angle - turn)) - radius, blur) * _step(
+        np.cos(3 * (angle - turn)) - 0.55, blur
+    )
+    a, b = np.array(look.color, np.float32), np.array(look.second, np.float32)
+    green = (0.45 * b + 0.55 * np.array([0.33, 0.46, 0.29], np.float32)).astype(np.float32)
+    out = np.broadcast_to(a, (len(radius), 3)).astype(np.float32)
+    for share, ink in ((leaves, green), (petals, b), (middle, (0.5 * b + 0.5 * a).astype(np.float32))):
+        out = out + shown * share[:, None] * (ink - out)
+    return np.asarray(out, dtype=np.float32)
+
+
+@texture("ornament")
+def _ornament(s: Spots, look: Look) -> F32:
+    """Rosettes in diamonds with fine borders, as on carpets and damask."""
+    u, v = (2 * np.pi * s.plane[:, k] / look.unit for k in (0, 1))
+    blur = s.blur / np.float32(look.unit)
+    lattice = np.cos(u) + np.cos(v)
+    rosette = np.cos(2 * u) * np.cos(2 * v) + 0.5 * np.cos(3 * (u + v)) * np.cos(3 * (u - v))
+    border = _step(0.22 - np.abs(lattice), 6 * blur)
+    inner = _step((rosette - 0.35).astype(np.float32), 8 * blur) * _step(
+        (np.abs(lattice) - 0.5).astype(np.float32), 6 * blur
+    )
+    share = 0.33 + faded(s.blur, 0.3 * look.unit) * (np.maximum(border, inner) - 0.33)
+    return _mixed(look, np.asarray(share, np.float32))
+
+
+@texture("stars")
+def _stars(s: Spots, look: Look) -> F32:
+    """Five-pointed stars in rows that are shifted, each turned its own way."""
+    radius, angle, cell, blur = _motif(s, look)
+    turned = (angle + 2 * np.pi * random(cell, look.seed)) % (0.4 * np.pi) - 0.2 * np.pi
+    edge = 0.11 / np.maximum(np.cos(np.abs(turned)) - 0.62 * (0.2 * np.pi - np.abs(turned)) * 1.59, 0.25)
+    inside = _step((np.minimum(edge, 0.3) - radius).astype(np.float32), blur)
+    return _mixed(look, np.asarray(0.12 + faded(s.blur, 0.3 * look.unit) * (inside - 0.12), np.float32))

@@ -12,6 +12,7 @@ from typing import Any
 
 from ....gaussians.errors import UserError
 from ....gaussians.world import everyday
+from ....gaussians.world.finishes import described
 from ....gaussians.world.words import is_plural, singular
 from ...grammar.tagging.lookahead import NOUN_COLORS, color_at, match, may_be_noun
 from ...grammar.tagging.words import clean
@@ -26,6 +27,7 @@ from .drafts import Said, brief_of
 from .linking import Linker
 from .numbers_and_rows import standing, times
 from .relating import sides_at
+from .surfaces import extracted
 from .tokenize import refuse_others, words_of
 
 _MARKS = frozenset(".;!?\n:")
@@ -58,7 +60,9 @@ def read(text: str) -> Brief:
         raise RefusedError("this is code or data, not a description in words", "not_understood")
     texts, slips = words_of(cleaned)
     refuse_others(texts)
+    texts, features = extracted(texts)
     reader = _Reader(texts)
+    reader.features += features
     reader.remarks += slips
     reader.run()
     return reader.brief()
@@ -244,14 +248,15 @@ class _Reader(Clauses):
             self.features.append(found[0])
             self.said = Said()
             self.linker.elsewhere()
-            if found[0] not in ("high ceiling", "low ceiling", "dance floor"):
+            if found[0] not in ("high ceiling", "low ceiling", "dance floor", "brick wall"):
                 self.remarks.append(f"{found[0]}: kept in the brief, but not drawn")
             return found[1]
         looks = self.said.color or self.said.material
         told = looks or (self.said.styles and self.said.styles[-1]) or (self.before(i) == "light" and "light")
         if self.texts[i] in vocabulary.STRUCTURE and not self.linker.waiting and told:
             self.features.append(f"{told} {self.texts[i]}")
-            self.remarks.append(f"{told} {self.texts[i]}: kept in the brief, but layouts have no paint")
+            if described(told) is None:
+                self.remarks.append(f"{told} {self.texts[i]}: kept in the brief, but no material that is known")
             self.said = Said()
             return 1
         return 0
@@ -511,6 +516,8 @@ class _Reader(Clauses):
             self._thing(singular(word), word, 0)
             return
         self.room_word = self.room_word or word
+        if said.material and described(said.material) is not None:  # "a concrete loft"
+            self.features += [f"{said.material} {part}" for part in ("floor", "walls")]
         self.said = Said()
         if self.linker.in_room():
             if name != "room" and not self.kind:

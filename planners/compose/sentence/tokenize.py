@@ -9,6 +9,7 @@ import re
 import unicodedata
 from collections.abc import Sequence
 
+from ....gaussians.world.finishes import single_words
 from ....gaussians.world.words import singular
 from ...grammar.tagging.lookahead import match
 from ...grammar.tagging.spelling import misspelled_name
@@ -68,7 +69,7 @@ def _spelt_out(texts: list[str]) -> list[str]:
 
 
 def _is_known(text: str) -> bool:
-    known = knowledge.every_word() | vocabulary.FILLER | vocabulary.ABSTRACT | vocabulary.PEOPLE
+    known = knowledge.every_word() | vocabulary.FILLER | vocabulary.ABSTRACT | vocabulary.PEOPLE | single_words()
     return text in known or singular(text) in known
 
 

@@ -110,10 +110,15 @@ SIZES: dict[str, Scale] = {
 }  # fmt: skip
 # Materials, and the basic colour of a thing of each where none is stated; "": the material has no typical colour.
 MATERIALS = dict.fromkeys(
-    bag("glass plastic fabric velvet linen wool cotton upholstered acrylic brick brass"), ""
-) | {m: FAMILIES[m] for m in bag(
+    bag(
+        "glass plastic fabric velvet linen wool cotton upholstered acrylic brick brass suede corduroy tweed denim silk "
+        "knitted quilted lacquered burlap hessian boucle cashmere satin plush terrazzo granite slate travertine quartz "
+        "limestone woollen"
+    ), ""
+) | {m: FAMILIES.get(m, "") for m in bag(
     "wooden wood oak walnut pine teak mahogany timber birch reclaimed leather rattan wicker bamboo cane straw jute "
-    "metal metallic steel chrome aluminium aluminum concrete stone stainless iron marble porcelain ceramic"
+    "metal metallic steel chrome aluminium aluminum concrete stone stainless iron marble porcelain ceramic "
+    "plywood beech maple cedar ebony rosewood driftwood"
 )}  # fmt: skip
 SHAPES = bag("round square rectangular circular oval curved shaped open closed tiered l-shaped")
 COUNTS: dict[Phrase, int] = {

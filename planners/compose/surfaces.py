@@ -1,0 +1,81 @@
+"""The surfaces of a composed room: what the brief says of the room and its things, else what its style means."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ...gaussians.world import kinds
+from ...gaussians.world.finishes import described, said
+from ..rooms.graph import SceneGraph
+from ..rooms.node import Node
+from . import knowledge
+from .brief import Brief
+from .sentence.surfaces import PARTS
+
+_METALS = frozenset({"gold", "copper", "brass", "bronze", "chrome"})  # colours that are metals on furniture
+_PAINTED = ("walls", "ceiling")  # of which a colour alone is said
+
+
+def with_surfaces(graph: SceneGraph, brief: Brief, names: Mapping[int, str]) -> SceneGraph:
+    """The graph with the materials of its room and of its things.
+
+    Args:
+        names: for each node that the brief asked for, its id to the id of the brief's thing.
+    """
+    room = _room(brief)
+    style = _style(brief) | ({"furniture": room["furniture"]} if "furniture" in room else {})
+    shape = graph.room.model_copy(update={k: room.get(k) or style.get(k, "") for k in ("floor", "walls", "ceiling")})
+    if graph.room.outdoor:
+        shape = shape.model_copy(update={"walls": "", "ceiling": ""})
+    things = {thing.id: thing for thing in brief.things}
+    nodes = []
+    for node in graph.nodes:
+        thing = things.get(names.get(node.id, "")) if isinstance(node.id, int) else None
+        own = _material(thing.material, thing.color) if thing is not None else ""
+        stated = thing is not None and bool(thing.color or thing.material)
+        nodes.append(_with(node, own or ("" if stated else _by_role(node.label, style))))
+    return graph.model_copy(update={"room": shape, "nodes": tuple(nodes)})
+
+
+def _with(node: Node, material: str) -> Node:
+    return node.model_copy(update={"material": material[:60]}) if material else node
+
+
+def _room(brief: Brief) -> dict[str, str]:
+    """Phrases for floor, walls and ceiling among the features of a brief."""
+    found: dict[str, str] = {}
+    for feature in brief.features:
+        phrase, _, last = feature.rpartition(" ")
+        part = PARTS.get(last, "")
+        told = described(phrase) if part and phrase else None
+        if told is not None:
+            found[part] = phrase[:60]
+    return found
+
+
+def _style(brief: Brief) -> dict[str, str]:
+    """What the first style with materials means, by the role of what has them."""
+    for name in brief.styles:
+        style = knowledge.styles().get(name)
+        if style is not None and style.materials:
+            return {str(role): phrase for role, phrase in style.materials.items()}
+    return {}
+
+
+def _material(material: str, color: str) -> str:
+    """The surface of a thing that is said to be of a material, or of a colour that is a metal."""
+    known = said(material)
+    if known is None:
+        return color if color in _METALS else ""
+    return f"{color} {material}" if color and color not in _METALS else material
+
+
+def _by_role(label: str, style: Mapping[str, str]) -> str:
+    return next((style[role] for role in roles_of(label) if role in style), "")
+
+
+def roles_of(label: str) -> tuple[str, ...]:
+    """The roles in which a style may dress a thing, the closest first: "seating", "furniture", ..."""
+    kind = kinds.find(label)
+    name = kind.name if kind is not None else label
+    return tuple(role for role, names in knowledge.roles().items() if name in names)
