@@ -10,14 +10,14 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
 from ...gaussians.world import everyday, everyday_names, kinds
-from ...gaussians.world.finishes import described
 from ...gaussians.world.kinds import Kind
 from ...gaussians.world.relations import WishName
+from ...gaussians.world.styles import STYLES, Role
 from ...gaussians.world.words import singular
 
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[a-z][a-z' ]*$")]
@@ -94,22 +94,6 @@ class RoomKind(_Entry):
         return self
 
 
-Role = Literal["floor", "walls", "ceiling", "counters", "seating", "textiles", "metal", "furniture"]
-# Kinds that a style dresses alike; a kind of two roles takes the first that the style names.
-_ROLES: dict[str, tuple[str, ...]] = {
-    "counters": ("kitchen counter", "kitchen island", "counter", "bar counter", "reception desk"),
-    "seating": ("sofa", "loveseat", "armchair", "ottoman", "beanbag", "office chair"),
-    "textiles": ("curtain", "cushion", "floor cushion", "bedspread", "blanket", "folded towel"),
-    "metal": ("floor lamp", "pendant lamp", "chandelier", "arc lamp", "table lamp", "desk lamp"),
-    "furniture": (
-        "table", "dining table", "round table", "coffee table", "side table", "console table", "cafe table", "desk",
-        "nightstand", "bookshelf", "shelf", "wall shelf", "cabinet", "wardrobe", "wall cabinet", "dresser", "sideboard",
-        "tv stand", "bench", "chair", "stool", "bar stool", "rocking chair", "bed", "chest", "kitchen counter",
-        "kitchen island", "kitchen cabinet", "workbench",
-    ),
-}  # fmt: skip
-
-
 class Style(_Entry):
     """What a style word changes.
 
@@ -118,7 +102,7 @@ class Style(_Entry):
         adds: things that are added first.
         colors: preferred colours of things without a stated colour.
         unshown: what the word also means and boxes cannot show.
-        materials: surfaces of what nothing else is said of, by role: "floor", "walls", "ceiling", or a role of `roles`.
+        materials: surfaces of what nothing else is said of, by role, see `gaussians.world.styles`.
     """
 
     name: Name
@@ -128,12 +112,6 @@ class Style(_Entry):
     colors: tuple[Name, ...] = ()
     unshown: Annotated[str, Field(max_length=80)] = ""
     materials: dict[Role, Annotated[str, Field(max_length=60)]] = {}
-
-    @model_validator(mode="after")
-    def _known(self) -> Self:
-        if strange := sorted(phrase for phrase in self.materials.values() if described(phrase) is None):
-            raise ValueError(f"{self.name}: {strange} are no materials")
-        return self
 
 
 @cache
@@ -156,15 +134,10 @@ def _asked(room: RoomKind) -> set[str]:
     return {h.thing for h in room.habits} | {s.thing for s in room.seats}
 
 
-def roles() -> Mapping[str, tuple[str, ...]]:
-    """The kinds of things that each role of a style means."""
-    return MappingProxyType(_ROLES)
-
-
 @cache
 def styles() -> Mapping[str, Style]:
     """Every style by its name."""
-    found = TypeAdapter(tuple[Style, ...]).validate_json(_text("styles.json"))
+    found = TypeAdapter(tuple[Style, ...]).validate_json(STYLES.read_bytes())
     strange = {name for style in found for name in style.adds} - set(things())
     assert not strange, f"styles add things that the table of kinds lacks: {sorted(strange)}"
     return MappingProxyType({s.name: s for s in found})

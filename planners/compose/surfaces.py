@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ...gaussians.world import kinds
 from ...gaussians.world.finishes import described, said
+from ...gaussians.world.styles import Role, material_for, materials_of
 from ..rooms.graph import SceneGraph
 from ..rooms.node import Node
-from . import knowledge
 from .brief import Brief
 from .sentence.surfaces import PARTS
 
@@ -23,8 +22,11 @@ def with_surfaces(graph: SceneGraph, brief: Brief, names: Mapping[int, str]) -> 
         names: for each node that the brief asked for, its id to the id of the brief's thing.
     """
     room = _room(brief)
-    style = _style(brief) | ({"furniture": room["furniture"]} if "furniture" in room else {})
-    shape = graph.room.model_copy(update={k: room.get(k) or style.get(k, "") for k in ("floor", "walls", "ceiling")})
+    style = _style(brief)
+    if "furniture" in room:
+        style["furniture"] = room["furniture"]
+    parts: tuple[Role, ...] = ("floor", "walls", "ceiling")
+    shape = graph.room.model_copy(update={part: room.get(part) or style.get(part, "") for part in parts})
     if graph.room.outdoor:
         shape = shape.model_copy(update={"walls": "", "ceiling": ""})
     things = {thing.id: thing for thing in brief.things}
@@ -33,7 +35,7 @@ def with_surfaces(graph: SceneGraph, brief: Brief, names: Mapping[int, str]) -> 
         thing = things.get(names.get(node.id, "")) if isinstance(node.id, int) else None
         own = _material(thing.material, thing.color) if thing is not None else ""
         stated = thing is not None and bool(thing.color or thing.material)
-        nodes.append(_with(node, own or ("" if stated else _by_role(node.label, style))))
+        nodes.append(_with(node, own or ("" if stated else material_for(node.label, style))))
     return graph.model_copy(update={"room": shape, "nodes": tuple(nodes)})
 
 
@@ -53,13 +55,9 @@ def _room(brief: Brief) -> dict[str, str]:
     return found
 
 
-def _style(brief: Brief) -> dict[str, str]:
+def _style(brief: Brief) -> dict[Role, str]:
     """What the first style with materials means, by the role of what has them."""
-    for name in brief.styles:
-        style = knowledge.styles().get(name)
-        if style is not None and style.materials:
-            return {str(role): phrase for role, phrase in style.materials.items()}
-    return {}
+    return next((dict(materials_of()[name]) for name in brief.styles if name in materials_of()), {})
 
 
 def _material(material: str, color: str) -> str:
@@ -68,14 +66,3 @@ def _material(material: str, color: str) -> str:
     if known is None:
         return color if color in _METALS else ""
     return f"{color} {material}" if color and color not in _METALS else material
-
-
-def _by_role(label: str, style: Mapping[str, str]) -> str:
-    return next((style[role] for role in roles_of(label) if role in style), "")
-
-
-def roles_of(label: str) -> tuple[str, ...]:
-    """The roles in which a style may dress a thing, the closest first: "seating", "furniture", ..."""
-    kind = kinds.find(label)
-    name = kind.name if kind is not None else label
-    return tuple(role for role, names in knowledge.roles().items() if name in names)

@@ -9,6 +9,7 @@ from scenewright.gaussians.color import rgb_to_lab
 from scenewright.gaussians.harmonics import dc_to_color
 from scenewright.gaussians.scene import Scene
 from scenewright.gaussians.world.finishes import Described, described
+from scenewright.gaussians.world.styles import material_for, materials_of, named
 from scenewright.planners.compose import knowledge
 from scenewright.planners.compose.compose import compose
 from scenewright.planners.compose.sentence.read import read
@@ -73,9 +74,10 @@ def test_things_and_styles_have_materials() -> None:
 
 
 def test_every_style_names_known_materials_and_roles() -> None:
-    named = [style for style in knowledge.styles().values() if style.materials]
-    assert len(named) >= 10
-    assert {"seating", "furniture", "counters"} <= set(knowledge.roles())
+    assert len(materials_of()) >= 10  # which checks the phrases itself
+    assert {style.name for style in knowledge.styles().values() if style.materials} == set(materials_of())
+    assert named("Mid-Century Modern") == "vintage"
+    assert material_for("couch", materials_of()["industrial"]) == "brown leather"
 
 
 def lightness_and_hue(scene: Scene, label: str) -> torch.Tensor:

@@ -162,6 +162,8 @@ def _recolor(case: Case, op: Recolor) -> Found:
 
 
 def _restyle(case: Case, op: Restyle) -> Found:
+    if op.style is not None:  # which leaves what it has no material for
+        return [], _NO_IDS
     target = case.target.clone()
     if not op.whole and bool(target.any()):
         target[surfaces(case.before, case.meant).left] = False

@@ -3,6 +3,7 @@ photograph; its shape and the light on it stay."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import torch
@@ -14,8 +15,9 @@ from ...gaussians.errors import InstructionError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from ...gaussians.world.finishes import FINISHES, FinishName
+from ...gaussians.world.finishes import FINISHES, FinishName, described
 from ...gaussians.world.lengths import in_metres
+from ...gaussians.world.styles import StyleName, material_for, materials_of
 from ..alternatives import NOT_GIVEN, either, given
 from ..checks import count_matches
 from ..cloud_diff import rows_of, selection_of
@@ -32,6 +34,7 @@ from ..operation import ColorName, Context, Length, Outcome, TargetedOp
 from ..placement.bodies import Body, bodies_of
 from ..receipt import Check, at_most, report
 
+_STYLED = 25_000  # Gaussians that a style adds to one thing at most: it dresses many
 _TOLD = 0.01  # share of the target that was left from which it is told
 _SHAPE = 0.1  # share of the outline that may change: a ragged floor alone differs by .06, lost pieces by more
 
@@ -39,16 +42,32 @@ _SHAPE = 0.1  # share of the outline that may change: a ragged floor alone diffe
 class Restyle(TargetedOp):
     """Give the target another material or pattern; its shape, its place and the light on it stay.
 
-    Give `material` ("make it marble"), or `like` ("the pattern of the curtain", "wood like the table"), or `reference`
-    ("like in the photo"). A material has its usual colours unless `color` is given ("green marble"; oak is wood of the
-    color oak). A colour alone is recolor.
+    Give `material` ("make it marble"), `style` for a whole room ("a rustic look"), `like` ("the pattern of the
+    curtain", "wood like the table"), or `reference` ("like in the photo"). A material has its usual colours unless
+    `color` is given ("green marble"; oak is wood of the color oak). A colour alone is recolor.
     """
 
     model_config = ConfigDict(
         json_schema_extra=either(
-            {"material": given(), "like": NOT_GIVEN, "reference": NOT_GIVEN, "width": NOT_GIVEN},
-            {"like": given(), "reference": NOT_GIVEN, "width": NOT_GIVEN},
-            {"reference": given(), "like": NOT_GIVEN},
+            {
+                "material": given(),
+                "like": NOT_GIVEN,
+                "reference": NOT_GIVEN,
+                "width": NOT_GIVEN,
+                "style": NOT_GIVEN,
+            },
+            {"like": given(), "reference": NOT_GIVEN, "width": NOT_GIVEN, "style": NOT_GIVEN},
+            {"reference": given(), "like": NOT_GIVEN, "style": NOT_GIVEN},
+            {
+                "style": given(),
+                "material": NOT_GIVEN,
+                "like": NOT_GIVEN,
+                "reference": NOT_GIVEN,
+                "width": NOT_GIVEN,
+                "color": NOT_GIVEN,
+                "second": NOT_GIVEN,
+                "unit": NOT_GIVEN,
+            },
         )
     )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
@@ -69,6 +88,8 @@ class Restyle(TargetedOp):
     """The name of a photograph that the user gave, "photo" for the only one."""
     width: Length | None = None
     """How wide the place is that the photograph shows."""
+    style: StyleName | None = None
+    """A style, which gives each floor, wall and piece of furniture of the target a material of its own."""
     whole: bool = False
     """Parts of other hues (a cushion, handles) too; they are left otherwise."""
 
@@ -78,8 +99,11 @@ class Restyle(TargetedOp):
     def _one_way(self) -> Self:
         if self.like is not None and self.reference is not None:
             raise ValueError("give either like or reference, not both")
-        if self.material is None and self.like is None and self.reference is None:
-            raise ValueError("restyle needs a material, like (a thing), or reference (a photograph)")
+        others = (self.material, self.like, self.reference, self.width, self.color, self.second, self.unit)
+        if self.style is not None and any(value is not None for value in others):
+            raise ValueError("a style stands alone: it chooses the materials")
+        if self.style is None and self.material is None and self.like is None and self.reference is None:
+            raise ValueError("restyle needs a material, like (a thing), reference (a photograph), or a style")
         if self.width is not None and self.reference is None:
             raise ValueError("width is that of a reference; the size of what repeats is unit")
         return self
@@ -89,6 +113,8 @@ class Restyle(TargetedOp):
         """What it becomes, in words."""
         if self.like is not None:
             return f"the surface of {self.like.describe()}"
+        if self.style is not None:
+            return f"the {self.style} style"
         return "the photograph" if self.reference is not None else str(self.material)
 
     def settled(self, scene: Scene, context: Context) -> Self:
@@ -114,25 +140,48 @@ class Restyle(TargetedOp):
             return self.settled(scene, context).apply(scene, selection, context)
         self._refuse_itself(selection)
         bodies = bodies_of(scene, selection)
+        chosen = self._chosen(bodies)
+        bodies = [body for body in bodies if self.style is None or body.label in chosen]
         scale = scene_scale(scene, [(body, self.target.text) for body in bodies])
         done: list[Painted] = []
         left = 0.0
         for body in bodies:
             rows, share = self._surface(scene, body)
-            left = max(left, share)
+            left = max(left, share if self.style is None else 0.0)
             if len(rows):
                 chart = chart_of(scene, rows, body.box, 1 / scale.units_per_metre)
                 light = Lit.of(scene, rows)
-                paint = light.paint(self._design(light, chart.metres, context.seed))
-                done.append(painted(scene.cloud, rows, chart, paint))
+                phrase = chosen.get(body.label, "")
+                design = (
+                    _styled(phrase, body.label, light) if phrase else self._design(light, chart.metres, context.seed)
+                )
+                most = _STYLED if phrase else None
+                done.append(painted(scene.cloud, rows, chart, light.paint(design), most))
         cloud, touched, removed, added = put_in(scene.cloud, done)
         after = scene.replace(cloud=cloud)
         after = after.replace(language=recount(after.language, cloud))
         after = after.replace(language=after_recolor(after, torch.cat([touched, added])))
         ids = torch.cat([selection.ids[~torch.isin(selection.ids, removed)], added])
         focus = selection_of(selection, ids, selection.groups, selection.reason)
-        notes = (*self._notes(left, len(removed), len(added)), *scale.notes)
+        notes = (*_told(chosen), *self._notes(left, len(removed), len(added)), *scale.notes)
         return Outcome(after, touched=touched, added=added, removed=removed, notes=notes, focus=focus)
+
+    def _chosen(self, bodies: Sequence[Body]) -> dict[str, str]:
+        """The material that the style gives each name among some bodies; nothing without a style.
+
+        Raises:
+            InstructionError: it gives none to any of them.
+        """
+        if self.style is None:
+            return {}
+        table = materials_of()[self.style]
+        chosen = {body.label: phrase for body in bodies if (phrase := material_for(body.label, table))}
+        if not chosen:
+            raise InstructionError(
+                f"the {self.style} style has no material for anything here: it is about {', '.join(table)}; "
+                "name what is to change and a material"
+            )
+        return chosen
 
     def _refuse_itself(self, selection: Selection) -> None:
         """Raises InstructionError if the pattern is that of the target itself, or of a part of it."""
@@ -180,6 +229,9 @@ class Restyle(TargetedOp):
             return self.settled(before, context).check(before, outcome, selection, context)
         after = outcome.scene
         was = rows_of(before.cloud, torch.cat([outcome.touched, outcome.removed]))
+        if self.style is not None:
+            now = rows_of(after.cloud, torch.cat([outcome.touched, outcome.added]))
+            return self._same_shape(before, was, after, now), count_matches(before, after, outcome)
         now = rows_of(after.cloud, torch.cat([outcome.touched, outcome.added]))
         light = Lit.of(before, was)
         design = self._design(light, 1.0, context.seed)
@@ -196,6 +248,21 @@ class Restyle(TargetedOp):
         """The outlines are those of before: splitting Gaussians changes no shape."""
         off = outline_difference(before.cloud[was], after.cloud[now], before)
         return at_most("same shape", off, _SHAPE, "1", f"its outlines differ in {off:.1%} of their area")
+
+
+def _styled(phrase: str, label: str, light: Lit) -> Design:
+    """The design of what a style says of something; wood on floors, walls and ceilings comes in boards."""
+    said = described(phrase)
+    assert said is not None
+    flat = label in ("floor", "wall", "ceiling", "ground")
+    finish = "planks" if flat and said.finish == "wood" else said.finish or "plastic"
+    return of_finish(FINISHES[finish], Choice(said.color, said.second), light.own)
+
+
+def _told(chosen: Mapping[str, str]) -> tuple[str, ...]:
+    """What a style chose, as a note."""
+    told = ", ".join(f"{label}: {phrase}" for label, phrase in chosen.items())
+    return (f"it was read as {told}",) if told else ()
 
 
 def _in_metres(length: Length | None, metres: float) -> float | None:

@@ -11,9 +11,9 @@ from functools import cache
 from typing import NamedTuple
 
 from ....gaussians.world.finishes import FinishName, described, said
+from ....gaussians.world.styles import ROLES
 from ....gaussians.world.words import singular
 from ...grammar.tagging.words import bag
-from .. import knowledge
 
 PARTS = {
     "floor": "floor", "floors": "floor", "flooring": "floor", "ground": "floor", "floorboards": "floor",
@@ -85,7 +85,7 @@ def _made_of(words: list[str]) -> list[str]:
 @cache
 def _furniture() -> frozenset[str]:
     """Names of furniture, which may be made of something."""
-    return frozenset(name for names in knowledge.roles().values() for name in names)
+    return frozenset(name for names in ROLES.values() for name in names)
 
 
 def _left(words: Sequence[str], start: int, end: int) -> list[str]:

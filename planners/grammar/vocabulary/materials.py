@@ -3,7 +3,8 @@
 All forms of a new colour are forms of a new material too. A word that begins with "#" and is no hexadecimal value
 stands for a material with its colours and the length of what repeats: `#marble~dark-green`, `#stripes~red~white@20-cm`.
 `#photo~tiles@20-cm` stands for a photograph, what it is said to show, and the length of what repeats, or of the
-photograph where nothing is said to; `like~wood` for the surface, said to be wood, of the thing that is named behind it.
+photograph where nothing is said to; `#style~rustic` for a style; `like~wood` for the surface, said to be wood, of the
+thing that is named behind it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from ..tagging.words import bag
 
 _HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6})")
 _MARK = re.compile(r"#[a-z][a-z-]+(?:~[a-z-]+){0,2}(?:@[\d.]+-[a-z]+)?")
-LIKE, PHOTO = "like~", "photo"
+LIKE, PHOTO, STYLE = "like~", "photo", "style"
 ANYTHING = "material"  # what a surface is called that is not said to be wood, brick, ...
 # Words that name colours at least as often as materials: they are materials only where that is said.
 COLORS_TOO = bag(
@@ -44,6 +45,8 @@ def meant(hue: str) -> dict[str, Any]:
         name, *said = (word.replace("-", " ") for word in named.split("~"))
         value, _, unit = size.partition("-")
         length = {"value": float(value), "unit": unit} if size else None
+        if name == STYLE:
+            return {"op": "restyle", "style": said[0]}
         if name == PHOTO:
             side = {"unit" if said else "width": length} if length is not None else {}
             return {"op": "restyle", "reference": name, **({"material": said[0]} if said else {}), **side}

@@ -16,6 +16,7 @@ from .....gaussians.world.lengths import UNITS
 from ...tagging.words import Word, bag
 from ...vocabulary.materials import ANYTHING, LIKE, PHOTO, mark
 from ..chunks import is_thing
+from .styles import names_style, styled
 
 Size = tuple[str, str]  # a number and its unit, as they are said
 _SURFACES = (
@@ -175,7 +176,8 @@ def with_likenesses(words: Sequence[Word]) -> tuple[Word, ...]:
         if i < len(words) and words[i].text not in _MARKS:
             continue
         sentence = words[start:i]
-        plain = likened(" ".join(w.text for w in sentence)) if sentence else None
+        text = " ".join(w.text for w in sentence)
+        plain = likened(text) if sentence else None
         if plain is None:
             found += sentence
         else:
@@ -189,7 +191,7 @@ def likened(said: str) -> str | None:
     """A sentence with each of its commands for the surface of another thing or of a photograph in other words; None if
     it has none."""
     shown = _SHOWN.search(said) is not None
-    if not (shown or _LOOKS.search(said) or _names_surface(said)):
+    if not (shown or names_style(said) or _LOOKS.search(said) or _names_surface(said)):
         return None
     size: Size | None = None
     if shown and (wide := _WIDE.search(said)) is not None:
@@ -220,6 +222,8 @@ def _names_surface(said: str) -> bool:
 
 def _clause(said: str, size: Size | None, shown: bool) -> str | None:
     """One command in other words, None if it asks for nothing of the kind."""
+    if (look := styled(said)) is not None:
+        return look
     said = _ASKED.sub("", said)
     for pattern in _of_photographs() if shown else ():
         for found in _matches(pattern, said):
