@@ -24,6 +24,7 @@ from .textures import Look, pigment
 _DARKER = 0.55  # of the pigment: the second colour of a finish that names none
 _PALE = 0.85  # mixed with white: the second colour of a pattern on a dark pigment
 _DARK = 0.45  # luma below which a pigment is dark
+_PALE_FROM, _JOINT = 0.55, 0.78  # luma of a pale brick, and how dark its joints are relative to it
 _FINER = 0.25  # smallest size of the finest feature, relative to the usual one
 _SHEEN = 0.2  # shine of a texture that was taken from a picture
 
@@ -63,8 +64,8 @@ def of_finish(finish: Finish, choice: Choice, own: Rgb) -> Design:
     color = shade_of(choice.color) if choice.color else usual
     if choice.second:
         second = shade_of(choice.second)
-    elif finish.second and not choice.color:
-        second = parse(finish.second)
+    elif finish.second:
+        second = parse(finish.second) if not choice.color else _beside(color, usual, parse(finish.second))
     else:
         second = _companion(color, pattern=not finish.color)
     look = Look(color, second, finish.unit if choice.unit is None else choice.unit, choice.seed)
@@ -77,9 +78,22 @@ def of_exemplar(exemplar: Exemplar) -> Design:
     return Design(partial(pigment_of, exemplar), exemplar.detail, _SHEEN)
 
 
+def _beside(color: Rgb, usual: Rgb, second: Rgb) -> Rgb:
+    """The second colour of a finish whose first is another than usual: as much darker or lighter; beside a pale colour
+    never lighter."""
+    ratio = _luma(second) / max(_luma(usual), 0.02)
+    if ratio > 1 and _luma(color) > _PALE_FROM:
+        ratio = _JOINT
+    return tuple(min(1.0, c * ratio) for c in color)  # type: ignore[return-value]
+
+
+def _luma(color: Rgb) -> float:
+    return sum(w * c for w, c in zip(LUMA, color, strict=True))
+
+
 def _companion(color: Rgb, *, pattern: bool) -> Rgb:
     """The second colour beside a pigment: darker; in a pattern on a dark pigment, nearly white."""
-    luma = sum(w * c for w, c in zip(LUMA, color, strict=True))
+    luma = _luma(color)
     if pattern and luma < _DARK:
         return tuple(c + _PALE * (1 - c) for c in color)  # type: ignore[return-value]
     if pattern:

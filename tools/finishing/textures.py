@@ -326,14 +326,19 @@ def _gravel(s: Spots, look: Look) -> F32:
     return _mixed(look, gap + 0.36 * (1 - shown), 1 + 0.5 * shown * (cells.chance - 0.5))
 
 
+_CHIPS = 0.21  # share of chips of a terrazzo
+
+
 @texture("terrazzo")
 def _terrazzo(s: Spots, look: Look) -> F32:
     """Chips of stone of four tones in a pale cement."""
     chips = cellular(s.xyz, look.unit, look.seed)
     shown = faded(s.blur, 0.5 * look.unit)
-    inside = shown * _step(chips.edge - 0.22, s.blur / look.unit) * (chips.chance < 0.62)
+    covered = _step(chips.edge - 0.22, s.blur / look.unit) * (chips.chance < 0.62)
+    inside = _CHIPS + shown * (covered - _CHIPS)
     tones = np.array([[0.62, 0.33, 0.24], [0.30, 0.31, 0.33], [0.93, 0.91, 0.87], [0.66, 0.57, 0.42]], np.float32)
-    chip = tones[np.minimum((chips.chance / 0.155).astype(np.int64), 3)]
+    own = tones[np.minimum((chips.chance / 0.155).astype(np.int64), 3)]
+    chip = tones.mean(axis=0) + shown[:, None] * (own - tones.mean(axis=0))
     body = _toned(look, 1 + 0.05 * fractal(s.xyz, 0.02, s.blur, look.seed + 3, 2))
     return np.asarray(body + inside[:, None] * (chip - body), dtype=np.float32)
 
@@ -385,6 +390,10 @@ def _motif(s: Spots, look: Look) -> tuple[F32, F32, NDArray[np.int32], F32]:
     return radius, angle, cell, (s.blur / np.float32(0.5 * look.unit)).astype(np.float32)
 
 
+# Shares of leaves (of the ground), petals (of both) and hearts (of all) in a floral pattern.
+_FLOWERS = (0.19, 0.14, 0.015)
+
+
 @texture("floral")
 def _floral(s: Spots, look: Look) -> F32:
     """Flowers of five petals with leaves, each turned its own way, in rows that are shifted."""
@@ -393,15 +402,17 @@ def _floral(s: Spots, look: Look) -> F32:
     shown = faded(s.blur, 0.3 * look.unit)[:, None]
     petals = _step(0.20 + 0.09 * np.cos(5 * (angle + turn)) - radius, blur)
     middle = _step(0.07 - radius, blur)
-    leaves = _step(0.36 + 0.10 * np.cos(3 * (angle - turn)) - radius, blur) * _step(
-        np.cos(3 * (angle - turn)) - 0.55, blur
-    )
+    lobes = np.cos(3 * (angle - turn))
+    leaves = _step(0.36 + 0.10 * lobes - radius, blur) * _step(lobes - 0.55, blur)
     a, b = np.array(look.color, np.float32), np.array(look.second, np.float32)
     green = (0.45 * b + 0.55 * np.array([0.33, 0.46, 0.29], np.float32)).astype(np.float32)
+    heart = (0.5 * b + 0.5 * a).astype(np.float32)
     out = np.broadcast_to(a, (len(radius), 3)).astype(np.float32)
-    for share, ink in ((leaves, green), (petals, b), (middle, (0.5 * b + 0.5 * a).astype(np.float32))):
-        out = out + shown * share[:, None] * (ink - out)
-    return np.asarray(out, dtype=np.float32)
+    even = a
+    for share, mean, ink in zip((leaves, petals, middle), _FLOWERS, (green, b, heart), strict=True):
+        out = out + share[:, None] * (ink - out)
+        even = even + mean * (ink - even)
+    return np.asarray(even + shown * (out - even), dtype=np.float32)
 
 
 @texture("ornament")
