@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
-from typing import Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Debug, Json, SceneFile
+from ..options import Capture, Debug, Json, SceneFile
 from ..terminal.output import terminal
+
+if TYPE_CHECKING:
+    from ...gaussians.scene import Scene
 
 
 def command(
@@ -16,18 +20,33 @@ def command(
     graph: Annotated[
         bool, typer.Option("--graph", help="Print its scene graph as JSON instead; the scene must be embedded.")
     ] = False,
+    budget: Annotated[
+        bool,
+        typer.Option("--budget", help="Measure what each part of the model takes, and what pictures lose without it."),
+    ] = False,
+    capture: Capture = None,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Print the contents of a scene file: format, Gaussians, frame, cameras, repairs, and things if it is embedded."""
+    """Print the contents of a scene file: format, Gaussians, frame, cameras, repairs, and things if it is embedded.
+
+    With --budget, what each part of its model buys: harmonics, Gaussians, things, views and the language field, with
+    the bytes that dropping it saves and the PSNR or names that are left; --capture gives the views for it.
+    """
     from dataclasses import asdict
 
+    from ...gaussians.errors import UserError
     from ...gaussians.files import load_with_report
     from ...gaussians.language.field.store import load_field
     from ..terminal.thing_names import describe_things
 
+    if capture is not None and not budget:
+        raise UserError("--capture gives the views of --budget; add --budget or leave it out")
     loaded, report = load_with_report(scene)
     loaded = load_field(loaded, scene) or loaded
+    if budget:
+        _show_budget(loaded, capture)
+        return
     if graph:
         from ...planners.rooms.graph import SceneGraph
 
@@ -62,6 +81,27 @@ def command(
         made = [f"embedded with {language.encoder}"] if making is None else making.lines()
         things_text = "\n".join(f"  {line}" for line in (describe_things(shown), *made))
     terminal.result("\n".join([*_lines(data), things_text]), data)
+
+
+def _show_budget(loaded: Scene, capture: Path | None) -> None:
+    """Measure and print what each part of the model buys."""
+    from dataclasses import asdict
+
+    from ...gaussians.errors import BackendError
+    from ...gaussians.files.captures.capture import read_capture
+    from ...gaussians.language import encoders
+    from ...gaussians.slim.budget import budget
+    from ..terminal.budget_table import budget_text
+
+    cameras = () if capture is None else read_capture(capture).cameras
+    encoder, language = None, loaded.language
+    if language is not None:
+        try:
+            encoder = encoders.load("auto" if language.making is None else language.making.encoder)
+        except BackendError as error:
+            terminal.say(f"note: the things are not named again with shorter vectors: {error}")
+    found = budget(loaded, cameras, encoder, progress=terminal.progress)
+    terminal.result(budget_text(found), asdict(found))
 
 
 def _lines(data: dict[str, Any]) -> list[str]:

@@ -30,6 +30,14 @@ def command(
         typer.Option("--format", help="File format, if the name of OUT does not say it; sog is the smallest."),
     ] = None,
     capture: Capture = None,
+    optimise: Annotated[
+        str | None,
+        typer.Option(
+            "--optimise",
+            metavar="LENGTH",
+            help="Then optimise fewer Gaussians for so long: seconds as in 120, or 600steps (same bytes every run).",
+        ),
+    ] = None,
     size: Annotated[
         int, typer.Option("--pixels", min=64, max=2048, metavar="N", help="Longer side of the compared pictures.")
     ] = 512,
@@ -55,7 +63,7 @@ def command(
     from ..output_files import refuse_existing, require_folder
 
     target = named(output, format)
-    settings = Settings(psnr, size)
+    settings = Settings(psnr, size, *_length(optimise))
     require_folder(target)
     refuse_existing([target, field_path(target), *([ids] if ids else [])], force)
     started = time.perf_counter()
@@ -65,6 +73,23 @@ def command(
     paths = _write(done, loaded, target, ids, force)
     data = _data(done, loaded, scene, target, psnr) | paths | {"seconds": round(time.perf_counter() - started, 2)}
     terminal.result(_text(data), data)
+
+
+def _length(text: str | None) -> tuple[int | None, float | None]:
+    """Steps or seconds of an optimisation.
+
+    Raises:
+        UserError: the text is neither.
+    """
+    from ...gaussians.errors import UserError
+
+    if text is None:
+        return None, None
+    word = text.strip().lower()
+    try:
+        return (int(word.removesuffix("steps")), None) if word.endswith("steps") else (None, float(word.rstrip("s")))
+    except ValueError:
+        raise UserError(f"--optimise takes seconds or steps, as in 120 or 600steps, not {text!r}") from None
 
 
 def named(output: Path, format: str | None) -> Path:
@@ -130,6 +155,7 @@ def _data(done: Slimmed, loaded: Scene, scene: Path, target: Path, psnr: float) 
         "format_alone": asdict(done.alone) if done.alone else None,
         "raised": done.raised,
         "cameras": done.cameras,
+        "steps": done.steps,
         "things": things_left(done.scene),
         "same_thing": done.same_thing,
     }
@@ -146,6 +172,7 @@ def _text(data: dict[str, Any]) -> str:
         kept = [f"harmonics of degree {strength['degree']}"]
         kept += [f"{strength['dull']:.0%} of the Gaussians without their higher bands"] if strength["dull"] else []
         kept += [f"{strength['sets']:,} sets of higher coefficients"] if strength["sets"] else []
+        kept += [f"optimised in {data['steps']} steps"] if data["steps"] else []
         kept += ["values rounded"] if strength["rounding"] else []
         lines.append("kept: " + ", ".join(kept))
     if (loss := data["held_out"]) is None:

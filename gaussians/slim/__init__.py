@@ -1,5 +1,5 @@
 """Makes scenes smaller without losing more than a promised PSNR, and measures what each part of their model buys."""
 
-from .slimming import Settings, Slimmed, slim
+from .slimming import Prepared, Settings, Slimmed, prepare, slim
 
-__all__ = ["Settings", "Slimmed", "slim"]
+__all__ = ["Prepared", "Settings", "Slimmed", "prepare", "slim"]

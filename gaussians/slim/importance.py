@@ -37,6 +37,9 @@ class Importance:
     Attributes:
         removal: `[N]`, of leaving out each Gaussian.
         bands: `[N, degree]`, column d: of leaving out its SH bands above d.
+        weights: `[N]`, squared blending weight summed over pixels: how much the colour of each Gaussian matters.
+        mean_basis: `[N, K - 1]`, SH basis functions above the constant one, averaged over the views with these weights:
+            a change d of the higher coefficients changes the mean colour by `mean_basis @ d`.
         pixels: channels times pixels of the views.
         slopes: mean over the Gaussians of the squared derivative by one value of "means", "log_means" (`sign(x)
             log(1 + |x|)`), "log_scales", "quats", "opacities" and "sh" (the constant band): what rounding it costs.
@@ -44,6 +47,8 @@ class Importance:
 
     removal: F64
     bands: F64
+    weights: F64
+    mean_basis: F64
     pixels: int
     slopes: dict[str, float]
 
@@ -54,21 +59,25 @@ def measure(cloud: GaussianCloud, views: Sequence[View], seed: int = SEED) -> Im
     means, _, scales, opacities, sh = columns
     rng, count, degree = np.random.default_rng(seed), len(cloud), cloud.degree
     removal, bands, squares = np.zeros(count), np.zeros((count, degree)), dict.fromkeys(_SLOPES, 0.0)
-    pixels = 0
+    weights, mean_basis, pixels = np.zeros(count), np.zeros((count, sh.shape[1] - 1)), 0
     for view in views:
         drawn = gradient.draw(columns, view.camera, view.background)
         signs = rng.integers(0, 2, drawn.rgb.shape).astype(np.float32) * 2 - 1
         found = gradient.draw_backward(drawn, signs, np.zeros(signs.shape[:2], np.float32))
         removal += (found.opacities.astype(np.float64) * opacities) ** 2
+        weight = (found.sh[:, 0].astype(np.float64) ** 2).mean(axis=1) / SH_C0**2
+        weights += weight
         if degree:
-            weight = (found.sh[:, 0].astype(np.float64) ** 2).mean(axis=1) / SH_C0**2
-            bands += weight[:, None] * _higher_colors(means, sh, view)
+            values = _basis(means, degree, view)
+            bands += weight[:, None] * _higher_colors(values, sh)
+            mean_basis += weight[:, None] * values[:, 1:]
         pixels += signs.size
         logs = found.means * (1 + np.abs(means))
         by_value = found.means, logs, found.scales * scales, found.quats, found.opacities, found.sh[:, 0]
         for name, slope in zip(_SLOPES, by_value, strict=True):
             squares[name] += float(np.nansum(np.square(slope, dtype=np.float64))) / slope.size
-    return Importance(removal, bands, pixels, squares)
+    mean_basis /= np.maximum(weights, 1e-12)[:, None]
+    return Importance(removal, bands, weights, mean_basis, pixels, squares)
 
 
 _SLOPES = ("means", "log_means", "log_scales", "quats", "opacities", "sh")
@@ -100,13 +109,18 @@ def _columns(cloud: GaussianCloud) -> tuple[torch.Tensor, ...]:
     return cloud.means, cloud.quats, cloud.scales, cloud.opacities, cloud.sh
 
 
-def _higher_colors(means: NDArray[np.float32], sh: NDArray[np.float32], view: View) -> F64:
-    """`[N, degree]` squared colour, summed over channels, of the SH bands above 0, 1, ... as a view sees them."""
+def _basis(means: NDArray[np.float32], degree: int, view: View) -> NDArray[np.float32]:
+    """`[N, K]` SH basis functions in the direction from a view's eye to each centre."""
     away = means - view.camera.position.astype(np.float32)
     away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-12)
+    values: NDArray[np.float32] = basis(torch.from_numpy(away), degree).numpy()
+    return values
+
+
+def _higher_colors(values: NDArray[np.float32], sh: NDArray[np.float32]) -> F64:
+    """`[N, degree]` squared colour, summed over channels, of the SH bands above 0, 1, ... at some basis values."""
     degree = int(np.sqrt(sh.shape[1])) - 1
-    values = basis(torch.from_numpy(away), degree).numpy()
-    out, color = np.zeros((len(means), degree)), np.zeros((len(means), 3), np.float32)
+    out, color = np.zeros((len(sh), degree)), np.zeros((len(sh), 3), np.float32)
     for band in range(degree, 0, -1):
         for k in range(band**2, (band + 1) ** 2):
             color += values[:, k, None] * sh[:, k]

@@ -9,13 +9,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..camera import Camera
 from ..errors import CheckFailedError, UserError
 from ..files import known_formats, load
 from ..files.formats.morton import morton_sorted
 from ..scene import Scene
-from .importance import LAST_SHARE, Progress, rank
+from .importance import LAST_SHARE, Importance, Progress, rank
 from .loss import EXACT, Loss, Truth
+from .optimise import Course
 from .reductions import Reducer, Strength
 from .report import same_thing
 from .views import SIZE, Views, choose_views
@@ -23,10 +27,14 @@ from .views import SIZE, Views, choose_views
 CLOSE = 0.04  # dB above the target at which a number of Gaussians counts as found
 FINE = 1.005  # ratio of two numbers of Gaussians between which no further one is tried
 TRIES = 9  # numbers of Gaussians tried for one setting
+EXPECTED = 25  # tries in all, for the progress
+SLOPE = 18.0  # dB gained by e times as many Gaussians, as far as nothing is known: 13 to 23 on captures
+ROUND = 0.88  # share of the Gaussians kept from one round of the optimisation to the next
+CHANCES = 2  # legs that a number of Gaussians is optimised for before it is given up
 GAIN = 0.99  # share of the bytes that a stronger setting must reach to be taken
 ROUNDINGS = (0.0, 0.15, 0.3, 0.5)  # shares of the allowed error that rounding may take
 DULL = (0.0, 0.3, 0.6, 0.8)  # shares of the Gaussians without higher bands
-SETS = (16, 64, 256)  # Gaussians for each set of higher coefficients; the format itself takes 4, which is slow
+SETS = (8, 4, 16, 64)  # Gaussians for each set of higher coefficients: at first, if that loses too much, and then
 EXACT_FORMATS = (".ply",)  # which return every bit
 RAISES = 8  # times that the target of the choice is raised because the held-out views lose more
 MARGIN = 0.03  # dB by which it is raised beyond what they lack
@@ -39,14 +47,20 @@ class Settings:
     Attributes:
         psnr: dB that the held-out views must keep; infinite keeps every bit.
         size: pixels of the longer side of the views.
+        steps, seconds: length of the optimisation; at most one is given, without both there is none. In steps, equal
+            input gives equal bytes.
     """
 
     psnr: float = 40.0
     size: int = SIZE
+    steps: int | None = None
+    seconds: float | None = None
 
     def __post_init__(self) -> None:
         if not self.psnr > 0:
             raise UserError(f"a PSNR is a positive number of decibels, got {self.psnr:g}; 40 is hardly visible")
+        if any(length is not None and not length > 0 for length in (self.steps, self.seconds)):
+            raise UserError("an optimisation takes a positive number of seconds or steps; leave it out for none")
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +76,7 @@ class Slimmed:
         raised: how often the held-out views lost more than promised and a weaker setting was taken.
         cameras: where the views come from.
         same_thing: share of the held-out pixels that show the same thing of the language field as before.
+        steps: of the optimisation.
         tried: settings tried, as (strength, bytes), in the order tried.
     """
 
@@ -74,6 +89,7 @@ class Slimmed:
     raised: int = 0
     cameras: str = ""
     same_thing: float | None = None
+    steps: int = 0
     tried: tuple[tuple[Strength, int], ...] = ()
 
 
@@ -87,14 +103,50 @@ class _Found:
     loss: Loss
 
 
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """What is measured of a scene once, for all formats and promises.
+
+    Attributes:
+        views: the views.
+        truth, held_out: the pictures from the views that choose and from the held-out ones.
+        order: rows of the cloud, the ones to keep first.
+        importance: of all Gaussians.
+    """
+
+    views: Views
+    truth: Truth
+    held_out: Truth
+    order: NDArray[np.int64]
+    importance: Importance
+
+
+def prepare(
+    scene: Scene, cameras: Sequence[Camera] = (), size: int = SIZE, progress: Progress | None = None
+) -> Prepared:
+    """Choose the views of a scene and rank its Gaussians; see `slim`."""
+    views = choose_views(scene, cameras, size)
+    order, importance = rank(scene.cloud, views.ranking, progress)
+    return Prepared(
+        views, Truth(scene.cloud, views.choice), Truth(scene.cloud, views.held_out), order, importance
+    )  # fmt: skip
+
+
 def slim(
-    scene: Scene, suffix: str, settings: Settings, cameras: Sequence[Camera] = (), progress: Progress | None = None
+    scene: Scene,
+    suffix: str,
+    settings: Settings,
+    cameras: Sequence[Camera] = (),
+    progress: Progress | None = None,
+    prepared: Prepared | None = None,
 ) -> Slimmed:
     """The smallest file found whose pictures keep `settings.psnr` dB from the held-out views. Same input, same bytes.
 
     Args:
         suffix: of the file format, with dot: ".sog", ".spz", ".compressed.ply", ".ply".
         cameras: of photographs of the scene; computed views are used without them.
+        progress: called with the stage and its share.
+        prepared: what `prepare` gave for this scene; its views are used.
 
     Raises:
         UserError: the format cannot be written, or no view shows anything.
@@ -107,8 +159,8 @@ def slim(
         files = Files(Path(folder), suffix)
         if settings.psnr >= EXACT:
             return _unchanged(scene, files, suffix)
-        views = choose_views(scene, cameras, settings.size)
-        return _Search(scene, suffix, settings, views, files, say).run()
+        ready = prepared or prepare(scene, cameras, settings.size, say)
+        return _Search(scene, suffix, settings, ready, files, say).run()
 
 
 class Files:
@@ -148,40 +200,73 @@ class _Search:
     """The search for the strongest setting that keeps the promise."""
 
     def __init__(
-        self, scene: Scene, suffix: str, settings: Settings, views: Views, files: Files, say: Progress
+        self, scene: Scene, suffix: str, settings: Settings, ready: Prepared, files: Files, say: Progress
     ) -> None:
-        self.scene, self.suffix, self.settings, self.views, self.files, self.say = (
-            scene, suffix, settings, views, files, say,
-        )  # fmt: skip
-        self.truth, self.held_out = Truth(scene.cloud, views.choice), Truth(scene.cloud, views.held_out)
+        self.scene, self.suffix, self.settings, self.files, self.say = scene, suffix, settings, files, say
+        self.views, self.truth, self.held_out = ready.views, ready.truth, ready.held_out
+        self.reducer = Reducer(scene, ready.order, ready.importance, suffix)
         self.tried: list[tuple[Strength, int]] = []
 
     def run(self) -> Slimmed:
         alone = self._alone()
-        order, importance = rank(self.scene.cloud, self.views.ranking, self.say)
-        self.reducer = Reducer(self.scene, order, importance, self.suffix)
-        target, best, raised = self.settings.psnr, None, 0
-        while True:
-            best = self._best(target) if best is None else self._fewest(best.strength, target)
-            if best is None:  # not even the whole scene keeps a raised target
-                best = self._whole()
-            back = self.files.decode(best.data)
-            held_out = self.held_out.loss(back.cloud)
-            lacking = self.settings.psnr - held_out.psnr
-            if lacking <= 0:
-                break
-            raised += 1
-            if raised > RAISES:
-                best = self._whole()
-                back = self.files.decode(best.data)
-                held_out = self.held_out.loss(back.cloud)
-                break
-            target += lacking + MARGIN
+        best, raised = self._kept_promise()
+        steps = 0
+        if self.settings.steps or self.settings.seconds:
+            best, steps, more = self._optimised(best)
+            raised += more
+        back = self.files.decode(best.data)
+        held_out = self.held_out.loss(back.cloud)
         back = back.replace(cloud=back.cloud.replace(group=best.scene.cloud.group))
         return Slimmed(
             best.scene, best.data, best.strength, best.loss, held_out, alone, raised, self.views.source,
-            same_thing(self.scene, back, self.views.held_out), tuple(self.tried),
+            same_thing(self.scene, back, self.views.held_out), steps, tuple(self.tried),
         )  # fmt: skip
+
+    def _kept_promise(self) -> tuple[_Found, int]:
+        """The smallest file that keeps the promise from the held-out views too, and how often the target of the choice
+        was raised for that."""
+        target = self.settings.psnr
+        best = self._best(target)
+        for raised in range(RAISES):
+            if best is None:  # not even the whole scene keeps the raised target
+                return self._whole(), raised
+            lacking = self._lacking(best)
+            if lacking <= 0:
+                return best, raised
+            target += lacking + MARGIN
+            best = self._fewest(best.strength, target)
+        return self._whole(), RAISES
+
+    def _lacking(self, found: _Found) -> float:
+        """What a file lacks of the promise from the held-out views, dB; at most zero if it keeps it."""
+        return self.settings.psnr - self.held_out.loss(self.files.decode(found.data).cloud).psnr
+
+    def _optimised(self, start: _Found) -> tuple[_Found, int, int]:
+        """The smallest file with fewer Gaussians that were optimised for it, the steps taken, and how many smaller
+        files the held-out views refused.
+
+        Fewer Gaussians are kept and optimised, again and again, until the chosen views lose more than promised or the
+        time is over. The smallest of these files that keeps the promise from the held-out views is taken.
+        """
+        settings, passed = self.settings, list[_Found]()
+        course = Course(self.views.training, self.scene.cloud, settings.steps, settings.seconds, self.say)
+        cloud, chances = self.reducer.plain(start.strength), CHANCES
+        while not course.over and chances:
+            fewer = max(self.reducer.least, round(ROUND * len(cloud)))
+            if chances == CHANCES and fewer < len(cloud):
+                cloud = self.reducer.fewest(cloud, fewer, self.views.choice)
+            cloud = course.optimised(cloud)
+            found = self._measured(self.reducer.finished(cloud, start.strength), start.strength)
+            if found.loss.psnr < settings.psnr:
+                chances -= 1  # the same number is optimised further
+                continue
+            chances = CHANCES
+            passed.append(found)
+        smaller = sorted((f for f in passed if len(f.data) < len(start.data)), key=lambda f: len(f.data))
+        for refused, found in enumerate(smaller):
+            if self._lacking(found) <= 0:
+                return found, course.steps, refused
+        return start, course.steps, len(smaller)
 
     def _alone(self) -> Loss:
         """The loss of the format alone.
@@ -204,17 +289,19 @@ class _Search:
         """The setting with the smallest file: one knob after the other is turned while the file shrinks."""
         count, degree = len(self.scene.cloud), self.scene.cloud.degree
         sets = count // SETS[0] if degree and self.suffix == ".sog" else 0
-        start = Strength(count, degree, sets=sets)
+        start = Strength(max(1, count // 2), degree, sets=sets)
         best = self._fewest(start, target)
         if best is None and sets:
-            start = replace(start, sets=0)
-            best = self._fewest(start, target)
+            best = self._fewest(replace(start, sets=count // SETS[1]), target)
+        if best is None:
+            best = self._fewest(replace(start, sets=0), target)
         for name, ladder in self._ladders(target):
             for value in ladder:
+                if best is None:
+                    return None
                 change: dict[str, Any] = {name: value}
-                strength = replace(best.strength if best else start, **change)
-                found = self._fewest(strength, target)
-                if found is None or (best is not None and len(found.data) > GAIN * len(best.data)):
+                found = self._fewest(replace(best.strength, **change), target, best)
+                if found is None:
                     break
                 best = found
         return best
@@ -224,7 +311,7 @@ class _Search:
         count, degree = len(self.scene.cloud), self.scene.cloud.degree
         packed = self.suffix in (".sog", ".spz")
         if degree and self.suffix == ".sog":
-            yield "sets", [max(1, count // n) for n in SETS]
+            yield "sets", [max(1, count // n) for n in SETS[2:]]
         if degree and packed:
             yield "dull", list(DULL[1:])
         if degree:
@@ -232,46 +319,60 @@ class _Search:
         if packed:
             yield "rounding", [share * 10 ** (-target / 10) for share in ROUNDINGS[1:]]
 
-    def _fewest(self, strength: Strength, target: float) -> _Found | None:
-        """The fewest Gaussians that keep `target` dB from the chosen views; None if all of them do not.
+    def _fewest(self, strength: Strength, target: float, beat: _Found | None = None) -> _Found | None:
+        """The fewest Gaussians that keep `target` dB from the chosen views; None if all of them do not, or if the file
+        would not get smaller than that of `beat`.
 
         The PSNR is about linear in the logarithm of the number. Each try interpolates between the nearest numbers that
         keep the target and that do not.
         """
-        self.say("search", min(1.0, len(self.tried) / 40))
-        count = len(self.scene.cloud)
-        least = min(count, max(self.reducer.least, round(LAST_SHARE * count)))
-        above = self._try(replace(strength, count=count))
-        if above.loss.psnr < target:
-            return None
-        below: tuple[float, float] | None = None
+        above: _Found | None = None
+        below: _Found | None = None
+        wanted: int | None = strength.count
         for _ in range(TRIES):
-            wanted = self._next(above, below, target, least)
             if wanted is None:
                 break
+            self.say("search", min(1.0, len(self.tried) / EXPECTED))
             found = self._try(replace(strength, count=wanted))
-            if found.loss.psnr >= target:
+            if found.loss.psnr < target:
+                below = found
+                if beat is not None and len(found.data) > GAIN * len(beat.data):
+                    return None  # more Gaussians only take more bytes
+            else:
                 above = found
                 if found.loss.psnr < target + CLOSE:
                     break
-            else:
-                below = (float(wanted), found.loss.psnr)
+            wanted = self._next(above, below, target)
+        if above is None or (beat is not None and len(above.data) > GAIN * len(beat.data)):
+            return None
         return above
 
-    def _next(self, above: _Found, below: tuple[float, float] | None, target: float, least: int) -> int | None:
-        """The next number of Gaussians to try; None if the number is found."""
+    def _next(self, above: _Found | None, below: _Found | None, target: float) -> int | None:
+        """The next number of Gaussians to try; None if there is none between those that were tried."""
+        count = len(self.scene.cloud)
+        least = min(count, max(self.reducer.least, round(LAST_SHARE * count)))
+        if above is None:
+            assert below is not None
+            if below.strength.count >= count:
+                return None
+            more = math.exp(max((target - below.loss.psnr) / SLOPE, 0.01))
+            return min(count, math.ceil(below.strength.count * min(more * 1.02, 2.0)))
         most = above.strength.count
         if below is None:
-            return None if most <= least else max(least, round(0.6 * most))
-        if most <= below[0] * FINE + 1:
+            fewer = math.exp(-(above.loss.psnr - target) / SLOPE)
+            return None if most <= least else max(least, round(most * min(max(fewer, 0.4), 0.98)))
+        few = below.strength.count
+        if most <= few * FINE + 1:
             return None
-        share = (above.loss.psnr - target) / max(above.loss.psnr - below[1], 1e-9)
+        share = (above.loss.psnr - target) / max(above.loss.psnr - below.loss.psnr, 1e-9)
         share = min(max(share * 0.98, 0.05), 0.95)
-        wanted = round(math.exp((1 - share) * math.log(most) + share * math.log(below[0])))
-        return wanted if below[0] < wanted < most else None
+        wanted = round(math.exp((1 - share) * math.log(most) + share * math.log(few)))
+        return wanted if few < wanted < most else None
 
     def _try(self, strength: Strength) -> _Found:
-        smaller = self.reducer.at(strength)
+        return self._measured(self.reducer.at(strength), strength)
+
+    def _measured(self, smaller: Scene, strength: Strength) -> _Found:
         data = self.files.encode(smaller)
         loss = self.truth.loss(self.files.decode(data).cloud)
         done = replace(strength, count=len(smaller.cloud))

@@ -24,6 +24,7 @@ MIN_COVER = 0.05  # mean alpha of a view that counts; an empty picture loses not
 PROBE_SIZE = 64  # pixels of the pictures that cover is measured with
 RING = 8  # frames of the held-out orbit
 TWINS = 2  # moved copies of each chosen view, so that the Gaussians between the views are ranked too
+TRAINED = 6  # moved copies of each chosen view that what is left is optimised by
 MOVED = 0.12  # of the distance to what a view shows, by which its copies are moved
 TURNED = 6.0  # degrees by which they are turned
 BLACK: Vec3 = (0.0, 0.0, 0.0)
@@ -46,12 +47,14 @@ class Views:
     Attributes:
         choice: the strength is chosen by these.
         ranking: `choice` and moved copies of it; the Gaussians are ranked by these.
+        training: more moved copies, without `choice`; what is left is optimised by these.
         held_out: the promise is measured from these: every second view, and an orbit.
         source: where the cameras come from, for the report.
     """
 
     choice: tuple[View, ...]
     ranking: tuple[View, ...]
+    training: tuple[View, ...]
     held_out: tuple[View, ...]
     source: str
 
@@ -81,7 +84,8 @@ def choose_views(scene: Scene, cameras: Sequence[Camera] = (), size: int = SIZE)
     choice, held_out = _views(shown[::2]), _views(shown[1::2] + orbit)
     if not choice or not held_out:
         raise UserError("no view shows enough of this scene to measure what it loses; give its cameras with --capture")
-    return Views(choice, choice + _views(_twins(scene, shown[::2])), held_out, source)
+    twins = _views(_twins(scene, shown[::2]))
+    return Views(choice, choice + twins[: TWINS * len(choice)], twins, held_out, source)
 
 
 def estimated_frame(scene: Scene, cameras: Sequence[Camera] = ()) -> Frame:
@@ -112,13 +116,11 @@ def _shows(scene: Scene, camera: Camera) -> bool:
 
 
 def _twins(scene: Scene, cameras: Sequence[Camera]) -> list[Camera]:
-    """Copies of cameras, moved and turned at random by a little."""
+    """`TRAINED` copies of each camera, moved and turned at random by a little: first one of each, then the next."""
     rng, found = np.random.default_rng(SEED), list[Camera]()
-    for camera in cameras:
-        seen = render(scene.cloud, camera.resized(PROBE_SIZE, PROBE_SIZE))
-        depth = seen.depth[seen.alpha > 0.5]
-        distance = float(depth.median()) if len(depth) else float(seen.depth.max())
-        for _ in range(TWINS):
+    distances = [_distance(scene, camera) for camera in cameras]
+    for _ in range(TRAINED):
+        for camera, distance in zip(cameras, distances, strict=True):
             turn = np.radians(TURNED) * rng.normal(size=3) / np.sqrt(3)
             pose = np.eye(4)
             pose[:3, :3] = _rotation(turn) @ camera.world_to_camera[:3, :3]
@@ -129,6 +131,13 @@ def _twins(scene: Scene, cameras: Sequence[Camera]) -> list[Camera]:
             )
             found.append(twin)
     return found
+
+
+def _distance(scene: Scene, camera: Camera) -> float:
+    """Median distance of what a view shows, scene units."""
+    seen = render(scene.cloud, camera.resized(PROBE_SIZE, PROBE_SIZE))
+    depth = seen.depth[seen.alpha > 0.5]
+    return float(depth.median()) if len(depth) else float(seen.depth.max())
 
 
 def _rotation(vector: NDArray[np.float64]) -> NDArray[np.float64]:

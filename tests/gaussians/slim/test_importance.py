@@ -9,7 +9,10 @@ import torch
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.render import render
+from scenewright.gaussians.scene import Scene
 from scenewright.gaussians.slim.importance import measure, rank
+from scenewright.gaussians.slim.loss import Truth
+from scenewright.gaussians.slim.reductions import Reducer, Strength, gathered
 from scenewright.gaussians.slim.views import View
 
 PROBES = 200  # the standard deviation of their mean is a tenth of the mean: sqrt(2 / 200)
@@ -72,3 +75,27 @@ def test_what_a_wall_hides_goes_first() -> None:
 def test_equal_input_gives_equal_order() -> None:
     first, second = (rank(some(), [VIEW])[0] for _ in range(2))
     assert (first == second).all()
+
+
+def test_dropped_bands_are_made_up_for_by_the_mean_colour() -> None:
+    cloud = some(200)
+    views = [
+        View(Camera.look_at((2.5 * np.cos(a), 2.5 * np.sin(a), 0.6), (0, 0, 0), (0, 0, 1), 48, 48), (0.0, 0.0, 0.0))
+        for a in (0.0, 0.3, 0.6)  # all from about one side
+    ]
+    order = np.arange(len(cloud))
+    reducer = Reducer(Scene(cloud), order, measure(cloud, views), ".ply")
+    truth = Truth(cloud, views)
+    made_up, plain = reducer.plain(Strength(len(cloud), 0)), cloud.with_degree(0)
+    assert truth.loss(made_up).psnr > truth.loss(plain).psnr + 6
+    assert (reducer.plain(Strength(len(cloud), 1)).sh == cloud.sh).all()
+
+
+def test_sets_are_few_and_finer_where_they_matter() -> None:
+    rng = np.random.default_rng(1)
+    rest = rng.normal(size=(600, 3, 3)).astype(np.float32)
+    weights = np.where(np.arange(600) < 300, 1.0, 1e-6)
+    out = gathered(rest, 60, weights)
+    error = np.square(out - rest).sum(axis=(1, 2))
+    assert len(np.unique(out.reshape(600, -1), axis=0)) <= 60
+    assert error[:300].mean() < 0.9 * error[300:].mean()
