@@ -125,7 +125,7 @@ def _write(done: Slimmed, loaded: Scene, target: Path, ids: Path | None, force: 
 
     with writing(target, force) as file:
         file.write(done.data)
-    field = None if loaded.language is None else save_field(done.scene, target)
+    field = None if loaded.language is None else save_field(done.scene, target, packed=True)
     if ids is not None:
         rows = io.BytesIO()
         np.save(rows, done.scene.cloud.ids.cpu().numpy(), allow_pickle=False)

@@ -40,6 +40,9 @@ class Importance:
         weights: `[N]`, squared blending weight summed over pixels: how much the colour of each Gaussian matters.
         mean_basis: `[N, K - 1]`, SH basis functions above the constant one, averaged over the views with these weights:
             a change d of the higher coefficients changes the mean colour by `mean_basis @ d`.
+        basis_spread: `[K - 1, K - 1]`, covariance of these functions over the views of a Gaussian, averaged over the
+            Gaussians with their weights: a change d changes the squared colour by `d @ basis_spread @ d` on average,
+            its mean aside.
         pixels: channels times pixels of the views.
         slopes: mean over the Gaussians of the squared derivative by one value of "means", "log_means" (`sign(x)
             log(1 + |x|)`), "log_scales", "quats", "opacities" and "sh" (the constant band): what rounding it costs.
@@ -49,6 +52,7 @@ class Importance:
     bands: F64
     weights: F64
     mean_basis: F64
+    basis_spread: F64
     pixels: int
     slopes: dict[str, float]
 
@@ -60,6 +64,7 @@ def measure(cloud: GaussianCloud, views: Sequence[View], seed: int = SEED) -> Im
     rng, count, degree = np.random.default_rng(seed), len(cloud), cloud.degree
     removal, bands, squares = np.zeros(count), np.zeros((count, degree)), dict.fromkeys(_SLOPES, 0.0)
     weights, mean_basis, pixels = np.zeros(count), np.zeros((count, sh.shape[1] - 1)), 0
+    squared = np.zeros((sh.shape[1] - 1, sh.shape[1] - 1))
     for view in views:
         drawn = gradient.draw(columns, view.camera, view.background)
         signs = rng.integers(0, 2, drawn.rgb.shape).astype(np.float32) * 2 - 1
@@ -71,13 +76,15 @@ def measure(cloud: GaussianCloud, views: Sequence[View], seed: int = SEED) -> Im
             values = _basis(means, degree, view)
             bands += weight[:, None] * _higher_colors(values, sh)
             mean_basis += weight[:, None] * values[:, 1:]
+            squared += (weight[:, None] * values[:, 1:]).T @ values[:, 1:]
         pixels += signs.size
         logs = found.means * (1 + np.abs(means))
         by_value = found.means, logs, found.scales * scales, found.quats, found.opacities, found.sh[:, 0]
         for name, slope in zip(_SLOPES, by_value, strict=True):
             squares[name] += float(np.nansum(np.square(slope, dtype=np.float64))) / slope.size
     mean_basis /= np.maximum(weights, 1e-12)[:, None]
-    return Importance(removal, bands, weights, mean_basis, pixels, squares)
+    spread = (squared - (weights[:, None] * mean_basis).T @ mean_basis) / max(float(weights.sum()), 1e-12)
+    return Importance(removal, bands, weights, mean_basis, spread, pixels, squares)
 
 
 _SLOPES = ("means", "log_means", "log_scales", "quats", "opacities", "sh")

@@ -23,7 +23,8 @@ MIN_CAMERAS = 8  # of a capture; fewer leave most of a scene unseen
 MIN_COVER = 0.05  # mean alpha of a view that counts; an empty picture loses nothing
 PROBE_SIZE = 64  # pixels of the pictures that cover is measured with
 RING = 8  # frames of the held-out orbit
-TWINS = 2  # moved copies of each chosen view, so that the Gaussians between the views are ranked too
+TWINS = 4  # most moved copies of each chosen view, so that the Gaussians between the views are ranked too
+MOST_RANKED = 120  # views that Gaussians are ranked by
 TRAINED = 6  # moved copies of each chosen view that what is left is optimised by
 MOVED = 0.12  # of the distance to what a view shows, by which its copies are moved
 TURNED = 6.0  # degrees by which they are turned
@@ -85,7 +86,8 @@ def choose_views(scene: Scene, cameras: Sequence[Camera] = (), size: int = SIZE)
     if not choice or not held_out:
         raise UserError("no view shows enough of this scene to measure what it loses; give its cameras with --capture")
     twins = _views(_twins(scene, shown[::2]))
-    return Views(choice, choice + twins[: TWINS * len(choice)], twins, held_out, source)
+    ranked = min(TWINS * len(choice), max(MOST_RANKED - len(choice), len(choice)))
+    return Views(choice, choice + twins[:ranked], twins, held_out, source)
 
 
 def estimated_frame(scene: Scene, cameras: Sequence[Camera] = ()) -> Frame:

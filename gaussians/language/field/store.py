@@ -2,6 +2,9 @@
 
 A field is bound to the content of its scene file: the header holds `fingerprint(scene file)`, and a field whose scene
 file has changed is not loaded. It is stored beside the scene, or in the user's cache if that folder is read-only.
+
+A packed field holds the same in a fraction of the bytes: vectors of the groups that have one, and the table and the
+group of every Gaussian compressed without loss.
 """
 
 from __future__ import annotations
@@ -9,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import zlib
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -25,6 +29,11 @@ from .making import Making
 
 SUFFIX = ".field.safetensors"
 VERSION = "6"
+PACKED_VERSION = "7"  # of packed fields, which readers of the other one do not know
+PACKED = ("groups", "notes", "making", "frame")  # of the header, compressed in a packed field
+MOST_TABLE = 1 << 28  # bytes of an unpacked table
+Tensors = dict[str, torch.Tensor]
+Header = dict[str, Any]
 _ENTRY = "scenewright.field"
 _GROUPS = TypeAdapter(tuple[Group, ...])
 _NOTES = TypeAdapter(tuple[str, ...])
@@ -58,8 +67,11 @@ def cached_field_path(scene_fingerprint: str) -> Path:
     return root / "scenewright" / "fields" / (scene_fingerprint + SUFFIX)
 
 
-def save_field(scene: Scene, scene_path: Path) -> Path:
+def save_field(scene: Scene, scene_path: Path, packed: bool = False) -> Path:
     """Write the field of `scene`, whose cloud equals that of the file `scene_path` row for row; returns its path.
+
+    Args:
+        packed: compressed without loss.
 
     Raises:
         FileError: the scene has no field, or neither its folder nor the cache can be written.
@@ -80,6 +92,8 @@ def save_field(scene: Scene, scene_path: Path) -> Path:
         "group": scene.cloud.group.cpu().contiguous(),
         "embeddings": torch.from_numpy(np.ascontiguousarray(scene.language.embeddings, dtype=np.float32)),
     }
+    if packed:
+        tensors, header = _packed(tensors, header)
     problem: Exception | None = None
     for target in (field_path(scene_path), cached_field_path(mark)):
         try:
@@ -102,8 +116,10 @@ def load_field(scene: Scene, scene_path: Path, encoder: str | None = None) -> Sc
     existing = [target for target in (field_path(scene_path), cached_field_path(mark)) if target.is_file()]
     for target in sorted(existing, key=lambda path: -path.stat().st_mtime_ns):
         tensors, header = _read(target)
-        fits = header.get("version") == VERSION and header.get("scene") == mark
+        fits = header.get("version") in (VERSION, PACKED_VERSION) and header.get("scene") == mark
         if fits and (encoder is None or header.get("encoder") == encoder):
+            if header["version"] == PACKED_VERSION:
+                tensors, header = _unpacked(tensors, header, len(scene.cloud), target)
             return _attach(scene, tensors, header, target)
     return None
 
@@ -121,7 +137,7 @@ def mismatch(scene_path: Path, encoder: str | None = None) -> str | None:
     header = _header(target)
     if header.get("scene") != fingerprint(scene_path):
         return "was made for another version of this file"
-    if header.get("version") != VERSION:
+    if header.get("version") not in (VERSION, PACKED_VERSION):
         return "was written by another version of scenewright"
     if encoder is not None and header.get("encoder") != encoder:
         return f"is of encoder {header.get('encoder')}"
@@ -147,6 +163,55 @@ def _write(target: Path, tensors: dict[str, torch.Tensor], header: dict[str, Any
     with writing(target, force=True) as stream:
         stream.write(save(tensors, {_ENTRY: json.dumps(header)}))
     return target
+
+
+def _packed(tensors: Tensors, header: Header) -> tuple[Tensors, Header]:
+    """The tensors and the header of a packed field; `_unpacked` is the inverse."""
+    vectors = tensors["embeddings"]
+    encoded = torch.nonzero((vectors != 0).any(dim=1)).squeeze(1).to(torch.int32)
+    table = json.dumps({name: header[name] for name in PACKED}).encode()
+    planes = np.ascontiguousarray(tensors["group"].numpy().astype("<i4")).view(np.uint8).reshape(-1, 4).T
+    small: Tensors = {
+        "table": _deflated(table),
+        "planes": _deflated(planes.tobytes()),
+        "encoded": encoded,
+        "vectors": vectors[encoded.long()].contiguous(),
+    }
+    rest = {name: value for name, value in header.items() if name not in PACKED}
+    return small, rest | {"version": PACKED_VERSION, "groups_listed": len(vectors)}
+
+
+def _unpacked(tensors: Tensors, header: Header, count: int, source: Path) -> tuple[Tensors, Header]:
+    """The tensors and the header of a field of `count` Gaussians.
+
+    Raises:
+        FileError: the field is damaged.
+    """
+    try:
+        planes = np.frombuffer(_inflated(tensors["planes"], 4 * count), np.uint8).reshape(4, count)
+        group = np.ascontiguousarray(planes.T).view("<i4")[:, 0].astype(np.int32)
+        table = json.loads(_inflated(tensors["table"], MOST_TABLE))
+        listed, vectors, encoded = int(header["groups_listed"]), tensors["vectors"], tensors["encoded"].long()
+        if listed != len(table["groups"]) or vectors.ndim != 2 or vectors.dtype != torch.float32:
+            raise ValueError("its vectors do not fit its table")
+        embeddings = torch.zeros(listed, vectors.shape[1])
+        embeddings[encoded] = vectors
+        return {"group": torch.from_numpy(group), "embeddings": embeddings}, header | {n: table[n] for n in PACKED}
+    except (KeyError, TypeError, ValueError, IndexError, RuntimeError, RecursionError, zlib.error) as error:
+        raise FileError(f"{source} is damaged ({error}); delete it and embed the scene again") from error
+
+
+def _deflated(data: bytes) -> torch.Tensor:
+    return torch.from_numpy(np.frombuffer(zlib.compress(data, 9), np.uint8).copy())
+
+
+def _inflated(data: torch.Tensor, most: int) -> bytes:
+    """The bytes that were deflated, at most `most`; raises zlib.error or ValueError if they are others or more."""
+    inflater = zlib.decompressobj()
+    out = inflater.decompress(data.numpy().tobytes(), most)
+    if not inflater.eof:
+        raise ValueError("a part of it is cut off or larger than this scene needs")
+    return out
 
 
 def _read(path: Path) -> tuple[dict[str, torch.Tensor], dict[str, Any]]:

@@ -135,6 +135,54 @@ def test_the_round_trip_is_exact(tmp_path_factory: pytest.TempPathFactory, field
     assert (again.frame.up_source, again.frame.scale_source) == (frame.up_source, frame.scale_source)
 
 
+@given(field=fields(), frame=frames)
+def test_a_packed_field_is_exact_too(
+    tmp_path_factory: pytest.TempPathFactory, field: LanguageField, frame: Frame
+) -> None:
+    target = tmp_path_factory.mktemp("packed") / "scene.ply"
+    target.write_bytes(b"x")
+    column = torch.tensor([i % (len(field.groups) + 1) - 1 for i in range(5)], dtype=torch.int32)
+    scene = bare()
+    scene = scene.replace(cloud=scene.cloud.replace(group=column), language=field, frame=frame)
+    save_field(scene, target, packed=True)
+    again = load_field(bare(), target)
+    assert again is not None and same(scene, again)
+    assert mismatch(target) is None
+
+
+def test_a_packed_field_takes_fewer_bytes(path: Path) -> None:
+    scene = embedded()
+    assert scene.language is not None
+    many = torch.arange(4000, dtype=torch.int32) // 2000
+    large = replace(scene, cloud=bare(4000).cloud.replace(group=many))
+    plain = len(save_field(large, path).read_bytes())
+    assert len(save_field(large, path, packed=True).read_bytes()) < plain / 8
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {"drop": "table"}, {"drop": "planes"}, {"drop": "encoded"}, {"drop": "vectors"}, {"drop": "groups_listed"},
+        {"groups_listed": 5}, {"groups_listed": "no"}, {"tensors": {"planes": torch.zeros(9, dtype=torch.uint8)}},
+        {"tensors": {"table": torch.zeros(9, dtype=torch.uint8)}}, {"tensors": {"vectors": torch.zeros(2)}},
+        {"tensors": {"encoded": torch.tensor([0, 9], dtype=torch.int32)}},
+        {"tensors": {"vectors": torch.full((2, 3), torch.nan)}},
+    ],
+    ids=lambda how: ",".join(f"{k}={v}"[:40] for k, v in how.items()),
+)  # fmt: skip
+def test_a_damaged_packed_field_is_a_file_error(path: Path, how: dict[str, Any]) -> None:
+    damaged(path, packed=True, **how)
+    with pytest.raises(FileError, match="damaged"):
+        load_field(bare(), path)
+
+
+def test_a_packed_field_of_another_number_of_gaussians_is_damaged(path: Path) -> None:
+    save_field(embedded(), path, packed=True)
+    for count in (4, 6):
+        with pytest.raises(FileError, match="damaged"):
+            load_field(bare(count), path)
+
+
 def test_the_same_field_is_the_same_bytes(path: Path) -> None:
     first = save_field(embedded(), path).read_bytes()
     assert save_field(embedded(), path).read_bytes() == first
@@ -247,11 +295,13 @@ def test_a_table_nested_too_deeply_is_an_error_that_names_the_cure(path: Path) -
             look()
 
 
-def damaged(path: Path, drop: str = "", tensors: dict[str, torch.Tensor] | None = None, **changes: Any) -> None:
+def damaged(
+    path: Path, drop: str = "", tensors: dict[str, torch.Tensor] | None = None, packed: bool = False, **changes: Any
+) -> None:
     """A field file bound to this scene, with parts exchanged or left out."""
     from safetensors.torch import load_file, save_file
 
-    saved = save_field(embedded(), path)
+    saved = save_field(embedded(), path, packed)
     with safe_open(saved, framework="pt") as stream:
         ((entry, text),) = stream.metadata().items()
     header, data = json.loads(text) | changes, load_file(saved) | (tensors or {})

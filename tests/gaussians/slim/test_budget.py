@@ -59,7 +59,7 @@ def test_a_leg_brings_the_pictures_nearer_to_the_original() -> None:
     course = Course(views.training, scene.cloud, LEG, None, lambda stage, share: None)
     better = course.optimised(fewer)
     truth = Truth(scene.cloud, views.held_out)
-    assert truth.loss(better).psnr > truth.loss(fewer).psnr + 2
+    assert truth.loss(better).psnr > truth.loss(fewer).psnr + 1
     assert course.over and course.steps == LEG
     assert (better.ids == fewer.ids).all() and (better.group == fewer.group).all()
     assert (better.sh.shape == fewer.sh.shape) and truth.loss(scene.cloud).psnr == EXACT
@@ -67,9 +67,9 @@ def test_a_leg_brings_the_pictures_nearer_to_the_original() -> None:
 
 def test_optimising_for_steps_gives_smaller_files_and_equal_bytes() -> None:
     plain = slim(balls(900), ".sog", Settings(30.0, SIZE), RING)
-    first, second = (slim(balls(900), ".sog", Settings(30.0, SIZE, steps=4 * LEG), RING) for _ in range(2))
+    first, second = (slim(balls(900), ".sog", Settings(30.0, SIZE, steps=2 * LEG), RING) for _ in range(2))
     assert first.data == second.data
     assert len(first.data) <= len(plain.data)
     assert len(first.scene.cloud) < len(plain.scene.cloud)
     assert first.held_out is not None and first.held_out.psnr >= 30
-    assert 0 < first.steps <= 6 * LEG
+    assert first.steps == 2 * LEG

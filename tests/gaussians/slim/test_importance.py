@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
@@ -91,11 +93,14 @@ def test_dropped_bands_are_made_up_for_by_the_mean_colour() -> None:
     assert (reducer.plain(Strength(len(cloud), 1)).sh == cloud.sh).all()
 
 
-def test_sets_are_few_and_finer_where_they_matter() -> None:
+def test_sets_are_few_and_finer_where_they_show() -> None:
     rng = np.random.default_rng(1)
     rest = rng.normal(size=(600, 3, 3)).astype(np.float32)
-    weights = np.where(np.arange(600) < 300, 1.0, 1e-6)
-    out = gathered(rest, 60, weights)
-    error = np.square(out - rest).sum(axis=(1, 2))
+    plain = measure(some(600), [VIEW])
+    heavy = np.where(np.arange(600) < 300, 1.0, 1e-6)
+    given = replace(plain, weights=heavy, basis_spread=np.diag([1.0, 1e-3, 1e-3]))
+    out = gathered(rest, 60, given)
+    error = np.square(out - rest)
     assert len(np.unique(out.reshape(600, -1), axis=0)) <= 60
-    assert error[:300].mean() < 0.9 * error[300:].mean()
+    assert error[:300, 0].mean() < 0.9 * error[300:, 0].mean()  # where the weight is
+    assert error[:, 0].mean() < 0.5 * error[:, 1:].mean()  # in the direction that views see

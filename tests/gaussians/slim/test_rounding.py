@@ -10,8 +10,8 @@ import torch
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.files.formats.morton import morton_sorted
 from scenewright.gaussians.scene import Scene
+from scenewright.gaussians.slim.encoding import Files
 from scenewright.gaussians.slim.rounding import Steps, round_for_sog, round_for_spz, steps_for
-from scenewright.gaussians.slim.slimming import Files
 
 COARSE = Steps(means=2e-3, log_scales=0.1, quats=0.03, opacities=0.03, sh=0.05)
 
