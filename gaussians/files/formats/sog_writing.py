@@ -82,8 +82,8 @@ def _bands(rest: values.Floats, degree: int, parts: dict[str, Bytes]) -> dict[st
 
 
 def _padded(book: values.Floats) -> list[float]:
-    """A codebook padded with its last value to exactly 256 entries, as readers expect, in the digits of a float32."""
-    return [float(f"{v:.9g}") for v in np.concatenate([book, np.repeat(book[-1:], _CODEBOOK_SIZE - len(book))])]
+    """A codebook padded with its last value to exactly 256 entries, as readers expect."""
+    return [float(v) for v in np.concatenate([book, np.repeat(book[-1:], _CODEBOOK_SIZE - len(book))])]
 
 
 def _square(rgb: NDArray[np.integer], alpha: NDArray[np.integer]) -> Bytes:
