@@ -188,13 +188,14 @@ def filled(before: Scene, after: Scene, moved: Sequence[Tensor] = ()) -> tuple[S
     from .filling.fill import merged, patches_behind, unshaded
     from .filling.revealed import left_their_place
     from .filling.told import filled as tell
+    from .lifting.past import without_those_before
 
     scene, told, ids = after, list[Filled](), [after.cloud.ids[:0]]
     top = int(before.cloud.ids.max()) if len(before.cloud) else -1  # ids of what is gone are not used again
     elsewhere = [before.cloud.ids[rows] for rows in moved]
     for rows in left_their_place(before, after, moved):
         apart = mask_of(scene.cloud, torch.cat(elsewhere)) if elsewhere else None
-        patches = patches_behind(scene, before.cloud[rows], apart)
+        patches = without_those_before(before, scene, patches_behind(scene, before.cloud[rows], apart))
         lit, new = unshaded(scene, patches), merged(scene, patches, top)
         told += tell(scene, patches)
         if lit is not scene.cloud:

@@ -24,7 +24,7 @@ LOOKED = 120  # photographs that are looked at
 MOST = 32  # photographs that are used, those that see most
 _INSIDE = 0.25  # of the new Gaussians that a photograph must show
 _PAD = 8  # px around them
-_HIDES = 0.02  # blending weight from which a Gaussian counts in a pixel
+HIDES = 0.02  # blending weight from which a Gaussian counts in a pixel
 _SHOWS = 0.1  # likewise of the new ones
 _MARGIN = 2  # px around what is not as photographed: outlines are soft
 _FEWEST = 24  # pixels that a photograph must see behind
@@ -143,14 +143,14 @@ class Marked:
         shown = after[..., 0] > _SHOWS
         if not shown.any():
             return np.asarray(shown)
-        hidden = (shares(self.before, (self.gone,), camera)[..., 0] > _HIDES) | (after[..., 1] > _HIDES)
+        hidden = (shares(self.before, (self.gone,), camera)[..., 0] > HIDES) | (after[..., 1] > HIDES)
         return np.asarray(shown & ~ndimage.binary_dilation(hidden, iterations=_MARGIN))
 
     def is_of(self, target: Target) -> bool:
         """Whether a photograph shows the scene as it was, told by what did not change around."""
         after = shares(self.after, (self.new, self.other), target.camera)
-        hidden = shares(self.before, (self.gone,), target.camera)[..., 0] > _HIDES
-        still = ~hidden & (after[..., :2] < _HIDES).all(axis=2)
+        hidden = shares(self.before, (self.gone,), target.camera)[..., 0] > HIDES
+        still = ~hidden & (after[..., :2] < HIDES).all(axis=2)
         shot = render(self.before, target.camera)
         still &= shot.alpha.cpu().numpy() > 0.5
         if still.sum() < _RING:
