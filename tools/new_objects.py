@@ -175,7 +175,8 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
     """
     made, told = request.own.natural(request.kind, request.color) if request.own is not None else (None, ())
     if made is None:
-        made = assets.make(request.kind, request.seed, color=request.color or _usual_color(request))
+        color = request.color or _usual_color(request)
+        made = assets.make(_known_name(request.kind), request.seed, color=color)
     factor, notes = request.scale.units_per_metre, request.scale.notes
     if request.height is not None:
         factor = request.height.in_units(scene.frame) / made.size[2]
@@ -194,8 +195,8 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
 def _usual_color(request: AssetRequest) -> str | None:
     """A usual colour of a small thing that is called by the very name of its kind: an apple is red or green. None for
     furniture, which comes in any colour, and for what is drawn as something like it."""
-    if (pigment := _material(request.kind)) is not None:
-        return pigment
+    if (material := _material(request.kind)) is not None:
+        return material[0]
     kind = kinds.find(request.kind)
     if kind is None or kind.support != "surface" or not kind.colors:
         return None
@@ -204,15 +205,23 @@ def _usual_color(request: AssetRequest) -> str | None:
     return kind.colors[request.seed % len(kind.colors)] if said in named else None
 
 
-def _material(name: str) -> str | None:
-    """The pigment of the material that a name says: "wooden chair"; None if it says none, or names a thing by it."""
+def _material(name: str) -> tuple[str, str] | None:
+    """The pigment of the material that a name begins with, and the rest of the name: "wooden chair"; None if it begins
+    with none, or is itself the name of a kind."""
     words, known = name.lower().split(), kinds.find(name)
-    if known is None or known.name == name.lower():
+    if known is not None and known.name == name.lower():
         return None
     for length in range(len(words) - 1, 0, -1):
-        if (found := finishes.said(" ".join(words[:length]))) is not None:
-            return found.color or finishes.FINISHES[found.finish].color or None
+        found = finishes.said(" ".join(words[:length]))
+        if found is not None and (color := found.color or finishes.FINISHES[found.finish].color):
+            return color, " ".join(words[length:])
     return None
+
+
+def _known_name(name: str) -> str:
+    """A name without the material that it begins with, if only so it is the name of a kind: "wooden bench"."""
+    said = _material(name)
+    return said[1] if said is not None and kinds.find(name) is None and kinds.find(said[1]) is not None else name
 
 
 def fitted(scale: SceneScale, kind: str, old: Box) -> SceneScale:

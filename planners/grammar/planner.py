@@ -26,6 +26,7 @@ from .parsing import Refusal
 from .reader import Reader
 from .restating.changes.filling import Heard, heard
 from .restating.changes.likenesses import with_likenesses, with_photo
+from .restating.changes.shadows import ShadowsHeard, shadows_heard
 from .restating.speech.remarks import is_remark
 from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 NAME = "grammar"
 _COPIES = frozenset({"copy", "duplicate", "clone", "new one", "second one", "second copy"})
 _ORIGINALS = frozenset({"original", "original one", "first one", "old one"})
+_FITTED = frozenset({"insert", "replace"})  # operations whose new things are fitted to the light of the scene
 _REVEALING = frozenset({"delete", "move", "replace"})  # operations whose holes are filled
 _REST = frozenset({"rest", "everything", "everything else", "other"})
 _SIDES = {"right_of": "right", "left_of": "left", "next_to": None}  # of the original, and the direction of its copies
@@ -151,6 +153,8 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     """
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
+    if (shadows := shadows_heard(cleaned)) is not None:
+        return _with_shadows(shadows, previous)
     said = heard(cleaned)
     if said.requests or said.leave or said.anyway:
         return _with_holes(said, previous)
@@ -196,6 +200,25 @@ def _with_holes(said: Heard, previous: str | None) -> _Outcome:
             if hole.where == "in" and target.pick == "one" and not target.relations:
                 target = target.model_copy(update={"pick": "all"})  # a room has several walls
             ops.append({"op": "infill", "target": target, **({} if hole.where == "in" else {"where": hole.where})})
+    return replace(outcome, ops=tuple(ops), again=tuple(ops[-1:]))
+
+
+def _with_shadows(said: ShadowsHeard, previous: str | None) -> _Outcome:
+    """An instruction that says something of shadows, or that what it puts somewhere stays as it is.
+
+    Raises:
+        Refusal: as `_understand`.
+    """
+    ops, outcome, before = list[Fields](), _understand_previous(previous), previous
+    for part in said.parts:
+        if isinstance(part, str):
+            outcome = _understand(part, before)
+            ops += [{**op, "harmony": False} if said.as_is and op["op"] in _FITTED else op for op in outcome.ops]
+            before = part
+            continue
+        outcome = _understand(f"select {part.what}", before)
+        ops += [{"op": "shadow", "target": op["target"], "change": part.change} for op in outcome.ops]
+        before = f"select {part.what}" if part.what not in ("it", "them") else before
     return replace(outcome, ops=tuple(ops), again=tuple(ops[-1:]))
 
 

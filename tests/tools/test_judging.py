@@ -54,6 +54,7 @@ CLEAN: list[Json] = [
     {"op": "merge", "target": {"groups": [TABLE, VASE], "pick": "all"}},
     {"op": "split", "target": {"text": "table"}},
     {"op": "infill", "target": {"text": "table"}, "where": "under"},
+    {"op": "shadow", "target": {"text": "table"}, "change": "cast"},
 ]
 
 
@@ -89,12 +90,12 @@ def test_a_clean_edit_passes_and_no_report_of_it_is_read(corner: Scene, context:
     assert corner.cloud.digest() == digests
 
 
-# A selection and a new grouping change no Gaussian, nothing may be missing where holes are filled, and a thing may
-# already face what it is turned to.
+# A selection and a new grouping change no Gaussian, nothing may be missing where holes are filled, a thing may already
+# face what it is turned to, or cast the shadow that it is to cast.
 CHANGING = [
     d
     for d in CLEAN
-    if d["op"] not in ("select", "merge", "split", "infill") and not (d["op"] == "rotate" and "toward" in d)
+    if d["op"] not in ("select", "merge", "split", "infill", "shadow") and not (d["op"] == "rotate" and "toward" in d)
 ]
 
 

@@ -25,8 +25,9 @@ from .charts import COVERED, Chart, Seen, chart_of, rows_in_slab, seen
 from .hidden import VOXELS as HIDING
 from .hidden import hidden, space_of
 from .new_rows import Look, gaussians_of, is_fill
+from .occlusion import blocked, reach_of
 from .planes import F64, VOXELS, Mask, Plane, planes_near
-from .shadow import Shadow, estimated, multiplied, rows_and_factors, zone_of
+from .shadow import Shadow, most_even, multiplied, rows_and_factors, zone_of
 from .smooth import harmonic
 from .texture import Continued, continued
 
@@ -42,6 +43,7 @@ _SKIRT = 0.02  # of the thing's extent: how near a wall the floor is not looked 
 _PART = 0.3  # of a gap in a surface: where the thing hid as much of it, all of it is the hole
 _ENCLOSED = 0.8  # of such a gap's border that must be of the surface
 _FAR = 1.0  # of the thing's extent: a surface farther from it was seen past it
+_BODY = 12_000  # Gaussians of a thing from which its shade is measured
 _ROUGH = 0.02  # of the thing's extent: noise of a surface on which no shadow can be told
 _CLOSED = 0.5  # of the cells around a thing that its support must cover for its shadow to be told
 _NEAR = 6  # cells from a hole within which a group must be that is continued into it
@@ -279,7 +281,12 @@ def _shadow(thing: GaussianCloud, surface: Surface, within: Mask, size: float) -
     zone = zone_of(footprint, surface.chart, size) & within
     if surface.covered[zone & ~footprint].sum() < _CLOSED * (zone & ~footprint).sum():
         return None
-    return estimated(surface.shown.rgb, _same(surface.shown, surface.covered, footprint), footprint, zone)
+    points = spread(thing, (thing.opacities > OPAQUE).nonzero().squeeze(1)[:: max(1, len(thing) // _BODY)], size)
+    rows, columns = np.nonzero(footprint)
+    wide = float(max(np.ptp(rows), np.ptp(columns)) + 1) * surface.chart.cell
+    shade = blocked(points, surface.chart, reach_of(wide, float(np.quantile(plane.height(points), 0.98))))
+    known = _same(surface.shown, surface.covered, footprint)
+    return most_even(surface.shown.rgb, known, footprint, zone, shade)
 
 
 def _chart(

@@ -14,6 +14,7 @@ from torch import Tensor
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.harmonics import SH_C0
 from .charts import Chart
+from .occlusion import LOBES, Blocked
 from .planes import F64, Mask
 from .texture import continued_far
 
@@ -30,6 +31,14 @@ _FADES = 0.035  # by how much it is darker near the thing than where it ends, on
 _BEYOND, _UNEVEN = 1.5, 0.16  # its darkness over the spread of ratios where it ends, and the largest such spread
 _SMOOTH = 1.5  # cells over which the ratio is averaged at least
 _COARSE, _COARSEST = 0.1, 2.5  # of the shadow's reach, and cells at most: by how much more
+_NONE, _DEEP = 0.004, 0.06  # shares of the light below which nothing is in shadow, and from which it is dark
+_BESIDE = 6  # cells around a shadow that are compared with it
+_FEWEST = 20  # cells of each
+_EVENER = 0.97  # of a surface's unevenness that may be left by taking a shadow off
+_FAINTEST = 0.03  # logarithm of a shadow that is not worth taking off
+_APART = 9.0  # cells of a pattern that vary together
+_SEEN_MODEL, _DARKEST_LOG = 0.99, 1.6  # ratio above which nothing is changed, and logarithm of the darkest
+_RIDGE, _ROUNDS, _CELLS = 0.004, 5, 4_000  # of the fit, and most cells that it takes
 _OUTSIDE = 0.2  # how far from one the ratio may be where the shadow ends, which then counts as one
 
 
@@ -56,6 +65,86 @@ def zone_of(footprint: Mask, chart: Chart, size: float) -> Mask:
     # What is spread thin, as grass, casts no wide shadow for its extent.
     reach = REACH * min(size, _COMPACT * float(np.sqrt(footprint.sum())) * chart.cell)
     return np.asarray(ndimage.distance_transform_edt(~footprint) * chart.cell <= reach)
+
+
+def most_even(rgb: F64, known: Mask, footprint: Mask, zone: Mask, shade: Blocked) -> Shadow | None:
+    """The shadow that a thing cast on a surface, told in the way that leaves the surface most even; None if there is
+    none, or nothing to tell it by.
+
+    One way takes any smooth ratio to the surface around it (`estimated`). The other takes what the thing's shape blocks
+    of the light (`modelled`): it tells shadows on patterned ground, and those that were cast by the same rule.
+
+    Args:
+        shade: the light that the thing takes from the surface; the others as in `estimated`.
+    """
+    near = known & (shade.shares[0] > _NONE)
+    around = near | (known & ndimage.binary_dilation(shade.shares[0] > _NONE, iterations=_BESIDE))
+    found = [s for s in (estimated(rgb, known, footprint, zone), modelled(rgb, known, shade)) if s is not None]
+    for first in tuple(found):  # what the one way leaves, the other may tell
+        rest = rgb / first.ratio[..., None]
+        for more in (estimated(rest, known, footprint, zone), modelled(rest, known, shade)):
+            if more is not None:
+                found.append(Shadow(first.ratio * more.ratio, max(first.depth, more.depth)))
+    if not found or near.sum() < _FEWEST or (around & ~near).sum() < _FEWEST:
+        return found[0] if found else None
+    spreads = [_unevenness(rgb, around, s.ratio) for s in found]
+    best = int(np.argmin(spreads))
+    return found[best] if spreads[best] < _EVENER * _unevenness(rgb, around, np.ones(known.shape)) else None
+
+
+def modelled(rgb: F64, known: Mask, shade: Blocked) -> Shadow | None:
+    """The shadow that a thing of this shape casts, as dark and leaning as fits the surface best; None if that is not
+    dark, or the surface's pattern hides it."""
+    near, none = known & (shade.shares[0] > _DEEP), known & (shade.shares[0] <= _NONE)
+    if min(int(near.sum()), int(none.sum())) < _FEWEST:
+        return None
+    table, values = _table(rgb, known), -_log(rgb[known])
+    step = max(1, len(values) // _CELLS)
+    weights, rest = _fitted(np.column_stack([shade.shares[:, known].T, table])[::step], values[::step])
+    dark = np.tensordot(weights, shade.shares, 1)
+    share = dark[near] > 0.5 * float(dark[near].max())
+    if not dark[near].max() or dark[near][share].mean() < max(_FAINTEST, 0.5 * rest / np.sqrt(share.sum() / _APART)):
+        return None
+    ratio = np.where(known & (dark > -np.log(_SEEN_MODEL)), np.exp(-np.minimum(dark, _DARKEST_LOG)), 1.0)
+    return Shadow(ratio, float(1 - ratio[near].mean()))
+
+
+def _log(rgb: F64) -> F64:
+    return np.asarray(np.log(np.maximum(rgb.mean(axis=-1), 0.02)))
+
+
+def _table(rgb: F64, cells: Mask) -> F64:
+    """`[M, 5]` what the logarithm of a surface's brightness may depend on besides shadow: where a cell is, its hue."""
+    h, w = cells.shape
+    y, x = np.nonzero(cells)
+    tint = rgb[cells][:, ::2] / np.maximum(rgb[cells].mean(axis=1, keepdims=True), 0.02) - 1
+    return np.column_stack([np.ones(len(x)), x / w - 0.5, y / h - 0.5, tint])
+
+
+def _fitted(table: F64, values: F64) -> tuple[F64, float]:
+    """The weights `[LOBES]` of the first columns of a robust fit, none below zero, and the spread of what is left."""
+    from scipy.optimize import lsq_linear
+
+    columns = table.shape[1]
+    ridge = np.eye(LOBES, columns) * _RIDGE * np.sqrt(len(values))
+    low = np.concatenate([np.zeros(LOBES), np.full(columns - LOBES, -np.inf)])
+    weight, spread, best = np.ones(len(values)), 0.0, np.zeros(columns)
+    for _ in range(_ROUNDS):
+        root = np.sqrt(weight)
+        rows = np.concatenate([table * root[:, None], ridge])
+        best = lsq_linear(rows, np.concatenate([values * root, np.zeros(LOBES)]), (low, np.inf)).x
+        rest = values - table @ best
+        spread = 1.48 * float(np.median(np.abs(rest))) + 1e-3
+        weight = 1 / (1 + (rest / (2 * spread)) ** 2)
+    return best[:LOBES], spread
+
+
+def _unevenness(rgb: F64, cells: Mask, ratio: F64) -> float:
+    """How much a surface varies after a shadow is divided out, besides its hue and a slope; logarithm of brightness."""
+    values = _log(rgb[cells]) - np.log(ratio[cells])
+    table = _table(rgb, cells)
+    best, *_ = np.linalg.lstsq(table, values, rcond=None)
+    return float(np.abs(values - table @ best).mean())
 
 
 def estimated(rgb: F64, known: Mask, footprint: Mask, zone: Mask) -> Shadow | None:

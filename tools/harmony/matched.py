@@ -31,6 +31,7 @@ _FEWEST = 200  # Gaussians in them, or they are unknown
 _BRIGHT = 0.95  # quantile of their luma that white paint would have
 _BELIEVED, _DIMMEST = 0.6, 0.6  # exponent of what is missing there that is taken for a lack of light; the dimmest place
 _CAST, _CAST_AT_MOST = 0.4, (0.75, 1.25)  # exponent of the hue of what is around that its light has, and its bounds
+_CAST_ON_ASKED, _DIMMEST_ASKED = 0.12, 0.75  # the same of a thing whose colour was asked for
 _PURE, _PALEST = 0.95, 0.65  # quantile of purity that is compared, and the least that is kept of a thing's chroma
 _DARK = 0.005  # quantile of a scene's luma that its black has
 _RAISED = 0.05  # to which black is raised at most
@@ -76,7 +77,7 @@ def matched(cloud: GaussianCloud, scene: Scene, free: bool = True) -> tuple[Gaus
         cloud: the thing, lit by one lamp as assets are, or photographed in good light.
         free: whether its colours are free to be less pure, as nobody asked for one.
     """
-    light = _light_at(scene, cloud)
+    light = _light_at(scene, cloud, free)
     gain = torch.tensor(light.white, dtype=torch.float64)
     shade = _turned(cloud, scene)
     raised = _black(scene)
@@ -92,7 +93,7 @@ def matched(cloud: GaussianCloud, scene: Scene, free: bool = True) -> tuple[Gaus
     return cloud.replace(sh=sh), told
 
 
-def _light_at(scene: Scene, cloud: GaussianCloud) -> SceneLight:
+def _light_at(scene: Scene, cloud: GaussianCloud, free: bool) -> SceneLight:
     """The light of the scene, dimmed as far as what is around the thing is darker than its light lets expect. That may
     be dark by pigment, so what is missing counts in part."""
     light = scene_light(scene.cloud)
@@ -108,9 +109,10 @@ def _light_at(scene: Scene, cloud: GaussianCloud) -> SceneLight:
     tint = (taken.rgb.clamp(0, 1) * taken.weight[:, None]).sum(dim=0)
     whole = sample(scene.cloud, size=_SAMPLE)
     usual = (whole.rgb.clamp(0, 1) * whole.weight[:, None]).sum(dim=0)
-    cast = (_luma_one(tint) / _luma_one(usual)).clamp(min=0.1) ** _CAST
+    cast = (_luma_one(tint) / _luma_one(usual)).clamp(min=0.1) ** (_CAST if free else _CAST_ON_ASKED)
     cast = _luma_one(cast.clamp(*_CAST_AT_MOST))
-    dim = float(np.clip((level / (WHITE * light.level)) ** _BELIEVED, min(1.0, _DIMMEST / light.level), 1.0))
+    dimmest = _DIMMEST if free else _DIMMEST_ASKED
+    dim = float(np.clip((level / (WHITE * light.level)) ** _BELIEVED, min(1.0, dimmest / light.level), 1.0))
     red, green, blue = (dim * w * float(c) for w, c in zip(light.white, cast, strict=True))
     return SceneLight((red, green, blue), light.share)
 

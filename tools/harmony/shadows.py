@@ -4,24 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from ...gaussians.cloud import GaussianCloud
 from ...gaussians.scene import Scene
 from ..field_update import after_recolor
 from ..filling.occlusion import SIDES
 from ..filling.shadow import multiplied
 from .carrier import Carried, carried
 from .shading import shading_of
-from .strength import Strength, strength_of
+from .strength import FAINT, Strength, fitted, strength_of
 
 F64 = NDArray[np.float64]
 _LEAST = 0.01  # logarithm of a colour's change below which a Gaussian stays as it is
 _LEAN = 0.6  # largest share of the light that leans to the side from which most light comes
 _WALL = 0.6  # likewise on walls, to above
+_TOLD = 0.05  # strength from which a shadow is there
+_PART = 0.5  # of a shadow: how much darker or lighter it becomes
 _STRAIGHT = 0.1  # slope of light from above that is taken to be there
 
 
@@ -84,3 +88,57 @@ def lobes_of(scene: Scene, place: Carried) -> F64:
         share = _WALL
         lean[1] = share
     return np.concatenate([[1 - share], lean])
+
+
+@dataclass(frozen=True, eq=False)
+class Changed:
+    """What was done to shadows: the rows that are of another colour now, and how many things something carries."""
+
+    rows: Tensor
+    carried: int
+
+
+def changed_shadow(
+    scene: Scene, things: Sequence[Tensor], change: Literal["remove", "cast", "darker", "lighter"]
+) -> tuple[GaussianCloud, Changed]:
+    """The cloud with the contact shadows of things taken away, cast, or made darker or lighter.
+
+    How dark a thing's shadow is now is measured on the surface that carries it; where it has the shadow that is asked
+    for, nothing changes.
+
+    Args:
+        things: rows of each.
+    """
+    own = torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
+    for rows in things:
+        own[rows] = True
+    usual = strength_of(scene).value or FAINT
+    dark, found = torch.zeros(len(scene.cloud), dtype=torch.float64), 0
+    for rows in things:
+        place = carried(scene, rows, own)
+        if place is None:
+            continue
+        found += 1
+        now = fitted(scene.cloud, place)
+        step = _step(change, now, usual)
+        # What is there was measured under an even light; what is cast follows the light of the scene.
+        lobes = lobes_of(scene, place) if change == "cast" else None
+        dark[place.rows.cpu()] += torch.from_numpy(step * place.share(scene.cloud, lobes))
+    rows = (dark.abs() > _LEAST).nonzero().squeeze(1).to(scene.cloud.device)
+    if not len(rows):
+        return scene.cloud, Changed(rows, found)
+    sh = scene.cloud.sh.clone()
+    sh[rows] = multiplied(sh[rows], torch.exp(-dark[rows.cpu()]).to(sh))
+    return scene.cloud.replace(sh=sh), Changed(rows, found)
+
+
+def _step(change: str, now: float | None, usual: float) -> float:
+    """By what the strength of a shadow changes."""
+    there = max(0.0, now if now is not None else 0.0)
+    if change == "remove":
+        return -there if there > _TOLD else 0.0
+    if change == "lighter":
+        return -_PART * there if there > _TOLD else 0.0
+    if change == "darker":
+        return _PART * max(there, usual)
+    return max(0.0, usual - there) if there < _PART * usual else 0.0

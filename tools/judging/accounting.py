@@ -27,6 +27,7 @@ _WAYS: dict[str, frozenset[str]] = {
     "insert": frozenset(),
     "duplicate": frozenset(),
     "infill": frozenset(),
+    "shadow": frozenset({"colored"}),
     "select": frozenset(),
     "merge": frozenset(),
     "split": frozenset(),

@@ -199,3 +199,46 @@ def test_a_new_thing_takes_the_white_of_the_room_and_keeps_its_colour_name() -> 
     assert basic_name(tuple(now.tolist())) == basic_name(tuple(was.tolist()))
     for name, column in chair.cloud.columns():
         assert name == "sh" or getattr(fitted_chair, name) is column
+
+
+def _shadow(scene: Scene, change: str) -> Done:
+    return _do(scene, op="shadow", target={"groups": [1]}, change=change)
+
+
+def test_a_shadow_is_removed_made_lighter_and_darker() -> None:
+    plain = _scene(_floor(), _box((0.1, 0.0)))
+    dark, _ = shadows_under(plain, [_rows(plain)], Strength(0.8, 1))
+    strengths = {}
+    for change in ("remove", "lighter", "darker"):
+        done = _shadow(dark, change)
+        place = carried(done.scene, _rows(done.scene))
+        assert place is not None
+        strengths[change] = fitted(done.scene.cloud, place)
+        own = _rows(dark)
+        assert torch.equal(done.scene.cloud.sh[own], dark.cloud.sh[own])
+        assert done.receipt.changed > 100
+    assert abs(strengths["remove"]) < 0.12 < strengths["lighter"] < 0.6 < 1.0 < strengths["darker"]
+    error = [float((s.cloud.sh - plain.cloud.sh).abs().mean()) for s in (dark, _shadow(dark, "remove").scene)]
+    assert error[1] < 0.25 * error[0]  # the goal for what is left of a shadow
+
+
+def test_a_thing_is_given_a_shadow_once() -> None:
+    plain = _scene(_floor(), _box((0.1, 0.0)))
+    once = _shadow(plain, "cast").scene
+    twice = _shadow(once, "cast")
+    assert not torch.equal(once.cloud.sh, plain.cloud.sh)
+    assert torch.equal(twice.scene.cloud.sh, once.cloud.sh)
+    assert any("casts a shadow already" in note for note in twice.receipt.notes)
+
+
+def test_moving_back_and_forth_does_not_darken_the_floor() -> None:
+    """Each move divides out where the thing stood what it multiplied in there before."""
+    plain = _scene(_floor(), _box((0.4, 0.0), light=np.array([0, 0, 1.0])))
+    scene, step = plain, {"value": 0.9, "unit": "m"}
+    for way in ("left", "right", "left", "right"):
+        scene = _do(scene, op="move", target={"groups": [1]}, direction=way, distance=step).scene
+    floor = (plain.cloud.group == 0).nonzero().squeeze(1)
+    change = dc_to_color(scene.cloud.sh[floor, 0]) - dc_to_color(plain.cloud.sh[floor, 0])
+    away = scene.cloud.means[floor, 0] < -0.1  # where it does not stand now
+    assert float(change[away].abs().mean()) < 0.01
+    assert float(change.min()) > -0.45
