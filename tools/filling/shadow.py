@@ -79,17 +79,24 @@ def most_even(rgb: F64, known: Mask, footprint: Mask, zone: Mask, shade: Blocked
     """
     near = known & (shade.shares[0] > _NONE)
     around = near | (known & ndimage.binary_dilation(shade.shares[0] > _NONE, iterations=_BESIDE))
-    found = [s for s in (estimated(rgb, known, footprint, zone), modelled(rgb, known, shade)) if s is not None]
-    for first in tuple(found):  # what the one way leaves, the other may tell
-        rest = rgb / first.ratio[..., None]
-        for more in (estimated(rest, known, footprint, zone), modelled(rest, known, shade)):
-            if more is not None:
-                found.append(Shadow(first.ratio * more.ratio, max(first.depth, more.depth)))
-    if not found or near.sum() < _FEWEST or (around & ~near).sum() < _FEWEST:
-        return found[0] if found else None
-    spreads = [_unevenness(rgb, around, s.ratio) for s in found]
-    best = int(np.argmin(spreads))
-    return found[best] if spreads[best] < _EVENER * _unevenness(rgb, around, np.ones(known.shape)) else None
+    smooth, shaped = estimated(rgb, known, footprint, zone), modelled(rgb, known, shade)
+    if near.sum() < _FEWEST or (around & ~near).sum() < _FEWEST:
+        return smooth or shaped
+    # What the smooth ratio leaves, the shape may tell, and the other way round.
+    both = None if smooth is None else _with(smooth, modelled(rgb / smooth.ratio[..., None], known, shade))
+    best, left = None, _unevenness(rgb, around, np.ones(known.shape))
+    for one in (smooth, shaped, both):
+        least = _EVENER if best is None or one is both else 1.0
+        if one is not None and (spread := _unevenness(rgb, around, one.ratio)) < least * left:
+            best, left = one, spread
+    if best is None or best is not shaped:
+        return best
+    more = _with(best, estimated(rgb / best.ratio[..., None], known, footprint, zone))
+    return more if more is not None and _unevenness(rgb, around, more.ratio) < _EVENER * left else best
+
+
+def _with(first: Shadow, second: Shadow | None) -> Shadow | None:
+    return None if second is None else Shadow(first.ratio * second.ratio, max(first.depth, second.depth))
 
 
 def modelled(rgb: F64, known: Mask, shade: Blocked) -> Shadow | None:
@@ -132,7 +139,7 @@ def _fitted(table: F64, values: F64) -> tuple[F64, float]:
     for _ in range(_ROUNDS):
         root = np.sqrt(weight)
         rows = np.concatenate([table * root[:, None], ridge])
-        best = lsq_linear(rows, np.concatenate([values * root, np.zeros(LOBES)]), (low, np.inf)).x
+        best = lsq_linear(rows, np.concatenate([values * root, np.zeros(LOBES)]), (low, np.inf), method="bvls").x
         rest = values - table @ best
         spread = 1.48 * float(np.median(np.abs(rest))) + 1e-3
         weight = 1 / (1 + (rest / (2 * spread)) ** 2)

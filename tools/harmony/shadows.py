@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
+from ...gaussians.language.field.group_index import index_groups
 from ...gaussians.scene import Scene
 from ..field_update import after_recolor
 from ..filling.occlusion import SIDES
@@ -40,11 +41,14 @@ class Told:
     strength: Strength
 
 
-def shadows_under(scene: Scene, things: Sequence[Tensor], strength: Strength | None = None) -> tuple[Scene, Told]:
+def shadows_under(
+    scene: Scene, things: Sequence[Tensor], strength: Strength | None = None, apart: bool = True
+) -> tuple[Scene, Told]:
     """The scene with the contact shadows of things where they stand or hang; only colours of other Gaussians change.
 
     Args:
-        things: rows of each; none of them darkens another's Gaussians.
+        things: rows of each.
+        apart: whether none of them darkens another's Gaussians.
         strength: how dark; None: as those that the scene has.
     """
     strength = strength_of(scene) if strength is None else strength
@@ -56,7 +60,7 @@ def shadows_under(scene: Scene, things: Sequence[Tensor], strength: Strength | N
     dark = torch.zeros(len(scene.cloud), dtype=torch.float64)
     found = 0
     for rows in things:
-        place = carried(scene, rows, own)
+        place = carried(scene, rows, own if apart else None)
         if place is not None:
             found += 1
             dark[place.rows.cpu()] += torch.from_numpy(
@@ -142,3 +146,19 @@ def _step(change: str, now: float | None, usual: float) -> float:
     if change == "darker":
         return _PART * max(there, usual)
     return max(0.0, usual - there) if there < _PART * usual else 0.0
+
+
+def shadows_under_everything(scene: Scene, strength: Strength | None = None) -> tuple[Scene, Told]:
+    """The scene with a contact shadow under each of its things, in one pass; only colours change.
+
+    For scenes whose things were put together from parts that cast none on each other. What a capture shows has its
+    shadows already.
+
+    Args:
+        strength: how dark; None: the usual one.
+    """
+    field = scene.language
+    index = index_groups(scene.cloud)
+    objects = () if field is None else [g for g in field.objects() if g.count]
+    things = [torch.from_numpy(index.rows(field.leaves(g.id))) for g in objects] if field is not None else []
+    return shadows_under(scene, things, strength or Strength(FAINT, 0), apart=False)

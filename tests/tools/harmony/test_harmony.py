@@ -11,6 +11,8 @@ from scenewright.gaussians.assets.modeling.make import basic_name
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud, concat
 from scenewright.gaussians.harmonics import color_to_dc, dc_to_color
+from scenewright.gaussians.language.field.language_field import Group, LanguageField
+from scenewright.gaussians.language.field.measure import box_of
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.selection import Selection
 from scenewright.gaussians.scene import Frame, Scene
@@ -22,7 +24,7 @@ from scenewright.tools.filling.planes import Plane
 from scenewright.tools.harmony.carrier import carried
 from scenewright.tools.harmony.matched import matched
 from scenewright.tools.harmony.shading import shading_of
-from scenewright.tools.harmony.shadows import shadows_under
+from scenewright.tools.harmony.shadows import shadows_under, shadows_under_everything
 from scenewright.tools.harmony.strength import FAINT, Strength, fitted, strength_of
 from scenewright.tools.operation import Context
 from scenewright.tools.registry import parse
@@ -88,6 +90,16 @@ def _rows(scene: Scene, group: int = 1) -> torch.Tensor:
 
 def _found(scene: Scene, query: Query, *_: object, **__: object) -> Selection:
     return Selection(query, "found", scene.cloud.ids[scene.cloud.group == 1], (1,))
+
+
+def _field(scene: Scene) -> LanguageField:
+    """The floor as a structure, and each box as an object."""
+    rows = [
+        Group(g, "object" if g else "structure", -1, "box" if g else "floor", 0.9, box_of(scene.cloud, FRAME, rows),
+              (50.0, 0.0, 0.0), len(rows), 8, 1.0)
+        for g, rows in ((g, _rows(scene, g)) for g in sorted(set(scene.cloud.group.tolist())))
+    ]  # fmt: skip
+    return LanguageField(tuple(rows), np.zeros((len(rows), 8), np.float32), "none")
 
 
 def _do(scene: Scene, harmony: bool = True, **fields: object) -> Done:
@@ -242,3 +254,14 @@ def test_moving_back_and_forth_does_not_darken_the_floor() -> None:
     away = scene.cloud.means[floor, 0] < -0.1  # where it does not stand now
     assert float(change[away].abs().mean()) < 0.01
     assert float(change.min()) > -0.45
+
+
+def test_everything_casts_its_shadow_in_one_pass() -> None:
+    boxes = [_box((x, 0.0), i + 1) for i, x in enumerate((-0.9, 0.9))]
+    scene = _scene(_floor(), *boxes)
+    scene = scene.replace(language=_field(scene))
+    dark, told = shadows_under_everything(scene)
+    assert told.things == 2
+    both, _ = shadows_under(scene, [_rows(scene, 1), _rows(scene, 2)], Strength(FAINT, 0))
+    assert torch.equal(dark.cloud.sh, both.cloud.sh)
+    assert float(dark.cloud.means[(dark.cloud.sh != scene.cloud.sh).flatten(1).any(dim=1), 2].max()) < 0.01
