@@ -128,7 +128,8 @@ _WORDS: dict[FinishName, dict[str, str]] = {
     },
     "tiles": {
         "tile": "", "tiled": "", "ceramic tiles": "", "white tiles": "", "subway tiles": "", "tiling": "",
-        "metro tiles": "", "metro tile": "", "subway tile": "", "ceramic tile": "", "zellige": "", "zellij": "",
+        "metro": "", "metro tiles": "", "metro tile": "", "subway tile": "", "ceramic tile": "", "zellige": "",
+        "zellij": "",
         "zellige tiles": "", "mosaic": "", "mosaic tiles": "", "penny tiles": "", "porcelain tiles": "",
         "azulejos": "#d9e3ee",
         "floor tiles": "", "wall tiles": "", "stone tiles": "#a79c8b", "slate tiles": "#4b5157",

@@ -26,6 +26,9 @@ COLORS_TOO = bag(
     "cherry straw mahogany walnut chestnut bamboo metallic wool cotton linen silk canvas"
 )
 
+# Words that name things at least as often as materials.
+THINGS_TOO = bag("plank slat cord paper flags flowers roses rubble patterned geometric knit oriental onyx metro")
+
 
 def mark(name: str, *colors: str, size: tuple[str, str] | None = None) -> str:
     """The word that stands for a material with its colours, and a length of so many of a unit."""

@@ -10,12 +10,15 @@ import re
 from collections.abc import Iterator, Sequence
 from functools import cache
 
+from .....gaussians.world import kinds
 from .....gaussians.world.finishes import said as finish_said
 from .....gaussians.world.finishes import words as finish_words
 from .....gaussians.world.lengths import UNITS
+from ...tagging.lookahead import color_at
 from ...tagging.words import Word, bag
 from ...vocabulary.materials import ANYTHING, LIKE, PHOTO, mark
 from ..chunks import is_thing
+from .covering import covered, names_material
 from .styles import names_style, styled
 
 Size = tuple[str, str]  # a number and its unit, as they are said
@@ -23,9 +26,10 @@ _SURFACES = (
     "patterns?|materials?|fabric|texture|textile|print|design|finish|surface|motif|weave|upholstery|cloth|covering|"
     "stone|wood grain|grain|tiling|look|cladding|veneer|wallpaper|stuff|kind of wood|sort of wood|type of wood"
 )
+_OWNED = "pattern|texture|fabric|print|design|motif|material|upholstery|cover fabric"
 _ONES = r"(?:(?:that|those|the one|the ones|what is|what you see) )?(?:of|on|in|from|for) |that of |"
 _DET = r"(?:the|that|this|those|these|my|our|your|his|her|their|both|all|every)"
-_NP = rf"(?:{_DET} [^,;]+?|it|them|this|that|these|those|everything)"
+_NP = rf"(?:(?:{_DET} )?[a-z][^,;]*?|it|them|this|that|these|those|everything)"
 _DO = (
     "make|do|paint|cover|upholster|reupholster|clad|wrap|finish|refinish|restyle|texture|retexture|redo|dress|line|"
     "style|have|want|turn|i want|i would like|i need|i would love|render|tile|panel|surface|resurface|decorate|change|"
@@ -74,6 +78,20 @@ _CARRIED = re.compile(rf"^{_POLITE}(?:put|place|bring|take|carry|lay|spread|add)
 _LOOSE = bag(
     "cloth carpet canvas textile felt fur grass sand gravel pebbles rock rocks boards tile tiles bricks sheepskin"
 )
+_SENT = (
+    r"(?:that )?i (?:have |had |'ve |just )*(?:uploaded|sent|attached|shared|posted|gave you|showed you)(?: you)?"
+    r"(?: before| earlier)?"
+)
+_SAME = re.compile(
+    rf"^(?P<thing>(?:the |my |our )?[a-z]+(?: [a-z]+)?) (?:in )?"
+    rf"(?:(?:the )?same (?:as|like)|(?P<color>the colou?r of)) (?P<src>{_DET} [^,;]+)$"
+)
+_LATE = re.compile(r" ,? ?but in (?P<hue>[a-z ]+)$")
+_KEPT = re.compile(
+    r" ,? ?(?:and |but )?(?:(?:the|its) [^,]+? (?:stays?|remains?) (?:as (?:it )?(?:is|it is)|the same|unchanged)|"
+    r"keep (?:the|its) [^,]+|leave (?:the|its) [^,]+|, (?:all (?:of them|three|four|two)|both)|if you can|if possible|"
+    r"please(?: , (?:all (?:of them|three|four|two)|both))?)$"
+)
 _BESIDE = frozenset({"of", "from", "off", "as", "like", "to", "with", "matching", "'s", "on", "in"})
 _LOOKS = re.compile(r"\b(?:look|appear|finished|match)\b")
 _DOING = (
@@ -105,6 +123,8 @@ def _sources() -> tuple[str, ...]:
         rf"(?:(?:some|a|the|of|real) )*{w} (?:just |exactly )?(?:{alike}) (?:{_ONES}){source}",
         rf"(?:the|that|a|its) {w} (?:of|from|off|used for|used on|that is on|seen on|found on) {source}",
         rf"(?:the|that) (?P<w>{_SURFACES}) (?:on|in) {source}",
+        rf"{w} (?:of|from|off) {source}",
+        rf"(?P<src>(?:the )?(?!(?:same|that) )[a-z]+(?: [a-z]+)?) (?P<w>{_OWNED})",
         rf"{source} 's (?P<w>{_SURFACES}|wood|stone|brick|tiles|marble|leather|carpet)",
     )
 
@@ -131,7 +151,7 @@ def _of_things() -> tuple[re.Pattern[str], ...]:
 def _of_photographs() -> tuple[re.Pattern[str], ...]:
     w, thing = _surface(), rf"(?P<thing>{_NP})"
     inside = "of|in|on|from|shown in|shown on|seen in|out of|as in|like in"
-    shown = rf"(?:(?:the|that|those|these) )?{w} (?:{inside}) {_PICTURE}"
+    shown = rf"(?:(?:the|that|those|these) )?(?:[a-z]+ )?{w} (?:{inside}) {_PICTURE}"
     as_ = rf"(?:as|like|for) (?:(?:a|an|the|new|its) )*{w} (?:of|on|for|onto|over|to|across) {thing}"
     like = rf"like|as|(?:(?:with|in|of|to|out of) )?(?:the )?same(?: {w})? as|the same as|similar to|matching|to match"
     ones = "it is|that|the one|the ones|shown|seen|those|what is|what you see"
@@ -152,6 +172,7 @@ def _of_photographs() -> tuple[re.Pattern[str], ...]:
         rf"{thing} (?:in|with|out of|of|from|using) {shown}",
         rf"{shown} (?:on|for|onto|over) {thing}",
         rf"{_PHOTO} (?:on|for|onto|over) {thing}",
+        rf"{w} (?:like|as) (?:in|on|from) {_PICTURE} ?,? (?:on|for|onto) {thing}",
         rf"{thing} {_OUGHT} (?:look |be )?(?:exactly )?(?:like|as|as in|like in|match) {_PICTURE}",
         rf"(?:{_LAY}) {shown} and (?:put|use|apply|lay|copy) it {_ONTO} {thing}",
         rf"(?:{_LAY}) {_PHOTO} and (?:put|use|apply|lay|copy) it {_ONTO} {thing}",
@@ -191,7 +212,15 @@ def likened(said: str) -> str | None:
     """A sentence with each of its commands for the surface of another thing or of a photograph in other words; None if
     it has none."""
     shown = _SHOWN.search(said) is not None
-    if not (shown or names_style(said) or _LOOKS.search(said) or _names_surface(said)):
+    if not (
+        shown
+        or " same " in said
+        or " the colour of " in said
+        or names_material(said)
+        or names_style(said)
+        or _LOOKS.search(said)
+        or _names_surface(said)
+    ):
         return None
     size: Size | None = None
     if shown and (wide := _WIDE.search(said)) is not None:
@@ -224,7 +253,14 @@ def _clause(said: str, size: Size | None, shown: bool) -> str | None:
     """One command in other words, None if it asks for nothing of the kind."""
     if (look := styled(said)) is not None:
         return look
-    said = _ASKED.sub("", said)
+    spoken = said
+    said = _KEPT.sub("", _ASKED.sub("", _in_photo(said)))
+    shown = shown or _SHOWN.search(said) is not None
+    hue = ""
+    late = _LATE.search(said)
+    color = color_at(late["hue"].split(), 0) if late is not None else None
+    if late is not None and color is not None and color[1] == len(late["hue"].split()):
+        said, hue = said[: late.start()], f" and paint it {late['hue']}"
     for pattern in _of_photographs() if shown else ():
         for found in _matches(pattern, said):
             named = mark(PHOTO, *filter(None, (_material(found),)), size=_length(found) or size)
@@ -232,11 +268,30 @@ def _clause(said: str, size: Size | None, shown: bool) -> str | None:
     for pattern in _of_things():
         for found in _matches(pattern, said):
             carried = _CARRIED.match(said) is not None and found.groupdict().get("w") in _LOOSE
+            bare = found["src"].removeprefix("the ")
+            if "(?!(?:same|that) )" in pattern.pattern and kinds.find(bare) is None:
+                continue  # "a flower pattern on the sofa" is no flower's
             if carried or not is_thing(tuple(found["src"].split())):
                 continue
             name = _material(found) or ANYTHING
-            return f"{found['polite']}paint {found['thing']} {LIKE}{name} {found['src']}{found['tail']}"
-    return None
+            return f"{found['polite']}paint {found['thing']} {LIKE}{name} {found['src']}{found['tail']}{hue}"
+    return _same(said) or covered(spoken)
+
+
+def _same(said: str) -> str | None:
+    """ "bookshelf same as the side table", "walls the colour of the sofa"."""
+    found = _SAME.match(said)
+    if found is None or not all(is_thing(tuple(found[side].split())) for side in ("thing", "src")):
+        return None
+    way = "the colour of" if found["color"] else LIKE + ANYTHING
+    return f"paint {found['thing']} {way} {found['src']}"
+
+
+def _in_photo(said: str) -> str:
+    """A sentence whose words for what somebody sent or uploaded name the photograph."""
+    said = re.sub(r"\bfotos?\b", "photo", said)
+    said = re.sub(rf"\b(photo|picture|image|pic) {_SENT}", "photo", said)
+    return re.sub(rf"\b(?:that|the|a|this) ((?:[a-z]+ )?[a-z]+) {_SENT}", r"the \1 from the photo", said)
 
 
 def _matches(pattern: re.Pattern[str], said: str) -> Iterator[re.Match[str]]:

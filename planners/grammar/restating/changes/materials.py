@@ -12,7 +12,7 @@ from functools import cache
 from .....gaussians import color as colors
 from .....gaussians.world.finishes import words
 from .....gaussians.world.lengths import UNITS
-from ...vocabulary.materials import COLORS_TOO, mark
+from ...vocabulary.materials import COLORS_TOO, THINGS_TOO, mark
 
 _CUE = (
     r"(?:(?:to )?look(?:ing)? (?:like|as if) (?:it (?:is|were|was) )?(?:made )?(?:out )?(?:of )?|"
@@ -80,7 +80,7 @@ def in_materials(said: str) -> Iterator[str]:
         if count >= _MOST:
             return
         behind = said[match.end() :]
-        if not _AFTER.match(behind) or (match["name"] in COLORS_TOO and not _is_cued(match)):
+        if not _AFTER.match(behind) or (match["name"] in COLORS_TOO | THINGS_TOO and not _is_cued(match)):
             continue
         before = said[: match.start()].rstrip()
         found = _SIZED.search(match["size"] or match["after"] or "")
