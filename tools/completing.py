@@ -8,11 +8,12 @@ views is lifted into new Gaussians; where photographs see what was added, it is 
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import torch
 from torch import Tensor
 
+from ..gaussians.errors import ScenewrightError
 from ..gaussians.language.field.language_field import LanguageField
 from ..gaussians.language.query.selection import mask_of
 from ..gaussians.rows import mask_of_ids
@@ -43,18 +44,37 @@ def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
         FileError: a photograph cannot be read.
     """
     if op.op == "restyle" and context.restyler is not None:
-        return _restyled(before, op, context, done)
+        return _unless_it_fails(done, before.cloud.ids[:0], lambda now, _: _restyled(before, op, context, now))[0]
     plain = done
     done, new = _filled(before, op, context, done)
     if context.inpainter is not None and _may_fill(before, op, context, done):
-        done, new = _inpainted(before, op, context, done, new)
+        done, new = _unless_it_fails(done, new, lambda now, ids: _inpainted(before, op, context, now, ids))
     if context.photographs is not None and len(new):
-        done = _photographed(context, done, new)
+        done, new = _unless_it_fails(done, new, lambda now, ids: _photographed(context, now, ids))
     return _with_shadows(before, op, context, plain.scene, done)
 
 
-def _photographed(context: Context, done: Done, new: Tensor) -> Done:
-    """The result with the new Gaussians optimised against the photographs."""
+def _unless_it_fails(
+    done: Done, new: Tensor, step: Callable[[Done, Tensor], tuple[Done, Tensor]]
+) -> tuple[Done, Tensor]:
+    """What a step with pictures makes of a result; the result as it is, with a note, if a model of others fails in a
+    way that nobody foresaw.
+
+    Raises:
+        ScenewrightError: as the step.
+    """
+    try:
+        return step(done, new)
+    except ScenewrightError:
+        raise
+    except Exception as error:  # the edit itself is done and checked: it stays
+        log.warning("pictures could not be used", exc_info=True)
+        failed = f"pictures were not used: that failed ({type(error).__name__}: {error})"
+        return done._replace(receipt=done.receipt.model_copy(update={"notes": (*done.receipt.notes, failed)})), new
+
+
+def _photographed(context: Context, done: Done, new: Tensor) -> tuple[Done, Tensor]:
+    """The result with the new Gaussians optimised against the photographs, and their ids."""
     from .lifting.photographs import with_photographs
     from .lifting.told import note
 
@@ -62,11 +82,12 @@ def _photographed(context: Context, done: Done, new: Tensor) -> Done:
     assert context.photographs is not None
     with timed(seconds, "lift"):
         scene, lifted = with_photographs(done.scene, context.photographs, new, context.seed)
-    return _lifted(done, scene, lifted, seconds, note(lifted))
+    return _lifted(done, scene, lifted, seconds, note(lifted)), new
 
 
-def _restyled(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
-    """The result of a restyle with the look that the model of the context paints; Gaussians that it left stay."""
+def _restyled(before: Scene, op: EditOp, context: Context, done: Done) -> tuple[Done, Tensor]:
+    """The result of a restyle with the look that the model of the context paints, and the ids of what it painted;
+    Gaussians that restyle left stay."""
     from .lifting.behind import differing
     from .lifting.restyled import restyled
     from .lifting.told import restyle_note
@@ -80,7 +101,7 @@ def _restyled(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
         scene, lifted = restyled(
             done.scene, changed, f"a photograph of {op.subject()}, {material}", context.restyler, context.seed
         )
-    return _lifted(done, scene, lifted, seconds, restyle_note(lifted))
+    return _lifted(done, scene, lifted, seconds, restyle_note(lifted)), changed
 
 
 def _inpainted(before: Scene, op: EditOp, context: Context, done: Done, new: Tensor) -> tuple[Done, Tensor]:

@@ -154,6 +154,20 @@ def test_a_model_that_fails_leaves_the_fill(room: Room, answer: object, said: st
     assert told.views == 0 and __import__("re").search(said, told.reason)
 
 
+def test_a_model_that_crashes_leaves_the_edit(room: Room) -> None:
+    """An `Inpainter` of the user's own may raise anything."""
+    scene = room.fitted
+    target = Selection(Query(), "found", scene.cloud.ids[scene.cloud.group == BOX])
+    op = parse({"op": "delete", "target": {"groups": [BOX]}})
+    plain = Context(viewer=scene.cameras[0])
+    done = [
+        completed(scene, op, how, carry_out(scene, op, how, target, seen=False))
+        for how in (plain, replace(plain, inpainter=Broken(ValueError("shape"))))
+    ]
+    assert _same(done[0].scene.cloud, done[1].scene.cloud)
+    assert done[1].receipt.notes[-1] == "pictures were not used: that failed (ValueError: shape)"
+
+
 def test_nothing_hidden_is_nothing_to_fill(room: Room) -> None:
     whole = room.fitted.replace(cloud=room.truth)
     after, _, told = with_inpainted(whole, whole, NONE, Broken(None))
