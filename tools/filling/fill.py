@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
@@ -30,6 +31,9 @@ from .planes import F64, VOXELS, Mask, Plane, planes_near
 from .shadow import Shadow, most_even, multiplied, rows_and_factors, zone_of
 from .smooth import harmonic
 from .texture import Continued, continued
+
+if TYPE_CHECKING:
+    from .behind.views import View
 
 _AROUND = 0.6  # of the thing's extent: how far around it its surroundings are looked at
 OPAQUE = 0.15  # Gaussians below it are haze
@@ -134,12 +138,28 @@ def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = No
         patch = _patch(scene, (rows, earlier), thing, plane, clips, (low, high, size))
         if patch is not None and (plane.last or len(patch.cloud) or len(patch.shaded)):
             patches.append(patch)  # that a surface among others ends before the thing is nothing to tell
-    return patches + _behind(scene, thing, apart, (low, high), patches)
+    from .behind.views import witnesses_of
+
+    there = scene.cloud if apart is None else scene.cloud[~apart]
+    witnesses = witnesses_of(there, thing, scene.cameras)
+    patches = [_unseen_part(p, witnesses) for p in patches]
+    return patches + _behind(scene, thing, apart, (low, high), patches, witnesses)
+
+
+def _unseen_part(patch: Patch, witnesses: Sequence[View]) -> Patch:
+    """A patch without the new Gaussians that photographs would have seen before what they show."""
+    from .behind.views import seen_past
+
+    if not len(patch.cloud) or not witnesses:
+        return patch
+    past = seen_past(patch.cloud.means.to(torch.float64).cpu().numpy(), witnesses)
+    return replace(patch, cloud=patch.cloud[torch.from_numpy(~past).to(patch.cloud.device)]) if past.any() else patch
 
 
 def _behind(
-    scene: Scene, thing: GaussianCloud, apart: Tensor | None, corners: tuple[F64, F64], patches: Sequence[Patch]
-) -> list[Patch]:
+    scene: Scene, thing: GaussianCloud, apart: Tensor | None, corners: tuple[F64, F64], patches: Sequence[Patch],
+    witnesses: Sequence[View],
+) -> list[Patch]:  # fmt: skip
     """What lies behind a thing and is of no plane that was continued."""
     from .behind.glass import glass_of
     from .behind.lifted import holes_filled
@@ -151,7 +171,7 @@ def _behind(
     cloud = concat([cloud, new]) if len(new) else cloud
     looking = [c for c in scene.cameras if c.contains(*c.project(((corners[0] + corners[1]) / 2)[None]))[0]]
     bands, cloud = cloud.degree, without_gloss(cloud, looking)
-    place = place_of(cloud, thing, corners, scene.cameras, scene.frame.up_vector)
+    place = place_of(cloud, thing, corners, scene.cameras, scene.frame.up_vector, witnesses)
     return [
         Patch(
             None,

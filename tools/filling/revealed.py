@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import torch
@@ -13,6 +14,7 @@ from ...gaussians.scene import Scene
 
 MOST_THINGS = 12  # things behind which is looked after one edit, the largest
 _FEWEST = 20  # Gaussians of a thing
+_TOUCH = 0.1  # of the smaller one's extent: how near two things are that are filled together
 _MOST = 0.5  # of the scene: what takes away more leaves no place to fill
 
 
@@ -40,7 +42,32 @@ def left_their_place(before: Scene, after: Scene, moved: Sequence[Tensor]) -> li
                 return []
     things = [rows[owner == g] for g in torch.unique(owner)]
     things = sorted((t for t in things if len(t) >= _FEWEST), key=len, reverse=True)
-    return things[:MOST_THINGS]
+    return _together(before, things[:MOST_THINGS])
+
+
+def _together(before: Scene, things: list[Tensor]) -> list[Tensor]:
+    """Things that touch taken as one: what lies behind both is continued once, without a seam between them."""
+    boxes = [_box(before.cloud.means[t]) for t in things]
+    owner = list(range(len(things)))
+    for i, j in itertools.combinations(range(len(things)), 2):
+        (a, b), (c, d) = boxes[i], boxes[j]
+        gap = float(torch.maximum(torch.maximum(a - d, c - b), torch.zeros(3, device=a.device)).max())
+        if gap <= _TOUCH * min(float((b - a).max()), float((d - c).max())) and owner[i] != owner[j]:
+            old, new = max(owner[i], owner[j]), min(owner[i], owner[j])
+            owner = [new if k == old else k for k in owner]
+    joined = [torch.cat([t for t, k in zip(things, owner, strict=True) if k == n]) for n in sorted(set(owner))]
+    return [t.sort().values for t in joined]
+
+
+def _box(points: Tensor) -> tuple[Tensor, Tensor]:
+    """Corners of points `[M, 3]` without strays."""
+    finite = points[torch.isfinite(points).all(dim=1)]
+    if not len(finite):
+        nowhere = torch.full((3,), float("nan"), device=points.device)
+        return nowhere, nowhere
+    order = finite.sort(dim=0).values
+    last = len(order) - 1
+    return order[round(0.02 * last)], order[round(0.98 * last)]
 
 
 def _gone(before: Scene, after: Scene) -> Tensor:

@@ -232,6 +232,29 @@ def test_a_named_wall_is_filled_and_an_opening_is_left(room: Scene) -> None:
     assert again.receipt.added == 0
 
 
+def test_things_that_touch_are_filled_together_without_a_seam(room: Scene) -> None:
+    """The box as two halves in two groups: deleted together they leave the same as in one piece."""
+    halves = room.cloud.group.clone()
+    halves[(halves == BOX) & (room.cloud.means[:, 0] > 0)] = BOX + 1
+    parts = room.replace(cloud=room.cloud.replace(group=halves))
+    gone = room.cloud.group == BOX
+    one, two = (filled(s, s.replace(cloud=s.cloud[~gone]))[0].cloud for s in (room, parts))
+    assert one.digest() == two.digest()
+
+
+@pytest.mark.slow
+def test_fill_of_a_fill_ten_times_does_not_drift(room: Scene) -> None:
+    """A box put back ten times onto what its deletion made, and deleted again: rows and picture stay."""
+    box = room.cloud[room.cloud.group == BOX]
+    done = _delete(room).scene
+    first, count = render(done.cloud, VIEW).rgb, len(done.cloud)
+    for _ in range(10):
+        back = box.replace(ids=torch.arange(len(box)) + int(done.cloud.ids.max()) + 1)
+        done = _delete(done.replace(cloud=concat([done.cloud, back]))).scene
+    assert len(done.cloud) == count
+    assert float((render(done.cloud, VIEW).rgb - first).abs().max()) < 1e-3
+
+
 # ---- contact shadows: taken off where a thing stood, put on where it stands; patterns are left
 
 CONTEXT = Context(VIEW, resolver=_found)

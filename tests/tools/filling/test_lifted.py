@@ -100,6 +100,19 @@ def test_a_second_fill_adds_next_to_nothing(hole: tuple[Scene, GaussianCloud, Ga
     assert len(again) <= 0.03 * len(first)
 
 
+@pytest.mark.slow
+def test_ten_fills_add_no_more_than_one_leaves(hole: tuple[Scene, GaussianCloud, GaussianCloud]) -> None:
+    scene, ball, _ = hole
+    counts, pictures = [], []
+    for _ in range(10):
+        new = merged(scene, patches_behind(scene, ball))
+        scene = scene.replace(cloud=concat([scene.cloud, new]))
+        counts.append(len(new))
+        pictures.append(render(scene.cloud, EYES[1]).rgb)
+    assert sum(counts[1:]) <= 0.05 * counts[0] and counts[-1] == 0
+    assert float((pictures[-1] - pictures[0]).abs().mean()) < 2e-3
+
+
 def test_without_anything_behind_it_nothing_is_made() -> None:
     """A ball in the air that only ground far below it goes with."""
     ball = _ball()

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -72,6 +73,13 @@ class Hole:
     reason: str = ""
 
 
+class _Told(NamedTuple):
+    """The coefficients of a colour, and the groups of mirrors and windows."""
+
+    bands: int
+    glass: frozenset[int]
+
+
 def holes_filled(cloud: GaussianCloud, place: Place, glass: frozenset[int] = frozenset()) -> list[Hole]:
     """The holes that views of a place show, each filled or with the reason why it stays; those that stay once.
 
@@ -85,7 +93,7 @@ def holes_filled(cloud: GaussianCloud, place: Place, glass: frozenset[int] = fro
         open_ = view.open_pixels()
         if not open_.any():
             continue
-        made = _filled(view, k, open_, place.witnesses, (cloud.sh.shape[1], glass))
+        made = _filled(view, k, open_, place.witnesses, _Told(cloud.sh.shape[1], glass))
         found += [h for h in made if not h.reason]
         for hole in (h for h in made if h.reason):  # every view tells of the same place
             left[hole.reason] = max(left.get(hole.reason, hole), hole, key=lambda h: h.area)
@@ -104,14 +112,8 @@ def _joined(cloud: GaussianCloud, new: Sequence[GaussianCloud]) -> GaussianCloud
     return concat([cloud, *numbered])
 
 
-def _filled(
-    view: View, index: int, open_: Mask, witnesses: Sequence[View], told: tuple[int, frozenset[int]]
-) -> list[Hole]:
-    """The holes of one view.
-
-    Args:
-        told: the coefficients of a colour, and the groups of mirrors and windows.
-    """
+def _filled(view: View, index: int, open_: Mask, witnesses: Sequence[View], told: _Told) -> list[Hole]:
+    """The holes of one view."""
     bands, glass = told
     behind = ~open_ & ~view.before & ((view.covers < 0.02) | (view.alpha > 0.5))
     known = behind & view.solid & ~ndimage.binary_dilation(open_, np.ones((3, 3)))
@@ -120,7 +122,9 @@ def _filled(
     for k in range(1, count + 1):
         hole = np.asarray(area == k)
         hole |= ndimage.binary_dilation(hole, np.ones((3, 3))) & (view.covers > 0.0) & ~view.before & (area == 0)
-        ring = ndimage.binary_dilation(hole, iterations=4) & ~ndimage.binary_dilation(hole, iterations=2) & ~open_
+        # Between a hole and what was clear of the thing there may be pixels of both.
+        wide = ndimage.binary_propagation(hole, mask=hole | (~open_ & ~known & ~view.before & (view.covers > 0.0)))
+        ring = ndimage.binary_dilation(wide, iterations=4) & ~ndimage.binary_dilation(wide, iterations=2) & ~open_
         ring &= ~view.before
         support = float((ring & known).sum()) / max(int(ring.sum()), 1)
         reason = _refusal(view, ring & known, support, glass)

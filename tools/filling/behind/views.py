@@ -20,7 +20,8 @@ from ..planes import F64, Mask
 from ..smooth import harmonic
 
 MOST_VIEWS = 6
-_WITNESSES, _SMALL = 14, 160  # photographs that tell what was seen, and pixels along their longer side
+_WITNESSES, _SMALL = 24, 160  # photographs that tell what was seen, and pixels along their longer side
+_UNHIDDEN, _PAST, _SEVERAL = 0.2, 1.02, 3  # share of the thing in a pixel, part of the depth shown there, photographs
 _GLOSS = 6  # photographs over which colours are averaged
 _FEW = 3  # photographs that look at the place, below which viewpoints around it are added
 _SIDE = 72  # pixels along the longer side of the thing in a view
@@ -104,8 +105,8 @@ class Place:
 
     Attributes:
         views: of it, that from the middle of all first, then each as far as may be from the others.
-        witnesses: views of the whole scene, with the thing, that tell what was seen: photographs from all around,
-            or the same views where there are none.
+        witnesses: views of the whole scene, with the thing, that tell what was seen, or the same views where there are
+            no photographs.
     """
 
     views: tuple[View, ...]
@@ -113,7 +114,12 @@ class Place:
 
 
 def place_of(
-    cloud: GaussianCloud, thing: GaussianCloud, corners: tuple[F64, F64], cameras: Sequence[Camera], up: F64
+    cloud: GaussianCloud,
+    thing: GaussianCloud,
+    corners: tuple[F64, F64],
+    cameras: Sequence[Camera],
+    up: F64,
+    witnesses: Sequence[View] = (),
 ) -> Place:
     """Views of the place of a thing.
 
@@ -121,6 +127,7 @@ def place_of(
         cloud: the scene without the thing.
         corners: of the thing, `[3]` each.
         cameras: of the photographs.
+        witnesses: see `witnesses_of`.
     """
     low, high = corners
     box = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
@@ -139,8 +146,29 @@ def place_of(
     views = views[: 2 * MOST_VIEWS]
     if not any(v.open_pixels().any() for v in views):
         return Place((), ())
-    witnesses = tuple(_witness(labelled, c) for c in _spread(cameras)) if chosen else ()
-    return Place(tuple(views), witnesses or tuple(views))
+    return Place(tuple(views), tuple(witnesses) or tuple(views))
+
+
+def witnesses_of(cloud: GaussianCloud, thing: GaussianCloud, cameras: Sequence[Camera]) -> list[View]:
+    """What photographs from all around show of a scene with a thing, small; empty without photographs.
+
+    Args:
+        cloud: the scene without the thing.
+    """
+    labelled = _labelled(cloud, thing)
+    return [_witness(labelled, c) for c in _spread(cameras)]
+
+
+def seen_past(points: F64, witnesses: Sequence[View]) -> Mask:
+    """Which points `[M, 3]` several photographs saw: what is there is known, or that nothing is."""
+    count = np.zeros(len(points), np.int64)
+    for view in witnesses:
+        at, away = view.camera.project(points)
+        inside = view.camera.contains(at, away)
+        x, y = (np.clip(np.floor(at[:, k]).astype(int), 0, view.alpha.shape[1 - k] - 1) for k in (0, 1))
+        clear = (view.covers[y, x] < _UNHIDDEN) & (view.alpha[y, x] > 0.5)
+        count += inside & clear & (away < _PAST * view.depth[y, x])
+    return np.asarray(count >= _SEVERAL)
 
 
 def without_gloss(cloud: GaussianCloud, cameras: Sequence[Camera]) -> GaussianCloud:
@@ -159,6 +187,8 @@ def without_gloss(cloud: GaussianCloud, cameras: Sequence[Camera]) -> GaussianCl
 
 def _spread(cameras: Sequence[Camera]) -> list[Camera]:
     """At most `_WITNESSES` of some cameras, as far apart as may be."""
+    if not cameras:
+        return []
     eyes = np.array([c.position for c in cameras])
     chosen = [0]
     while len(chosen) < min(_WITNESSES, len(cameras)):
