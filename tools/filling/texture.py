@@ -19,6 +19,7 @@ from .smooth import F64, Mask, averaged, harmonic
 Scalar = TypeVar("Scalar", bound=np.generic)
 SHIFTS = 48  # shifts that are tried in each cell
 _WIDE = 0.15  # of the picture's shorter side: standard deviation of the low-pass that tells shading from texture
+_CUT = 2.5  # standard deviations at which the border near a cell ends
 _MOST = 6  # shifts that are used in one hole
 _PATCHED = 1.5  # how much worse a shift may meet the border that reaches all of the hole at once
 _APART = 2  # cells between two shifts that are tried
@@ -140,8 +141,8 @@ def _price(detail: F64, known: Mask, hole: Mask, border: Mask, shift: tuple[int,
     valid = moved(known, *shift)
     both = border & valid
     wrong = ((detail - moved(detail, *shift)) ** 2).mean(axis=2) * both
-    near = ndimage.gaussian_filter(wrong, width, mode="constant")
-    share = ndimage.gaussian_filter(both.astype(np.float64), width, mode="constant")
+    near = ndimage.gaussian_filter(wrong, width, mode="constant", truncate=_CUT)
+    share = ndimage.gaussian_filter(both.astype(np.float64), width, mode="constant", truncate=_CUT)
     # A shift that only a few border cells speak for is worth less.
     return np.where(hole & valid, (near + 1e-5) / np.maximum(share, 1e-9), np.inf)
 

@@ -20,7 +20,7 @@ from ..planes import F64, Mask
 from ..smooth import harmonic
 
 MOST_VIEWS = 6
-_WITNESSES, _SMALL = 24, 160  # photographs that tell what was seen, and pixels along their longer side
+_WITNESSES, _SMALL = 16, 160  # photographs that tell what was seen, and pixels along their longer side
 _UNHIDDEN, _PAST, _SEVERAL = 0.2, 1.02, 3  # share of the thing in a pixel, part of the depth shown there, photographs
 _GLOSS = 6  # photographs over which colours are averaged
 _FEW = 3  # photographs that look at the place, below which viewpoints around it are added
