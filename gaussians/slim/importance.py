@@ -8,6 +8,7 @@ pass per view, from a picture v of random signs: `(sum_p v_p d_p)^2` has the mea
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -23,8 +24,8 @@ from .views import View
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
-ROUND_SHARE = 0.8  # of the Gaussians kept from one round of the ranking to the next
-LAST_SHARE = 0.06  # of all Gaussians, at which the ranking ends
+ROUND_SHARE = 0.9  # of the Gaussians kept from one round of the ranking to the next
+RANKED_SHARE = 0.2  # of all Gaussians, at which the rounds end
 SEED = 16
 
 Progress = Callable[[str, float], None]
@@ -93,22 +94,25 @@ _SLOPES = ("means", "log_means", "log_scales", "quats", "opacities", "sh")
 def rank(cloud: GaussianCloud, views: Sequence[View], progress: Progress | None = None) -> tuple[I64, Importance]:
     """Rows `[N]` of a cloud in the order in which they should be kept, and the importance in the whole cloud.
 
-    In rounds, the least important fifth is left out and the rest is measured again: where one of two Gaussians that
-    show the same is gone, the other has become important.
+    In rounds, the least important tenth is left out and the rest is measured again, by one half of the views and then
+    by the other: where one of two Gaussians that show the same is gone, the other has become important. Leaving out a
+    fifth in a round loses 2.5 to 4 dB more on a capture that has few Gaussians to spare.
     """
     whole = measure(cloud, views)
-    rows, score, last = np.arange(len(cloud)), whole.removal, list[I64]()
-    target = max(1, round(LAST_SHARE * len(cloud)))
-    rounds = max(1, int(np.ceil(np.log(target / max(len(cloud), 1)) / np.log(ROUND_SHARE))))
-    for number in range(1, rounds + 1):
-        order = np.argsort(-score, kind="stable")
+    rows, last = np.arange(len(cloud)), list[I64]()
+    halves = [whole.removal / 2, whole.removal / 2]
+    target = max(1, round(RANKED_SHARE * len(cloud)))
+    rounds = max(1, math.ceil(math.log(target / max(len(cloud), 1)) / math.log(ROUND_SHARE)))
+    for number in range(rounds):
+        order = np.argsort(-(halves[0] + halves[1])[rows], kind="stable")
         kept = max(target, round(ROUND_SHARE * len(rows)))
         last.append(rows[order[kept:]])
         rows = np.sort(rows[order[:kept]])
         if progress:
-            progress("ranking", number / rounds)
-        score = measure(cloud[torch.from_numpy(rows)], views, SEED + number).removal
-    last.append(rows[np.argsort(-score, kind="stable")])
+            progress("ranking", (number + 1) / rounds)
+        half = views[number % 2 :: 2] or views
+        halves[number % 2][rows] = measure(cloud[torch.from_numpy(rows)], half, SEED + number + 1).removal
+    last.append(rows[np.argsort(-(halves[0] + halves[1])[rows], kind="stable")])
     return np.concatenate(last[::-1]), whole
 
 

@@ -11,7 +11,7 @@ from ..errors import CheckFailedError
 from ..files.formats.morton import morton_sorted
 from ..scene import Scene
 from .encoding import Files
-from .importance import LAST_SHARE, Progress
+from .importance import Progress
 from .loss import Loss
 from .optimise import Course
 from .preparing import Prepared, Settings
@@ -19,6 +19,7 @@ from .reductions import Reducer, Strength
 
 CLOSE = 0.04  # dB above the target at which a number of Gaussians counts as found
 FINE = 1.005  # ratio of two numbers of Gaussians between which no further one is tried
+LEAST_SHARE = 0.02  # of the Gaussians, below which no number is tried
 TRIES = 9  # numbers of Gaussians tried for one setting
 EXPECTED = 25  # tries in all, for the progress
 SLOPE = 18.0  # dB gained by e times as many Gaussians, as far as nothing is known: 13 to 23 on captures
@@ -201,7 +202,7 @@ class Search:
     def _next(self, above: Found | None, below: Found | None, target: float) -> int | None:
         """The next number of Gaussians to try; None if there is none between those that were tried."""
         count = len(self.scene.cloud)
-        least = min(count, max(self.reducer.least, round(LAST_SHARE * count)))
+        least = min(count, max(self.reducer.least, round(LEAST_SHARE * count)))
         if above is None:
             assert below is not None
             if below.strength.count >= count:
