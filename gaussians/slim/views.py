@@ -28,6 +28,7 @@ MOST_RANKED = 120  # views that Gaussians are ranked by
 TRAINED = 6  # moved copies of each chosen view that what is left is optimised by
 MOVED = 0.12  # of the distance to what a view shows, by which its copies are moved
 TURNED = 6.0  # degrees by which they are turned
+FARTHER = 2.5  # times as far are the copies moved that only train
 BLACK: Vec3 = (0.0, 0.0, 0.0)
 WHITE: Vec3 = (1.0, 1.0, 1.0)
 SEED = 16
@@ -121,12 +122,13 @@ def _twins(scene: Scene, cameras: Sequence[Camera]) -> list[Camera]:
     """`TRAINED` copies of each camera, moved and turned at random by a little: first one of each, then the next."""
     rng, found = np.random.default_rng(SEED), list[Camera]()
     distances = [_distance(scene, camera) for camera in cameras]
-    for _ in range(TRAINED):
+    for number in range(TRAINED):
+        far = 1.0 if number < TWINS else FARTHER
         for camera, distance in zip(cameras, distances, strict=True):
-            turn = np.radians(TURNED) * rng.normal(size=3) / np.sqrt(3)
+            turn = far * np.radians(TURNED) * rng.normal(size=3) / np.sqrt(3)
             pose = np.eye(4)
             pose[:3, :3] = _rotation(turn) @ camera.world_to_camera[:3, :3]
-            eye = camera.position + MOVED * distance * rng.normal(size=3) / np.sqrt(3)
+            eye = camera.position + far * MOVED * distance * rng.normal(size=3) / np.sqrt(3)
             pose[:3, 3] = -pose[:3, :3] @ eye
             twin = Camera(
                 pose, camera.fx, camera.fy, camera.cx, camera.cy, camera.width, camera.height, f"{camera.name} moved"
