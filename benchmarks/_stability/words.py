@@ -23,6 +23,7 @@ from .ground import Ground
 
 FILE = Path(__file__).with_name("paraphrases.json")
 SEED = 1609
+_KEYS = ("qwertyuiop", "asdfghjkl", "zxcvbnm")
 # Two clauses in both orders; each order must do the same to the same things.
 CLAUSES = (
     ("delete the rug and paint the sofa red", "paint the sofa red and delete the rug"),
@@ -150,8 +151,15 @@ def _alike(name: str, pairs: Sequence[tuple[str, tuple[str, str]]]) -> Row:
     return Row(name, 1.0, levels, "share the same", len(pairs))
 
 
+def _beside(letter: str) -> str:
+    """The letters on the keys beside a letter's, in its row."""
+    row = next((row for row in _KEYS if letter in row), letter)
+    at = row.index(letter)
+    return row[max(at - 1, 0) : at] + row[at + 1 : at + 2] or letter
+
+
 def mistyped(text: str, count: int, seed: int) -> str:
-    """The text with some words mistyped: a letter left out, doubled, exchanged with its neighbour or another one."""
+    """The text with some words mistyped: a letter left out, doubled, exchanged with its neighbour, or one key aside."""
     chance = random.Random(f"{SEED} {text} {seed}")
     words = text.split()
     long = [i for i, word in enumerate(words) if len(word) >= 4 and word.isalpha()]
@@ -161,7 +169,7 @@ def mistyped(text: str, count: int, seed: int) -> str:
             word[:at] + word[at + 1 :],
             word[:at] + word[at] + word[at:],
             word[:at] + word[at + 1] + word[at] + word[at + 2 :],
-            word[:at] + chance.choice("aeioustrn") + word[at + 1 :],
+            word[:at] + chance.choice(_beside(word[at])) + word[at + 1 :],
         ))  # fmt: skip
     return " ".join(words)
 

@@ -42,6 +42,18 @@ def likely_slips(text: str, words: Collection[str]) -> frozenset[str]:
     return frozenset(w for w in one_slip(text, words) if _is_exchange(text, w) or _is_likely(text, w))
 
 
+def best_slip(text: str, words: Collection[str]) -> str:
+    """The one word one typing error away that `text` most probably is: an exchange of letters before a slip of the
+    keyboard, and that before any wrong letter but the first. "" if there is none, or several are as probable.
+
+    Only for a text that says nothing as it stands: an unknown word that is spelt right is taken for another one.
+    """
+    near = [w for w in one_slip(text, words) if w[0] == text[0] or _is_exchange(text, w)]
+    ranks = {w: 0 if _is_exchange(text, w) else 1 if _is_likely(text, w) else 2 for w in near}
+    best = [w for w in near if ranks[w] == min(ranks.values())]
+    return best[0] if len(best) == 1 else ""
+
+
 def _is_likely(text: str, word: str) -> bool:
     if len(text) <= SHORTEST or text[0] != word[0]:
         return False

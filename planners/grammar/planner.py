@@ -27,11 +27,12 @@ from .reader import Reader
 from .restating.changes.filling import Heard, heard
 from .restating.changes.likenesses import with_likenesses, with_photo
 from .restating.changes.shadows import ShadowsHeard, shadows_heard
+from .restating.order.sequence import in_order
 from .restating.speech.remarks import is_remark
 from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
-from .tagging.words import clean, split, without_owners
+from .tagging.words import Word, clean, split, without_owners
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
 
@@ -159,11 +160,20 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     if said.requests or said.leave or said.anyway:
         return _with_holes(said, previous)
     cleaned, file = with_photo(cleaned)
-    words, remarks = correct_spelling(smoothed(with_likenesses(without_owners(split(cleaned)))))
+    words, remarks = correct_spelling(smoothed(with_likenesses(in_order(without_owners(split(cleaned))))))
     before = _understand_previous(previous)
-    phrases = Phrases(before.antecedent, before.again, before.colors)
-    reader = Reader(phrases, cleaned, previous is not None)
-    ops = _without_repeats(_complete_halves(reader.read(words)))
+    try:
+        ops, phrases, reader = _read(words, before, cleaned, previous is not None)
+    except Refusal as refusal:
+        again, told = correct_spelling(words, freely=True)
+        if refusal.verdict != "not_understood" or refusal.firm or not told:
+            raise
+        try:
+            ops, phrases, reader = _read(again, before, cleaned, previous is not None)
+        except Refusal:
+            raise refusal from None
+        remarks = (*remarks, *told)
+    ops = _without_repeats(_complete_halves(ops))
     ops = [{**op, "reference": file} if file and op.get("reference") else op for op in ops]
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
@@ -175,6 +185,17 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         phrases.colors,
         not reader.restated,
     )
+
+
+def _read(words: Sequence[Word], before: _Outcome, cleaned: str, follows: bool) -> tuple[list[Fields], Phrases, Reader]:
+    """The operations of an instruction, what its words may refer to afterwards, and how it was read.
+
+    Raises:
+        Refusal: any part of it is not understood, or none of it is an edit.
+    """
+    phrases = Phrases(before.antecedent, before.again, before.colors)
+    reader = Reader(phrases, cleaned, follows)
+    return reader.read(words), phrases, reader
 
 
 def _with_holes(said: Heard, previous: str | None) -> _Outcome:

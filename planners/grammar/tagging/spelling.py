@@ -13,7 +13,7 @@ from ....gaussians import color as colors
 from ....gaussians.language.encoders.vocabulary import Vocabulary
 from ....gaussians.world import kinds
 from ....gaussians.world.lengths import UNITS
-from ....gaussians.world.spelling import SHORTEST, likely_slips
+from ....gaussians.world.spelling import SHORTEST, best_slip, likely_slips
 from ....gaussians.world.words import normalise, plural
 from ..vocabulary import doings, lexicon, nouns, quantities
 from .words import Word, bag
@@ -40,12 +40,17 @@ _CORRECT_WORDS = bag(
 )
 
 
-def correct_spelling(words: Sequence[Word]) -> tuple[tuple[Word, ...], tuple[str, ...]]:
-    """The words with typing errors corrected, and one remark for each correction."""
+def correct_spelling(words: Sequence[Word], freely: bool = False) -> tuple[tuple[Word, ...], tuple[str, ...]]:
+    """The words with typing errors corrected, and one remark for each correction.
+
+    Args:
+        freely: for an instruction that is not understood as it stands: also correct less probable errors, and words in
+            the place of a noun that are one error away from a word of the closed vocabulary.
+    """
     texts = [w.text for w in words]
     fixed, told = [], []
     for i, word in enumerate(words):
-        meant = _correction(texts, i)
+        meant = _correction(texts, i) or (_free_correction(texts, i) if freely else "")
         if meant:
             told.append(f"read “{word.text}” as {meant}")
         fixed.append(Word(meant or word.text, word.start, word.end))
@@ -62,6 +67,15 @@ def _correction(texts: Sequence[str], i: int) -> str:
     if len({UNITS.get(w, w) for w in near}) == 1:
         return min(near)  # "metrs": metres or meters
     return ""
+
+
+def _free_correction(texts: Sequence[str], i: int) -> str:
+    """The most probable word of the closed vocabulary for an unknown word; a verb where one is expected."""
+    text = texts[i]
+    if text in _known_words():
+        return ""
+    near = best_slip(text, _verbs() if _verb_expected(texts, i) else _closed_words())
+    return "" if near and text.startswith(near) else near
 
 
 def _verb_expected(texts: Sequence[str], i: int) -> bool:

@@ -21,6 +21,13 @@ MAX_WORDS = 200
 _QUOTES = str.maketrans(
     {"‘": "'", "’": "'", "ʼ": "'", "`": "'", "´": "'", "“": '"', "”": '"', "„": '"', "…": ".", "−": "-"}
 )
+# Marks of Markdown and of chats around words: "**delete the rug**", "- delete the rug", "1) delete the rug", "`rug`".
+_MARKUP = re.compile(
+    r"(?<!\S)[:;]-?[)(DP](?!\S)|(?<!\w)(?:[*_~]{1,3}|`{1,3})(?=[\w\"'])"
+    r"|(?<=[\w.!?,;\"'%°)])(?:[*_~]{1,3}|`{1,3})(?!\w)"
+)
+_ITEM = re.compile(r"(?:^|[.;!?,]*\s*\n)[ \t]*(?:[-*+•>]|#{1,6}|\d{1,2}[.)])[ \t]+")
+_SIGNS = "°℃℉"  # of the symbols that are no words these say something
 _VULGAR = {"½": 0.5, "¼": 0.25, "¾": 0.75, "⅓": 1 / 3, "⅔": 2 / 3, "⅛": 0.125}
 _VULGAR_FORM = re.compile(rf"([0-9]{{0,4}})\s?([{''.join(_VULGAR)}])")
 _CONTRACTIONS = {
@@ -93,7 +100,7 @@ class Word:
 
 
 def clean(text: str) -> str:
-    """`text` without control characters and with plain quotes, fractions and spaces; case is kept.
+    """`text` without control characters, emoji and Markdown and with plain quotes, fractions and spaces; case is kept.
 
     Raises:
         UserError: it is longer than `MAX_CHARS`.
@@ -101,8 +108,16 @@ def clean(text: str) -> str:
     if len(text) > MAX_CHARS:
         raise UserError(f"the instruction has {len(text)} characters, at most {MAX_CHARS} are read; say it in parts")
     text = _VULGAR_FORM.sub(lambda m: f" {int(m.group(1) or 0) + _VULGAR[m.group(2)]:.12g} ", text)
-    text = unicodedata.normalize("NFKC", text).translate(_QUOTES)
-    return "".join(c if c == "\n" or c.isprintable() else " " for c in text).strip()
+    text = _ITEM.sub(lambda m: ". " if m.start() else "", unicodedata.normalize("NFKC", text).strip())
+    text = _MARKUP.sub("", text).translate(_QUOTES)
+    return "".join(" " if _says_nothing(c) else c for c in text).strip()
+
+
+def _says_nothing(c: str) -> bool:
+    """Whether a character is none of a text: control characters, emoji and what joins or tints them."""
+    if c == "\n" or (c.isascii() and c.isprintable()) or c in _SIGNS:
+        return False
+    return not c.isprintable() or unicodedata.category(c) in ("So", "Sk") or "\ufe00" <= c <= "\ufe0f"
 
 
 def without_owners(words: Sequence[Word]) -> tuple[Word, ...]:

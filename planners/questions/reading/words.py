@@ -7,6 +7,7 @@ window". Marks between clauses become commas, and "in this bedroom" becomes "in 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 from ....gaussians.errors import UserError
 from ...grammar.tagging.words import bag, clean, split
@@ -122,11 +123,29 @@ _CONTRACTED = {
 _HAVE_IS = re.compile(
     r"\b(what|where|which|who|how|when|colou?r|that|there|one|anything|something|somebody|everything|it) 's\b"
 )
+
+
+def _comparative(found: re.Match[str]) -> str:
+    """ "more tall" as "taller"."""
+    word = found[1]
+    doubled = word[-1] if word in ("big",) else ""
+    return f"{word.removesuffix('e')}{doubled}er" if not word.endswith("y") else f"{word[:-1]}ier"
+
+
 # Parts that only repeat or restrict what a question says.
-_REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
+_REORDERED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
         (r"\bwhich hand\b", "which side"),
+        (r"^how much (?=\w+(?: \w+)?(?<!s)s (?:are|have|do|can|stand|hang|lie)\b)", "how many "),
+        (r"^(?:exists?|existing) (?=(?:there )?(?:a|an|any|some)\b)(?:there )?", "is there "),
+        (
+            r"^(?!.*\b(?:is|are|was|were|who|what|how|which|where|list|name)\b)(?:a |an |any )?"
+            r"(\w+(?: \w+)?) (?:present|available)$",
+            r"is there a \1",
+        ),
+        (r"^who is (?=(?:more )?\w+ ?,? )(?=[^?]*\bor\b)", "which is "),
+        (r"\bmore (tall|high|wide|big|small|large|short|long|deep|near|close|heavy|low)\b", _comparative),
         (
             r"^(?:seen |viewed |looking )?from (?:my (?:viewpoint|point of view|side|position|spot)|(?:the spot )?"
             r"where (?:i|the viewer|the visitor) (?:look|looks|stand|stands)(?: in)?)(?: outside)? , ",

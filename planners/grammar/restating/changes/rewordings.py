@@ -280,5 +280,25 @@ REWORDED = tuple(
             r"inside|behind)",
             r"put \g<x> \g<p>",
         ),
+        (r"with the (?:sole |only )?exceptions? of", "except"),
+        (r"\+(?= [a-z])", "and"),
+        (r"please to(?= [a-z])", "please"),
+        (r"like(?= (?:twice|half|really|way|totally|super|a (?:bit|lot|little)) )", ""),
+        (r"the (?:object|item|thing)s? (?:known as|called|named) (?=the |my |our )", ""),
+        (r"the following (?:objects|items|things)(?: ,)? :", ""),
+        (
+            r"(?:create|make|produce|generate) (?:(?:an?|one|me|us|another) )*(?:(?:exact|identical|perfect|second) )?"
+            r"(?:copy|duplicate|clone|replica|twin) (?:of|from)",
+            "duplicate",
+        ),
+        (
+            r"(?P<x>(?:the|this|that|my|our) [^,.;!?]+?) (?:should|must|shall|is to|has to|needs to|ought to) "
+            r"(?:also )?be (?:duplicated|copied|cloned)",
+            r"duplicate \g<x>",
+        ),
+        (
+            r"apply an? (?:rotation|turn) of (?P<n>[^,.;!?]+?) to (?P<x>(?:the|this|that|my|our) [^,.;!?]+)",
+            r"rotate \g<x> by \g<n>",
+        ),
     )
 )
