@@ -31,7 +31,7 @@ from .node import Drawn, NodeId
 _SHELL = 170_000  # Gaussians that floor, walls and ceiling may have with their materials
 _FINEST = 4  # parts along a side into which one of them is divided
 _SHARP = 0.6  # of a texture's finest feature: standard deviation that parts have at most, where they may
-_THINGS, _EACH = 60_000, 9_000  # Gaussians that things may add, together and each
+_THINGS, _EACH = 36_000, 6_000  # Gaussians that things may add, together and each
 COMPOSED_COVER = 0.68  # standard deviation of a shell's Gaussians over the length of a cell, see `build`
 # Metres of what repeats on floors and walls, where patterns are broader than on cloth.
 _BROAD: dict[str, float] = {"checks": 0.7, "dots": 0.2, "stripes": 0.2, "floral": 0.5, "ornament": 0.5, "stars": 0.5}

@@ -6,6 +6,7 @@ import pytest
 import torch
 
 from scenewright.gaussians.color import rgb_to_lab
+from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.harmonics import dc_to_color
 from scenewright.gaussians.scene import Scene
 from scenewright.gaussians.world.finishes import Described, described
@@ -16,6 +17,9 @@ from scenewright.planners.compose.sentence.read import read
 from scenewright.planners.compose.surfaces import with_surfaces
 from scenewright.planners.rooms.build import construct
 from scenewright.planners.rooms.graph import SceneGraph
+from scenewright.tools.execute import carry_out
+from scenewright.tools.operation import Context
+from scenewright.tools.registry import parse
 
 
 @pytest.mark.parametrize(
@@ -113,3 +117,21 @@ def test_materials_become_pixels_and_the_room_stays_the_same() -> None:
 def test_words_that_name_no_material_are_told() -> None:
     graph = SceneGraph.model_validate({"room": {"size": [4, 3, 2.5], "floor": "something nice"}})
     assert "“something nice” is no material or colour" in " ".join(construct(graph, seed=1).notes)
+
+
+def test_a_style_dresses_what_it_has_materials_for_and_says_so() -> None:
+    graph = SceneGraph.model_validate(
+        {"room": {"size": [3, 3, 2.5]}, "nodes": [
+            {"id": 0, "label": "armchair", "size": [0.9, 0.9, 0.9], "position": [0, 0.9, 0.45]}]}
+    )  # fmt: skip
+    scene = construct(graph, seed=1).scene
+    context = Context(scene.cameras[0])
+    everything = {"text": "everything", "pick": "all"}
+    done = carry_out(scene, parse({"op": "restyle", "target": everything, "style": "industrial"}), context)
+    assert done.receipt.passed
+    assert "armchair: brown leather" in done.receipt.notes[0] and "wall: exposed brick" in done.receipt.notes[0]
+    assert float(lightness_and_hue(done.scene, "wall")[1]) > 15
+    with pytest.raises(UserError):
+        parse({"op": "restyle", "target": everything, "style": "zorblax"})
+    with pytest.raises(UserError, match="stands alone"):
+        parse({"op": "restyle", "target": everything, "style": "rustic", "material": "wood"})

@@ -15,6 +15,7 @@ from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.errors import InstructionError
+from ...gaussians.language.field.measure import Sample
 from ...gaussians.scene import Scene
 from ..color_map import LUMA
 from ..coloring.scene_light import light_around, scene_light
@@ -90,7 +91,9 @@ def _light(scene: Scene, rows: Tensor, seen_rgb: NDArray[np.float64]) -> NDArray
     luma = torch.tensor(LUMA, dtype=torch.float64)
     lit = lit_color(seen_colors(scene, rows))
     white = torch.tensor(light_around(scene.cloud, rows, scene_light(scene.cloud), float(lit @ luma)).white)
-    side = float((torch.from_numpy(seen_rgb) @ luma).mean()) if len(seen_rgb) else 1.0
+    count = max(1, len(seen_rgb))
+    shown = Sample(torch.from_numpy(seen_rgb), torch.full((len(seen_rgb),), 1 / count, dtype=torch.float64))
+    side = float(lit_color(shown) @ luma) if len(seen_rgb) else 1.0
     shade = float(np.clip(side / max(float(lit @ luma), 1e-3), 1 / _BRIGHTER, 1.0))
     return np.maximum(white.double().numpy() * shade, 0.05)
 
