@@ -20,6 +20,7 @@ from ...gaussians.world import kinds
 from ...tools.operation import EditOp
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
+from .lighting.splitting import Part, may_be_light, parts_of
 from .meaning.changes import Fields
 from .meaning.phrases import Phrases
 from .parsing import Refusal
@@ -156,6 +157,8 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if (shadows := shadows_heard(cleaned)) is not None:
         return _with_shadows(shadows, previous)
+    if may_be_light(cleaned) and (parts := _lit(cleaned, previous)) is not None:
+        return _with_light(parts, previous)
     said = heard(cleaned)
     if said.requests or said.leave or said.anyway:
         return _with_holes(said, previous)
@@ -196,6 +199,47 @@ def _read(words: Sequence[Word], before: _Outcome, cleaned: str, follows: bool) 
     phrases = Phrases(before.antecedent, before.again, before.colors)
     reader = Reader(phrases, cleaned, follows)
     return reader.read(words), phrases, reader
+
+
+def _lit(cleaned: str, previous: str | None) -> list[Part] | None:
+    """The parts of an instruction that says something of light, None for others."""
+    before = _understand_previous(previous)
+    lit = bool(before.ops) and before.ops[-1]["op"] == "relight"
+    return parts_of(cleaned, lit, previous is None, _thing)
+
+
+def _thing(phrase: str) -> Query | None:
+    """What a phrase for things means, None if it is not understood."""
+    with suppress(Refusal, UserError):
+        (op,) = _understand(f"select {phrase}", None).ops
+        target: Query = op["target"]
+        return target
+    return None
+
+
+def _with_light(parts: Sequence[Part], previous: str | None) -> _Outcome:
+    """An instruction of which some parts are about light.
+
+    Raises:
+        Refusal: as `_understand`, of the other parts.
+    """
+    outcome, before = _Outcome((), ""), previous
+    ops: list[dict[str, Any]] = []
+    for part in parts:
+        if part.fields is not None:
+            ops.append({"op": "relight", "target": part.target, **part.fields})
+            outcome = replace(outcome, antecedent=part.target.text, colors=())
+        else:
+            try:
+                found = _understand(part.text, before)
+            except Refusal as refusal:
+                if refusal.verdict == "not_an_edit" and str(refusal) == STATEMENT:
+                    continue  # "We have guests. Make it cosy in here."
+                raise
+            ops += found.ops
+            outcome = replace(found, remarks=(*outcome.remarks, *found.remarks), plainly=outcome.plainly)
+        before = part.text
+    return replace(outcome, ops=tuple(ops), again=tuple(ops[-1:]))
 
 
 def _with_holes(said: Heard, previous: str | None) -> _Outcome:

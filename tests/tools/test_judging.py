@@ -33,6 +33,8 @@ CLEAN: list[Json] = [
     {"op": "recolor", "target": A_CHAIR, "adjust": "darker"},
     {"op": "recolor", "target": A_CHAIR, "adjust": "toward", "color": "red"},
     {"op": "restyle", "target": A_CHAIR, "material": "marble"},
+    {"op": "relight", "target": A_CHAIR, "exposure": 1.3},
+    {"op": "relight", "target": A_CHAIR, "mood": "evening"},
     {"op": "opacity", "target": A_CHAIR, "value": 0.4},
     {"op": "move", "target": A_CHAIR, "direction": "left", "distance": {"value": 30, "unit": "cm"}},
     {"op": "move", "target": A_CHAIR, "toward": {"text": "table"}, "distance": {"value": 20, "unit": "cm"}},

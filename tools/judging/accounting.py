@@ -16,6 +16,7 @@ _WAYS: dict[str, frozenset[str]] = {
     "isolate": frozenset({"gone"}),
     "replace": frozenset({"gone"}),
     "recolor": frozenset({"colored"}),
+    "relight": frozenset({"colored"}),
     "restyle": frozenset({"colored", "gone"}),  # large Gaussians become several small ones
     "opacity": frozenset({"faded"}),
     "move": frozenset({"placed"}),

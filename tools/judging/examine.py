@@ -34,6 +34,7 @@ from ..ops.move import Move
 from ..ops.opacity import Opacity
 from ..ops.recolor import Recolor
 from ..ops.reframe import Reframe
+from ..ops.relight import Relight
 from ..ops.replace import Replace
 from ..ops.restyle import Restyle
 from ..ops.rotate import Rotate
@@ -42,7 +43,7 @@ from ..placement.bodies import bodies_of, contact_box, heading, mask_of_bodies
 from ..receipt import Check, at_least, at_most, report
 from . import appearance, hues, sizes, spots, standing
 from .accounting import all_of_it, only_as_asked
-from .case import Case
+from .case import Case, weight_of
 from .leftovers import left_behind
 
 _NO_IDS = torch.zeros(0, dtype=torch.int64)
@@ -53,6 +54,7 @@ _SIZE = 0.03  # error of a size ratio, and at most a third of the change that wa
 _DARKEST = 1 / 255  # display value of the brightest channel up to which there is no light
 _BRIGHTEST = 0.97  # display value of the brightest channel from which a colour may stay as it is
 _HUELESS = 1 / 255  # between the channels of a grey
+_SWITCHED = 1e-4  # display values by which a lamp that is switched changes itself, or a room with all of its lamps
 _PART = 0.05  # score of a colour that only parts of a new thing have
 _LEVEL = 0.03  # of its height, and at least 2 cm: by how much a copy of a thing that hangs may hang higher or lower
 
@@ -168,6 +170,44 @@ def _restyle(case: Case, op: Restyle) -> Found:
     if not op.whole and bool(target.any()):
         target[surfaces(case.before, case.meant).left] = False
     return [all_of_it(case, case.changes.colored | case.changes.gone, target)], _NO_IDS
+
+
+def _relight(case: Case, op: Relight) -> Found:
+    if op.lamps is not None:
+        return [_lamps_switched(case, op)], _NO_IDS
+    shown = dc_to_color(case.before.cloud.sh[:, 0])
+    target = case.free & (shown.amax(dim=1) > _DARKEST)
+    if op.exposure is not None and op.exposure > 1:  # white stays white
+        target = target & (shown.amax(dim=1) < _BRIGHTEST)
+    checks = [all_of_it(case, case.changes.colored, target)]
+    if op.mood is None and op.exposure is not None and op.exposure != 1:
+        rows = rows_where(case.changes.shaded)
+        checks.append(_exposed(case, op, rows if len(rows) else rows_where(case.target)))
+    return checks, _NO_IDS
+
+
+def _lamps_switched(case: Case, op: Relight) -> Check:
+    """What is meant became brighter, or darker, on average."""
+    rows = rows_where(case.target)
+    weight = weight_of(case.before.cloud, rows)
+    was, now = (
+        dc_to_color(cloud.sh[at, 0]).double().mean(dim=1)
+        for cloud, at in ((case.before.cloud, rows), (case.after.cloud, case.now(rows)))
+    )
+    whole = len(was) == len(now) and len(was) > 0
+    step = float((weight * (now - was)).sum() / weight.sum().clamp(min=1e-30)) if whole else -1.0
+    step = step if op.lamps == "on" or not whole else -step
+    return at_least("switched", step, _SWITCHED, "1", f"its display values moved by {step:.3f} as asked")
+
+
+def _exposed(case: Case, op: Relight, rows: Tensor) -> Check:
+    """The seen colour became brighter or darker, as asked."""
+    was = appearance.seen_lab(few_of(case.before.cloud, rows), case.before)
+    now = appearance.seen_lab(_after(case, rows), case.after)
+    if len(was) < 4 or len(now) < 4:
+        return report("seen to change", 0.0, "ΔE", "too few of its pixels are solid to see a colour")
+    step = float(now[:, 0].mean() - was[:, 0].mean()) * (1 if op.exposure is not None and op.exposure > 1 else -1)
+    return at_least("seen to change", step, 0.0, "ΔE", f"its seen lightness moved by {step:.1f} as asked")
 
 
 def _to_paint(case: Case, op: Recolor) -> Tensor:
@@ -469,6 +509,7 @@ _JUDGES: dict[type, Callable[[Case, Any], Found]] = {
     Delete: _delete,
     Isolate: _isolate,
     Recolor: _recolor,
+    Relight: _relight,
     Restyle: _restyle,
     Opacity: _opacity,
     Move: _move,
