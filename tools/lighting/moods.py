@@ -14,9 +14,10 @@ from ..color_map import LUMA
 from .light import Light
 from .whites import F64, NEUTRAL, balance, warmer_by
 
+# What operations may name; the others are for descriptions of rooms.
 MoodName = Literal[
-    "daylight", "sunny", "overcast", "golden hour", "sunrise", "dusk", "evening", "cosy", "warm", "candle light",
-    "dim", "night", "moonlight", "dramatic", "soft",
+    "daylight", "sunny", "overcast", "sunrise", "golden hour", "dusk", "evening", "cosy", "candle light", "night",
+    "moonlight",
 ]  # fmt: skip
 
 

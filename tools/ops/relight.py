@@ -17,6 +17,7 @@ from ...gaussians.errors import AbsentError
 from ...gaussians.language.query.query import ALL
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
+from ..alternatives import either, given
 from ..checks import count_matches
 from ..cloud_diff import rows_of
 from ..coloring.scene_light import scene_light
@@ -49,25 +50,25 @@ _WAYS = ("mood", "exposure", "kelvin", "warmth", "contrast", "side", "lamps")
 
 
 class Relight(TargetedOp):
-    """Change the light, not the paint: of the whole scene (target "everything", pick "all") or on one thing.
+    """Change the light on the target, or on "everything" (pick "all"), not its paint.
 
-    Give one or more of its fields. With `lamps` the target is the lamps, or everything for all the lights of a room.
+    Give at least one of its fields. With `lamps` the target is lamps, or everything for all the lights of a room.
     """
 
-    model_config = ConfigDict(json_schema_extra={"anyOf": [{"required": [name]} for name in _WAYS]})
+    model_config = ConfigDict(json_schema_extra=either(*({name: given()} for name in _WAYS)))
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "make the room a third brighter",
         {"op": "relight", "target": {"text": "everything", "pick": "all"}, "exposure": 1.333},
     )
     op: Literal["relight"] = "relight"
     mood: MoodName | None = None
-    exposure: Annotated[float, Field(ge=0.02, le=20, allow_inf_nan=False)] | None = None
+    exposure: Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)] | None = None
     """Times the light: 1.33 a third brighter, 0.5 half as bright."""
     kelvin: Annotated[float, Field(ge=WARMEST, le=COLDEST, allow_inf_nan=False)] | None = None
     """White point: 2700 a warm bulb, 6500 daylight."""
     warmth: Annotated[float, Field(ge=-1, le=1, allow_inf_nan=False)] | None = None
     """Warmer than now, or cooler (negative)."""
-    contrast: Annotated[float, Field(ge=0.3, le=2, allow_inf_nan=False)] | None = None
+    contrast: Annotated[float, Field(gt=0, le=2, allow_inf_nan=False)] | None = None
     """Above 1 harder, below 1 softer light."""
     side: Side | None = None
     """Where the light comes from, as the viewer sees it."""
@@ -79,8 +80,6 @@ class Relight(TargetedOp):
     def _something(self) -> Self:
         if all(getattr(self, name) is None for name in _WAYS):
             raise ValueError(f"relight needs one of {', '.join(_WAYS)}")
-        if self.kelvin is not None and self.warmth is not None:
-            raise ValueError("give either kelvin, or warmth relative to the light that is there")
         return self
 
     @property
@@ -147,7 +146,7 @@ class Relight(TargetedOp):
         new = mood.kelvin
         if self.kelvin is not None:
             new = self.kelvin
-        elif self.warmth is not None:
+        if self.warmth is not None:
             new = warmer_by(new or old, self.warmth * _MIREDS)
         exposure = mood.exposure * (self.exposure or 1.0)
         if self.lamps is not None and self.everywhere:
