@@ -14,7 +14,6 @@ from ..color_map import LUMA
 from .light import Light
 from .whites import F64, NEUTRAL, balance, warmer_by
 
-# What operations may name; the others are for descriptions of rooms.
 MoodName = Literal[
     "daylight", "sunny", "overcast", "sunrise", "golden hour", "dusk", "evening", "cosy", "candle light", "night",
     "moonlight",

@@ -17,7 +17,7 @@ from ...gaussians.errors import AbsentError
 from ...gaussians.language.query.query import ALL
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
-from ..alternatives import either, given
+from ..alternatives import Given, Keywords, either, given
 from ..checks import count_matches
 from ..cloud_diff import rows_of
 from ..coloring.scene_light import scene_light
@@ -47,6 +47,7 @@ _SAME = 2.0  # mireds by which a white point counts as neutral
 _BRIGHTER = 4.0  # times, at most, that a lamp is brighter against what is left of the other light
 _LEAST = 1e-4  # mean luminance below which there is nothing to measure
 _WAYS = ("mood", "exposure", "kelvin", "warmth", "contrast", "side", "lamps")
+_ONE_WAY: list[dict[str, Given | Keywords]] = [{name: given()} for name in _WAYS]
 
 
 class Relight(TargetedOp):
@@ -55,7 +56,7 @@ class Relight(TargetedOp):
     Give at least one of its fields. With `lamps` the target is lamps, or everything for all the lights of a room.
     """
 
-    model_config = ConfigDict(json_schema_extra=either(*({name: given()} for name in _WAYS)))
+    model_config = ConfigDict(json_schema_extra=either(*_ONE_WAY))
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "make the room a third brighter",
         {"op": "relight", "target": {"text": "everything", "pick": "all"}, "exposure": 1.333},

@@ -21,6 +21,7 @@ DOWN: dict[str, float] = {"": 0.62, "little": 0.8, "much": 0.35}
 # Warmth and contrast likewise.
 WARMTH: dict[str, float] = {"": 0.5, "little": 0.25, "much": 0.8}
 CONTRAST: dict[str, float] = {"": 1.2, "little": 1.1, "much": 1.4}
+_CONTRASTS = {"soft": 0.82, "dramatic": 1.3}  # of the words for soft and for hard light
 _STOP = 2.0  # factor of one stop of exposure
 _ASKS = bag(
     "make let give turn set change can could would will please want need needs should must adjust get bring have show "
@@ -184,7 +185,10 @@ class _Reading:
         elif "times" in slots:
             wait.share = quantities.Quantity("TIMES", slots["times"], "", 1)
         elif "kelvin" in slots:
-            self._heard.fields["kelvin"] = slots["kelvin"]
+            if said[0].isalpha():
+                self._heard.fields.setdefault("kelvin", slots["kelvin"])
+            else:
+                self._heard.fields["kelvin"] = slots["kelvin"]
             self._heard.anchored = self._heard.anchored or not said[0].isalpha()
             self._last = None
         elif "side" in slots and self._noun:
@@ -242,6 +246,11 @@ class _Reading:
         if needs_light(mood, said) and not named:
             return False
         fields = self._heard.fields
+        if mood in _CONTRASTS:
+            fields["contrast"] = _CONTRASTS[mood]
+            self._heard.anchored = True
+            self._next.clear()
+            return True
         if "mood" not in fields or needs_light(fields["mood"], ()):
             fields["mood"] = mood
         if self._next.degree:
