@@ -240,7 +240,7 @@ def _shaded(
     from .harmony.told import notes
 
     things = [mask_of(scene.cloud, ids).nonzero().squeeze(1) for ids in put]
-    scene, told = shadows_under(scene, things, strength_of(before))
+    scene, told = shadows_under(scene, things, strength_of(before), lit=before)
     cast = Filled(surface="what it stands on", gaussians=0, area=0.0, sure=0.0, darker=told.darker)
     return scene, (cast,) if told.darker else (), notes(told)
 

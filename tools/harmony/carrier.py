@@ -24,7 +24,7 @@ _CELLS = 72  # along the longer side of a chart
 _FEW = 4_000  # Gaussians of a surface that tell whether it is seen
 _POINTS = 12_000  # of a thing, from which its occlusion is measured
 _SLAB = 0.05  # of a thing's extent: how far from its underside the surface that carries it may be
-_NOISE = 2.0  # times the median distance of a surface's points from it: how thick it is
+_NOISE = 3.0  # times the median distance of a surface's points from it: how thick it is
 _RING = 12  # cells along each side of the place in which a surface must be seen
 _SEEN = 0.3  # share of those around the footprint
 _FACES = 0.5  # of that, for a wall
@@ -70,11 +70,9 @@ def carried(scene: Scene, thing: Tensor, without: Tensor | None = None, most: in
     if extent <= 0:
         return None
     near = rows_within(cloud.means, points.min(axis=0) - extent, points.max(axis=0) + extent)
-    own = torch.zeros(len(cloud), dtype=torch.bool, device=cloud.device)
-    own[thing] = True
-    if without is not None:
-        own |= without
-    near = near[~own[near] & (cloud.opacities[near] > 0.1)]
+    own = torch.isin(near, thing)
+    own = own if without is None else own | without[near]
+    near = near[~own & (cloud.opacities[near] > 0.1)]
     if len(near) < 8:
         return None
     body = _body(cloud, thing, extent)
@@ -122,7 +120,8 @@ def _on(cloud: GaussianCloud, near: Tensor, plane: Plane, body: F64, extent: flo
         return None
     middle = float(np.median(points[inside, 2]))
     noise = float(np.median(np.abs(points[inside, 2] - middle)))
-    inside &= np.abs(points[:, 2] - middle) < max(_NOISE * 1.48 * noise, 0.2 * _SLAB * extent)
+    thick = max(_NOISE * 1.48 * noise, 0.2 * _SLAB * extent)
+    inside &= (points[:, 2] - middle < thick) & (points[:, 2] - middle > -2 * thick)
     plane = Plane(plane.origin + plane.normal * middle, plane.axes, noise, plane.last, plane.carries)
     rows = near[torch.from_numpy(inside)]
     if not _is_seen(spread(cloud, rows[:: max(1, len(rows) // _FEW)], extent), plane, body, low, high):

@@ -23,6 +23,7 @@ from .strength import FAINT, Strength, fitted, strength_of
 
 F64 = NDArray[np.float64]
 _LEAST = 0.01  # logarithm of a colour's change below which a Gaussian stays as it is
+_RECOLORED = 0.05  # of a group's Gaussians: fewer that are darker do not change its colour
 _LEAN = 0.6  # largest share of the light that leans to the side from which most light comes
 _WALL = 0.6  # likewise on walls, to above
 _TOLD = 0.05  # strength from which a shadow is there
@@ -42,13 +43,18 @@ class Told:
 
 
 def shadows_under(
-    scene: Scene, things: Sequence[Tensor], strength: Strength | None = None, apart: bool = True
+    scene: Scene,
+    things: Sequence[Tensor],
+    strength: Strength | None = None,
+    apart: bool = True,
+    lit: Scene | None = None,
 ) -> tuple[Scene, Told]:
     """The scene with the contact shadows of things where they stand or hang; only colours of other Gaussians change.
 
     Args:
         things: rows of each.
         apart: whether none of them darkens another's Gaussians.
+        lit: the scene whose light is taken, as it was before an edit; None: this one.
         strength: how dark; None: as those that the scene has.
     """
     strength = strength_of(scene) if strength is None else strength
@@ -64,7 +70,7 @@ def shadows_under(
         if place is not None:
             found += 1
             dark[place.rows.cpu()] += torch.from_numpy(
-                strength.value * place.share(scene.cloud, lobes_of(scene, place))
+                strength.value * place.share(scene.cloud, lobes_of(lit or scene, place))
             )
     rows = (dark > _LEAST).nonzero().squeeze(1).to(scene.cloud.device)
     told = Told(len(rows), found, len(things) - found, strength)
@@ -73,7 +79,15 @@ def shadows_under(
     sh = scene.cloud.sh.clone()
     sh[rows] = multiplied(sh[rows], torch.exp(-dark[rows.cpu()]).to(sh))
     scene = scene.replace(cloud=scene.cloud.replace(sh=sh))
-    return scene.replace(language=after_recolor(scene, scene.cloud.ids[rows])), told
+    return scene.replace(language=after_recolor(scene, _told_by_color(scene, rows))), told
+
+
+def _told_by_color(scene: Scene, rows: Tensor) -> Tensor:
+    """Ids of those of some rows whose groups changed enough for their colour to be another."""
+    groups = scene.cloud.group + 1
+    changed = torch.bincount(groups[rows], minlength=int(groups.max()) + 1)
+    many = changed >= _RECOLORED * torch.bincount(groups, minlength=len(changed))
+    return scene.cloud.ids[rows[many[groups[rows]]]]
 
 
 def lobes_of(scene: Scene, place: Carried) -> F64:

@@ -24,7 +24,7 @@ from ..color_map import LUMA
 from .carrier import Carried, carried
 
 F64 = NDArray[np.float64]
-FAINT = 0.7  # strength where no shadow of the scene can be measured
+FAINT = 0.9  # strength where no shadow of the scene can be measured
 MOST = 1.6  # strength of the darkest shadows
 _ROWS = 8_000  # Gaussians of the surface around a thing that it is measured on
 _THINGS = 6  # that are measured, the largest that are no room
