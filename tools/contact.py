@@ -11,7 +11,6 @@ from collections.abc import Iterable
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from torch import Tensor
 
 from ..gaussians.language.field.language_field import Group
@@ -90,6 +89,8 @@ def _contacts(
     points: NDArray[np.float32], owner: NDArray[np.int32], leaves: set[int], touch: float
 ) -> NDArray[np.intp]:
     """Indices of the points nearest to those of a thing, within the distance `touch`; one for each that has any."""
+    from scipy.spatial import cKDTree
+
     mine = np.isin(owner, list(leaves))
     if mine.all() or not mine.any():
         return np.zeros(0, dtype=np.intp)

@@ -9,7 +9,6 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from ..gaussians import assets
 from ..gaussians.camera import Vec3
 from ..gaussians.cloud import NO_GROUP, GaussianCloud
 from ..gaussians.errors import InstructionError
@@ -175,6 +174,8 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
     """
     made, told = request.own.natural(request.kind, request.color) if request.own is not None else (None, ())
     if made is None:
+        from ..gaussians import assets
+
         color = request.color or _usual_color(request)
         made = assets.make(_known_name(request.kind), request.seed, color=color)
     factor, notes = request.scale.units_per_metre, request.scale.notes

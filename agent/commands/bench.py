@@ -66,12 +66,12 @@ def command(
         _guard(force)
         return
     refuse_existing([chart] if chart else [], force)
-    earlier = [_read(against)] if against else []
+    earlier = _read(against) if against else None
     result = harness.run(name, quick)
     if chart is not None:
         terminal.say(f"chart: {_chart.draw(result, chart)}")
     terminal.result(result.to_markdown(), json.loads(result.to_json()))
-    _compare([result], earlier)
+    _tell(result.regressions(earlier) if earlier is not None else ())
 
 
 def _all(quick: bool, folder: Path, against: Path | None, force: bool) -> None:
@@ -91,7 +91,8 @@ def _all(quick: bool, folder: Path, against: Path | None, force: bool) -> None:
         "failed": dict(found.failed),
     }
     terminal.result(f"{made[-1]}: {len(found.results)} benchmarks, {len(found.failed)} failed", told)
-    _compare(found.results, earlier)
+    before = {result.name: result for result in earlier}
+    _tell([f"{r.name}: {s}" for r in found.results if r.name in before for s in r.regressions(before[r.name])])
     if found.failed:
         raise typer.Exit(1)
 
@@ -126,12 +127,6 @@ def _read(path: Path) -> Result:
         return harness.Result.from_json(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise FileError(f"cannot read {path}: {error.strerror}") from error
-
-
-def _compare(results: Sequence[Result], earlier: Sequence[Result]) -> None:
-    """Tell what is worse than in earlier results; exit code 3 if anything is."""
-    before = {result.name: result for result in earlier}
-    _tell([f"{r.name}: {s}" for r in results if r.name in before for s in r.regressions(before[r.name])])
 
 
 def _tell(worse: Sequence[str]) -> None:

@@ -10,7 +10,6 @@ from ...gaussians.errors import ScenewrightError
 from ...gaussians.language.query.nested import queries
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from .clarify import Question, find_question
 from .history import State
 from .refusal import open_verdict, with_message
 
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from ...planners.plan import EditPlan
     from ...tools.operation import Context
     from ...tools.receipt import Receipt
+    from .clarify import Question
     from .judge import Judge
 
 
@@ -101,6 +101,8 @@ def _question(plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, 
     verdict = open_verdict(error)
     if verdict is None:
         return None
+    from .clarify import find_question
+
     return find_question(plan, step, verdict, lambda query: context.resolve(scene, query))
 
 

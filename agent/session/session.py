@@ -14,37 +14,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 from ...gaussians.camera import Camera
-from ...gaussians.errors import AbsentError, ScenewrightError, UnconfirmedError, UserError
+from ...gaussians.errors import ScenewrightError, UserError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
 from . import log as session_log
-from . import portions
-from .answers import chosen_numbers, keeps_and_more, rejects, says_enough
 from .asker import Asker, see_answer
-from .clarify import (
-    Question,
-    as_a_whole,
-    asked_about,
-    is_further,
-    plan_with_answer,
-    plan_with_query,
-    with_plural,
-    without_further,
-)
 from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
 from .observation import graph_of, picture_of
-from .offers import PARTS_PAGE, offers_of
-from .offers import chosen as offered_choice
 from .own_assets import own_assets
 from .own_references import own_references
 from .picture_models import infill_of, photographed, restyler_of
 from .plan_runner import PlanFailed, has_queries, run_plan
-from .planner_client import PlannerClient, is_dismissal, undo_or_redo
+from .planner_client import PlannerClient, undo_or_redo
 from .refusal import refusal, with_message
 from .replay import Replayed, logged_edits, replay_edits
 from .result import Result
@@ -66,6 +52,7 @@ if TYPE_CHECKING:
     from ...tools.lifting.inpainters import Inpainter
     from ...tools.lifting.restylers import Restyler
     from ...tools.operation import Context
+    from .clarify import Question
     from .naming import Named
 
 P = ParamSpec("P")
@@ -446,89 +433,27 @@ class Session:
     def offer_others(self) -> ScenewrightError | None:
         """Let the open question offer other things than those it lists, none of which is meant, and the error that says
         so. None if there are none left."""
-        asked = self.question
-        return None if asked is None else self._offer(asked, page=asked.page + 1 if asked.offered else 0)
+        from .answering import offer_others
+
+        return offer_others(self)
 
     def answered(self, text: str) -> EditPlan:
         """The plan of `question` with the answer in it; raises as `answer`."""
-        if self.question is None or not self.question.candidates:
-            raise UserError("there is no open question; give an instruction")
-        if rejects(text) and (error := self.offer_others()) is not None:
-            raise error
-        if is_further(self.question) and says_enough(text):
-            return without_further(self.question)
-        if self.question.offered and (held := keeps_and_more(text, len(self.question.candidates))) is not None:
-            raise self._offer_more(self.question, held)
-        single = self.question.selection.verdict == "unconfirmed"
-        if (portion := portions.read(text, len(self.question.candidates), single=single)) is not None:
-            return self._portion(self.question, portion)
-        by_number = self.question.offered or any(c.ids is not None for c in self.question.candidates)
-        if by_number and (places := chosen_numbers(text, len(self.question.candidates))) is not None:
-            absent, kept = self.question.selection, self.question.kept
-            every = (*absent.candidates, *kept)
-            places = (*places, *range(len(absent.candidates), len(every)))
-            scene, meant = offered_choice(self.scene, absent.query, every, places)
-            self._regroup(scene)
-            return with_plural(plan_with_query(self.question, meant), self.question)
-        if self.question.selection.verdict == "unconfirmed" and is_dismissal(text):
-            asked, self.question = self.question.selection.query.describe(), None
-            raise UnconfirmedError(f"nothing was changed; say in other words what is meant by {asked}")
-        return plan_with_answer(self.question, text, self._planner.noun_phrase)
+        from .answering import answered
 
-    def _offer_more(self, asked: Question, held: tuple[int, ...]) -> ScenewrightError:
-        """Let the open question keep some candidates and offer others, and the error that says so."""
-        error = self.offer_others()
-        if error is None or self.question is None:
-            raise UserError("there are no others; say the numbers alone, or a portion: 'the red part of 2'")
-        kept = (*asked.kept, *(asked.candidates[i] for i in held))
-        self.question = replace(self.question, kept=kept)
-        return with_message(error, f"{error}; {len(kept)} of those before are kept")
+        return answered(self, text)
 
-    def _portion(self, asked: Question, portion: portions.Portion) -> EditPlan:
-        """The plan of a question for a portion of its candidates, which becomes a group of its own; or their pieces as
-        new candidates.
+    def noun_phrase(self, text: str) -> Query | None:
+        """What an answer means as a noun phrase, None if it is none."""
+        return self._planner.noun_phrase(text)
 
-        Raises:
-            AbsentError: the pieces are offered.
-            UserError: there is no such portion.
-        """
-        absent = asked.selection
-        if portion.kind == "pieces":
-            raise self._offer_pieces(asked, portion)
-        whole = portion.kind == "whole" and not portion.more and not asked.kept
-        if whole:
-            scene, meant = offered_choice(self.scene, absent.query, absent.candidates, portion.places)
-        else:
-            every = (*absent.candidates, *asked.kept)
-            held = portions.Portion("numbers", tuple(range(len(absent.candidates), len(every))))
-            portion = replace(portion, more=(*portion.more, held)) if asked.kept else portion
-            scene, meant = portions.taken(self.scene, portion, absent.query, every, self.viewer)
-        self._regroup(scene)
-        plan = plan_with_query(asked, meant)
-        return as_a_whole(plan, asked.step) if whole else plan
-
-    def _regroup(self, scene: Scene) -> None:
+    def regroup(self, scene: Scene) -> None:
         """Take over a scene whose field or groups differ, not its Gaussians; the log tells if groups do."""
         present = self._history.present
         state = replace(present, scene=scene)
         if scene.cloud is not present.scene.cloud:
             self._record("embed", session_log.embed_fields, present, state)
         self._history.amend(state)
-
-    def _offer_pieces(self, asked: Question, portion: portions.Portion) -> ScenewrightError:
-        """Let the open question offer the pieces of some candidates, and the error that says so."""
-        if not portion.places:
-            found = self._offer(asked, page=PARTS_PAGE)
-            return found or AbsentError("nothing smaller is known; say of which number: 'pieces of 3'")
-        groups = [asked.candidates[i].group for i in portion.places]
-        if any(g < 0 for g in groups):
-            raise UserError("that one cannot be divided; say where it is ('the left one'), or 'all'")
-        scene, found_pieces = portions.pieces(self.scene, groups)
-        if len(found_pieces) <= len(groups):
-            raise UserError("it cannot be divided further; say a colour or a side of it: 'the red part of 3'")
-        self._regroup(scene)
-        error, self.question = offers_of(asked, scene, found_pieces, self.viewer)
-        return error
 
     def select(self, phrase: str | Query) -> Selection:
         """Resolve a phrase, whatever the verdict; the scene does not change, and "it" refers to what was found.
@@ -771,6 +696,9 @@ class Session:
         Raises:
             ScenewrightError: the error of the plan, if neither settles it.
         """
+        from .answering import offer
+        from .clarify import asked_about, plan_with_answer, plan_with_query
+
         question = failure.question
         if question is None:
             raise failure.error from failure.__cause__
@@ -782,31 +710,12 @@ class Session:
         if seen is None:
             error = failure.error
             if question.selection.verdict == "absent":
-                error = self._offer(question, error) or error
+                error = offer(self, question, error) or error
             elif about := asked_about(question):
                 error = with_message(error, f"{error}; this asks for {about}")
             raise (with_message(error, f"{error}; {told}") if told else error) from failure.__cause__
         plan = plan_with_query(question, seen)
         return plan.model_copy(update={"reason": "; ".join(filter(None, [plan.reason, told]))[:2000]})
-
-    def _offer(
-        self, question: Question, error: ScenewrightError | None = None, *, page: int = 0
-    ) -> ScenewrightError | None:
-        """Let the open question offer what may be meant by what was not found, and the error that says so; None if
-        there is nothing to offer. What an earlier step of the same plan makes is not offered."""
-        from .offers import offered
-
-        encoder = self.encoder if self.scene.language is not None else None
-        found = offered(self.scene, question.selection, self.viewer, encoder, question.resolve, page=page)
-        if found is None:
-            return None
-        told = found.reason.removeprefix(question.selection.reason).removeprefix("; ")
-        selection = replace(found, verdict="absent", ids=found.ids[:0], groups=())
-        self.question = replace(question, selection=selection, offered=True, page=page)
-        if about := asked_about(question):
-            told = f"this asks for {about}: {told}; or 'that is all' if it is in what was chosen"
-        said = str(error) if error is not None else f"nothing was changed; {question.selection.query.describe()}"
-        return with_message(error or AbsentError(said), f"{said}; {told}")
 
     def _by_sight(self, selection: Selection) -> tuple[Query | None, str]:
         """The query for what a vision model points at, None if at nothing, and a sentence about it. The scene's field

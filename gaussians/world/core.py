@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy import ndimage
 from torch import Tensor
 
 from ..cloud import GaussianCloud
@@ -148,6 +147,8 @@ class _Grid:
     def distance(self, points: F32) -> tuple[F32, Bool]:
         """Distance `[M]` of points `[M, 3]` from the voxels of the core, 0 in them, scene units; and whether they lie
         in a piece that is too heavy for a stray."""
+        from scipy import ndimage
+
         flat, outside, beyond = self.index(points)
         table = (ndimage.distance_transform_edt(~self.kept) * self.cell).astype(np.float32).ravel()
         away, heavy = table[flat], self.heavy.ravel()[flat]
@@ -182,6 +183,8 @@ def _converged(points: F32, weight: F32) -> tuple[_Grid | None, float]:
 
 def _divided(points: F32, weight: F32, low: F64, high: F64, cell: float) -> tuple[_Grid, Bool]:
     """The grid from `low` to `high`, and which points lie in its core."""
+    from scipy import ndimage
+
     margin = _GAP + 1
     shape = np.floor((high - low) / cell).astype(np.intp) + 1 + 2 * margin
     corner = low - margin * cell

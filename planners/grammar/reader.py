@@ -20,7 +20,6 @@ from .parsing import Refusal, first_words, parse, trees
 from .restating.changes.impossible import cannot_be
 from .restating.order.conditions import has_condition
 from .restating.order.elision import about, topic_of
-from .restating.restating import restatements
 from .restating.speech.corrections import corrected, takes_back
 from .restating.speech.remarks import is_remark, says_how_far, subject_of
 from .tagging.non_edits import FORBIDDEN, STATEMENT, empty_refusal, is_chat, refuse_non_edit
@@ -192,6 +191,8 @@ class Reader:
         final: bool | Refusal = False
         follows = self._follows or bool(before.ops)
         plain = len(self._state.ops)
+        from .restating.restating import restatements
+
         for candidate in restatements([w.text for w in sentence], mark, follows):
             if self._tries >= _MOST_TRIES:
                 break

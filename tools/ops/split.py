@@ -9,7 +9,6 @@ from pydantic import Field
 
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.field.dividing import divided
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..cloud_diff import selection_of
@@ -46,6 +45,8 @@ class Split(TargetedOp):
         if len(self.names) > self.into:
             raise InstructionError(f"{len(self.names)} names are too many for {self.into} pieces")
         seeing = context.encoder if isinstance(context.encoder, Encoder) else None
+        from ...gaussians.language.field.dividing import divided
+
         after, pieces = divided(scene, selection.groups[0], self.into, self.names, seeing)
         reason = f"{len(pieces)} things now"
         focus = selection_of(selection, selection.ids, tuple(pieces), reason)

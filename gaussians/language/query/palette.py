@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ...color import BASIC, name_of, rgb_to_lab, shade_of
 from ...errors import UserError
@@ -23,6 +23,9 @@ from ...scene import Scene
 from ..field.measure import lit_of
 from ..segmentation.surface import MIN_OPACITY
 from .attributes import color_scores
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -138,6 +141,8 @@ def palette(scene: Scene, rows: I64) -> Palette:
     Raises:
         UserError: no row is given.
     """
+    from scipy.spatial import cKDTree
+
     if not len(rows):
         raise UserError("there is nothing whose colours could be told")
     at = torch.from_numpy(rows)
@@ -162,6 +167,8 @@ def palette(scene: Scene, rows: I64) -> Palette:
 def _averaged(points: F64, rgb: F64, area: F64) -> F64:
     """CIE Lab `[M, 3]` of the colour around each point, by area; dark places are averaged farther, as of dark
     Gaussians hardly any tells the hue."""
+    from scipy.spatial import cKDTree
+
     tree = cKDTree(points)
     lab = _around(tree, points, rgb, area, AVERAGED)
     dim = np.flatnonzero(lab[:, 0] < DIM)
@@ -221,6 +228,8 @@ def _clusters(hue: F64, weight: F64) -> F64:
 
 def _smoothed(hue: F64, light: F64, where: F64, centers: F64) -> I64:
     """The cluster of each place; unclear ones go with the clear ones around them."""
+    from scipy.spatial import cKDTree
+
     if len(centers) == 1:
         return np.zeros(len(hue), np.int64)
     apart = np.linalg.norm(hue[:, None] - centers[None], axis=2)

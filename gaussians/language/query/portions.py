@@ -11,7 +11,6 @@ from collections.abc import Sequence
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ...errors import InstructionError
 from ...scene import Scene
@@ -107,6 +106,8 @@ def pieces_of_rows(scene: Scene, rows: I64, most: int) -> list[I64]:
 
 def _decided(scene: Scene, rows: I64, chosen: Flags, decided: Flags) -> Flags:
     """Whether each row `[M]` is chosen; the undecided go with the majority of the decided ones nearest to them."""
+    from scipy.spatial import cKDTree
+
     result = chosen & decided
     if decided.all() or not result.any():
         return result

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ...cloud import GaussianCloud
 from ...color import rgb_to_lab
@@ -190,6 +189,8 @@ def _nearest(points: F32, k: int) -> tuple[F32, NDArray[np.int32]]:
     """Distances and indices `[M, k]` of the nearest other points."""
     if len(points) < 2:
         return np.zeros((len(points), k), np.float32), np.zeros((len(points), k), np.int32)
+    from scipy.spatial import cKDTree
+
     gaps, index = cKDTree(points).query(points, k=k + 1, workers=-1)
     return gaps[:, 1:].astype(np.float32), index[:, 1:].astype(np.int32)
 

@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from torch import Tensor
 
 from ....camera import Camera, Vec3
@@ -319,6 +318,8 @@ _folds: weakref.WeakKeyDictionary[Fragments, dict[int, _Folds]] = weakref.WeakKe
 
 def _folds_of(scene: Scene, field: LanguageField, owner: int) -> _Folds:
     """The folds of an object, kept with the fragments of the cloud."""
+    from scipy.spatial import cKDTree
+
     known = _folds.setdefault(fragments_of(scene.cloud), {})
     if owner not in known:
         rows = index_groups(scene.cloud).rows(field.leaves(owner))

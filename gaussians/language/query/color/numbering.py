@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
 
 I64 = NDArray[np.int64]
 
@@ -13,6 +12,8 @@ TABLE = 1 << 25  # codes up to which they are numbered by a table, of 5 bytes ea
 
 def stable_order(keys: NDArray[np.int32], count: int) -> I64:
     """The stable order `[M]` of keys in 0..count, by counting: a sort takes five times as long."""
+    from scipy.sparse import coo_matrix
+
     rows = np.arange(len(keys), dtype=np.int32)
     counted = coo_matrix((np.ones(len(keys), np.int8), (keys, rows)), shape=(count, len(keys))).tocsr()
     return np.asarray(counted.indices, np.int64)

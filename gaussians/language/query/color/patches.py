@@ -16,8 +16,6 @@ from functools import cached_property
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from ....camera import Vec3
 from ....cloud import GaussianCloud
@@ -222,6 +220,9 @@ def vec(values: F64) -> Vec3:
 
 def _places(index: Fragments, score: F64) -> I64:
     """Patch of each fragment `[F]`, -1 for none: linked seeds, then grown into linked fragments."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     place = np.full(len(index), -1, dtype=np.int64)
     seeds = np.flatnonzero(score >= SEED_SCORE)
     if not len(seeds):
@@ -338,6 +339,9 @@ def _linked(block: I64, bins: I64, group: I64) -> tuple[I64, I32, I32]:
         block: `[C, 3]` coordinates of the block of each voxel.
         bins, group: `[C]` of each voxel.
     """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     code = _code(block + 1)
     blocks, at = np.unique(code, return_inverse=True)
     kind = at.astype(np.int64) << 34 | bins << 17 | (group + 1)  # one node for each block, bin and group

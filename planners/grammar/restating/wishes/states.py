@@ -10,7 +10,6 @@ from ...tagging.words import bag
 from ...vocabulary import quantities
 from ..chunks import is_thing
 from ..speech.participles import at, participles
-from .wish_patterns import GONE
 
 _STATE_WORDS = bag(
     "to in on onto into under next near against beside behind between above below at by over inside "
@@ -92,6 +91,8 @@ def states(thing: str, state: Sequence[str]) -> Iterator[str]:
     if said in ("empty", "clear", "bare", "cleared", "emptied"):
         yield f"delete everything on {thing}"
         return
+    from .wish_patterns import GONE
+
     if re.match(rf"^(?:{GONE}|go|go away|disappear|vanish|leave)$", said):
         yield f"delete {bare_thing(thing)}"
         return
