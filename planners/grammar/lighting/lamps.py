@@ -10,6 +10,7 @@ from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds
 from ....gaussians.world.words import singular
 from ..tagging.words import bag
+from ..vocabulary import quantities
 
 _SWITCH = (
     r"(?:turn|switch|put|flick|flip|click|power|toggle|leave|keep|have|get|set|make|bring|want|need|snap|pop|stick)"
@@ -57,8 +58,14 @@ _ALL_LIGHTS = re.compile(
 )
 _LAMPS = bag(
     "lamp light chandelier lantern candle sconce spotlight bulb lampshade uplighter downlight torchiere nightlight "
-    "tealight fireplace lightbulb strip"
+    "tealight fireplace lightbulb strip pendant downlighter luminaire"
 )
+_SIDED = re.compile(r"^(?:just |only )?(?:the |that |my )?(?:left|right)(?: hand)? (?=\w)")
+_AMOUNT = re.compile(
+    rf"{_POLITE}(?P<way>dim|brighten|turn|bring|take)(?: (?:down|up))? (?P<what>.+?)(?: (?:down|up))? "
+    rf"(?P<to>by|to)(?: (?:about|around|like|roughly))? (?P<amount>[^ ].*?){_AFTER}"
+)
+_AGAIN = bag("turn switch kill off everything")
 _BEHIND = re.compile(
     r" (?:on|in|by|next|near|at|behind|beside|under|over|above|to|of|between|left|right|that|which|with) "
 )
@@ -78,10 +85,14 @@ def switched(said: str, thing: Callable[[str], Query | None]) -> Switched | None
         said: words in lower case, without marks.
         thing: reads a phrase for things.
     """
+    if (changed := _by_amount(said, thing)) is not None:
+        return changed
     for pattern, way in _READ:
         if (found := pattern.fullmatch(said)) is None:
             continue
         what = found["what"]
+        if _AGAIN & set(what.split()):  # two clauses: "the lamp on, everything else off"
+            continue
         if _ALL_LIGHTS.fullmatch(what):
             return None if way == "dim" else Switched({"lamps": way}, None)
         if is_lamp(what) and (query := thing(what)) is not None:
@@ -90,9 +101,25 @@ def switched(said: str, thing: Callable[[str], Query | None]) -> Switched | None
     return None
 
 
+def _by_amount(said: str, thing: Callable[[str], Query | None]) -> Switched | None:
+    """A lamp that is dimmed or raised by an amount: "dim the floor lamp by 20 %", "the lamp down to half"."""
+    if (found := _AMOUNT.fullmatch(said)) is None or not is_lamp(found["what"]):
+        return None
+    if _ALL_LIGHTS.fullmatch(found["what"]):
+        return None
+    words = found["amount"].split()
+    share = quantities.read(words)
+    if share is None or share.taken != len(words) or share.kind not in ("PERCENT", "FRACTION"):
+        return None
+    sign = -1 if found["way"] == "dim" or "down" in said.split() else 1
+    factor = share.value if found["to"] == "to" else 1 + sign * share.value
+    query = thing(found["what"]) if 0.02 <= factor <= 20 else None
+    return Switched({"exposure": round(factor, 4)}, query) if query is not None else None
+
+
 def is_lamp(what: str) -> bool:
     """Whether the first noun of a phrase names a lamp: "the lamp on the desk", "both floor lamps"."""
-    head = _BEHIND.split(what)[0]
+    head = _BEHIND.split(_SIDED.sub("", what))[0]
     words = head.split()
     if not words:
         return False

@@ -13,7 +13,8 @@ from typing import Any
 
 from ..tagging.words import bag, phrases
 from ..vocabulary import quantities
-from .vocabulary import Meaning, longest, meanings, needs_light
+from .tokens import Token, tokens_of
+from .vocabulary import Meaning, needs_light
 
 # Factor of exposure without a degree, for "a bit", for "much".
 UP: dict[str, float] = {"": 1.5, "little": 1.22, "much": 2.5}
@@ -69,9 +70,6 @@ class _Pending:
         self.raised = 0
 
 
-Token = tuple[tuple[str, ...], dict[str, Any]]
-
-
 def read(words: Sequence[str], loose: bool = False) -> Heard | None:
     """What a clause says of light, None if it is not about light or a word is not understood.
 
@@ -81,7 +79,7 @@ def read(words: Sequence[str], loose: bool = False) -> Heard | None:
     """
     if not words or not _may_ask(words):
         return None
-    tokens = _tokens(words)
+    tokens = tokens_of(words)
     if tokens is None:
         return None
     heard = _Reading(tokens, loose).run()
@@ -103,47 +101,6 @@ def _states(words: Sequence[str], tokens: Sequence[Token]) -> bool:
     """Whether a clause only says how things are: "the room is bright"."""
     first = next((i for i, (said, _) in enumerate(tokens) if said[-1] in _LINKS), None)
     return first is not None and not any(set(said) & _ASKS for said, _ in tokens)
-
-
-def _tokens(words: Sequence[str]) -> list[Token] | None:
-    """The clause as phrases with their slots; None if a word has no meaning here."""
-    found: list[Token] = []
-    at = 0
-    while at < len(words):
-        amount = quantities.read(words[at:])
-        if (kelvin := _kelvin(words[at:])) is not None:
-            found.append((tuple(words[at : at + kelvin[1]]), {"kelvin": kelvin[0]}))
-            at += kelvin[1]
-            continue
-        if amount is not None and amount.kind in ("PERCENT", "FRACTION", "TIMES", "NUMBER"):
-            phrase = tuple(words[at : at + amount.taken])
-            # "half", "double"; "a bit" is a degree, and "a" an article
-            if phrase not in meanings() and not (amount.kind == "NUMBER" and phrase[0] in ("a", "an", "one")):
-                found.append((phrase, {"amount": amount}))
-                at += amount.taken
-                continue
-        for size in range(min(longest(), len(words) - at), 0, -1):
-            phrase = tuple(words[at : at + size])
-            if (known := meanings().get(phrase)) is not None:
-                found.append((phrase, {m.slot: m.value for m in reversed(known)}))
-                at += size
-                break
-        else:
-            return None
-    return found
-
-
-def _kelvin(words: Sequence[str]) -> tuple[float, int] | None:
-    """A temperature and how many words it takes: "2700 kelvin", "3,000 k"."""
-    if len(words) < 2 or words[1] not in ("k", "kelvin", "kelvins", "degrees"):
-        return None
-    if words[1] == "degrees" and words[2:3] != ["kelvin"]:
-        return None
-    try:
-        value = float(words[0].replace(",", ""))
-    except ValueError:
-        return None
-    return (value, 3 if words[1] == "degrees" else 2) if 500 <= value <= 40_000 else None
 
 
 class _Reading:
@@ -181,7 +138,11 @@ class _Reading:
         judged = wait.too or wait.lack or wait.denied or "enough" in following
         if "amount" in slots:
             wait.share = slots["amount"]
-            wait.to = i > 0 and self._tokens[i - 1][0] == ("to",)
+            wait.to = i > 0 and self._tokens[i - 1][0] in (("to",), ("at",))
+            if self._belongs_before(i, following):
+                fits = self._close()
+                wait.clear()
+                return fits
         elif "times" in slots:
             wait.share = quantities.Quantity("TIMES", slots["times"], "", 1)
         elif "kelvin" in slots:
@@ -191,7 +152,7 @@ class _Reading:
                 self._heard.fields["kelvin"] = slots["kelvin"]
             self._heard.anchored = self._heard.anchored or not said[0].isalpha()
             self._last = None
-        elif "side" in slots and self._noun:
+        elif "side" in slots and (self._noun or self._air):
             self._heard.fields["side"] = slots["side"]
         elif "side" in slots:
             return False
@@ -231,7 +192,25 @@ class _Reading:
             self._about(following)
         elif "weak" in slots:
             self._weak = slots["weak"]
+            self._lift_named(i, "amount" in following)
         return True
+
+    def _lift_named(self, i: int, by: bool) -> None:
+        """ "down" behind a word for light is its change: "the brightness down like 30 percent and warmer"."""
+        named = any("noun" in slots for _, slots in self._tokens[:i])
+        fresh = "exposure" not in self._heard.fields and not (self._next.sign or self._next.raised)
+        if fresh and ((named and self._last is None) or (by and (named or self._loose))):
+            self._expose(self._weak)
+
+    def _belongs_before(self, i: int, following: dict[str, Any]) -> bool:
+        """Whether an amount is of the change before it: "brighter by a third and warmer"."""
+        if self._last is None or self._last[0] not in ("exposure", "warmth") or self._next.sign:
+            return False
+        coming = next((slots for _, slots in self._tokens[i + 1 :] if set(slots) != {"filler"}), {})
+        if "stop" in coming:
+            return False
+        by = self._tokens[i - 1][0] == ("by",)
+        return by or not {"brighter", "warmer", "more", "level", "color", "noun", "stop"} & following.keys()
 
     def _slots(self) -> set[str]:
         return {slot for _, slots in self._tokens for slot in slots}
@@ -242,7 +221,9 @@ class _Reading:
 
     def _mood(self, said: tuple[str, ...], mood: str) -> bool:
         feels = any(w[-1] in ("feel", "feeling") for w, _ in self._tokens)
-        named = self._noun or self._air or "shadow" in self._slots() or (feels and self._place)
+        named = (
+            self._noun or self._air or "shadow" in self._slots() or (feels and (self._place or "it" in self._slots()))
+        )
         if needs_light(mood, said) and not named:
             return False
         fields = self._heard.fields
@@ -363,7 +344,7 @@ class _Reading:
         elif wait.raised:
             self._last = ("raised", wait.raised)
             self._expose(wait.raised)
-        elif wait.share is not None and wait.share.kind in ("FRACTION", "TIMES") and not wait.to:
+        elif wait.share is not None and (wait.to or wait.share.kind in ("FRACTION", "TIMES")):
             self._heard.fields["exposure"] = wait.share.value
             wait.clear()
 
@@ -387,6 +368,9 @@ class _Reading:
             self._expose(self._weak)
         if wait.raised and not fields and self._noun:
             self._expose(wait.raised)
+        if wait.share is not None and wait.to and self._last is None and self._noun and not fields:
+            fields["exposure"] = wait.share.value  # "set the brightness to 40%"
+            return 0.02 <= wait.share.value <= 20
         if wait.share is not None or wait.degree:
             if self._last is None or self._last[0] not in ("exposure", "warmth", "contrast"):
                 return wait.share is None

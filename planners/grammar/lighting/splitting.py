@@ -4,21 +4,30 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 from ....gaussians.language.query.query import Query
-from ..tagging.words import Word, split
+from ..tagging.words import Word, bag, split
 from .lamps import switched
 from .reading import Heard, read
 from .vocabulary import meanings
+from .wording import is_comparison, plainly
 
 EVERYTHING = Query(text="everything", pick="all")
 _MARKS = (",", ".", ";", "!", "?", ":", "\n")
 _JOINING = ("and", "then", "but", "so", "because", "or")
 _IT_IS = (("it", "is"), ("it", "looks"), ("it", "feels"), ("it", "seems"))
+_HAVING = (("have", "it"), ("want", "it"), ("like", "it"), ("need", "it"), ("can", "it"), ("could", "it"))
 _MOST = 12  # pieces of an instruction that are looked at
-_PREPOSITIONS = ("on", "over", "above", "around", "onto", "at", "in", "near", "by", "under", "for", "behind", "of")
+_PREPOSITIONS = (
+    "on", "over", "above", "around", "onto", "at", "in", "near", "by", "under", "for", "behind", "of",
+    "from", "beside", "next", "below", "beneath",
+)  # fmt: skip
+_TWO = (("next", "to"),)
+_AREAS = bag("corner area spot space part bit side end nook zone section place region light")
+_TRIED = 8  # readings of a place that are tried
 _SHINE = re.compile(
     r"(?:(?:please|can you|could you|now|just|i want you to) )*(?:light up|illuminate|"
     r"shine (?:a |some |more )?light on|"
@@ -44,6 +53,22 @@ class Part:
 
 
 def parts_of(cleaned: str, lit: bool, alone: bool, thing: Callable[[str], Query | None]) -> list[Part] | None:
+    """The parts of an instruction, read in plain words if more of it is understood; see `_parts`."""
+    plain = plainly(cleaned)
+    if plain == cleaned:
+        return _parts(cleaned, lit, alone, thing)
+    found = _parts(plain, lit, alone, thing)
+    if found is not None and all(part.fields is not None for part in found):
+        return found
+    said = _parts(cleaned, lit, alone, thing)
+    return found if said is not None and found is not None and _read(found) > _read(said) else said
+
+
+def _read(parts: Sequence[Part]) -> int:
+    return sum(part.fields is not None for part in parts)
+
+
+def _parts(cleaned: str, lit: bool, alone: bool, thing: Callable[[str], Query | None]) -> list[Part] | None:
     """The parts of an instruction, None if nothing of it is about light.
 
     Args:
@@ -60,13 +85,26 @@ def parts_of(cleaned: str, lit: bool, alone: bool, thing: Callable[[str], Query 
     while at < len(pieces):
         for end in range(len(pieces), at, -1):
             words = [w.text for piece in pieces[at:end] for w in piece if w.text not in _MARKS]
+            if end - at > 1 and _switched_apart(pieces[at:end], thing):
+                continue
             understood = _clause(words, said or (alone and at == 0 and _bare(words)), thing)
             if understood is not None:
+                before = found[-1][2] if found else None
+                understood = _there(understood, before, words)
+                if (
+                    before is not None
+                    and before.target == understood.target != EVERYTHING
+                    and set(understood.fields) == {"kelvin"}
+                ):
+                    understood = replace(understood, fields={**before.fields, **understood.fields})
+                    at = found.pop()[0]
                 found.append((at, end, understood))
                 at, said = end, True
                 break
         else:
-            found.append((at, at + 1, None))
+            explained = found and found[-1][2] is not None and is_comparison([w.text for w in pieces[at]])
+            if not explained:  # "hard light, like the middle of July"
+                found.append((at, at + 1, None))
             at += 1
     if all(one is None for _, _, one in found):
         return None
@@ -84,6 +122,8 @@ _HINTS = re.compile(
     r"light|lit\b|bright|dark|dim|lamp|warm|cool|cold|glow|sun|moon|night|evening|dusk|dawn|morning|day|candle|mood|"
     r"atmos|ambi|kelvin|\bk\b|\d{4,5} ?k|exposure|illum|gloom|ding|murk|overcast|cloud|noon|twilight|golden|contrast|"
     r"shadow|lantern|chandelier|cosy|cozy|sconce|bulb|fire|rainy|white balance|vibe|romantic|shade|blinding|glar|"
+    r"\bstops?\b|\bev\b|cosi|cozi|\beyes\b|pitch|dinner|movie|romantic|date night|see (?:a|much)|rain|snow|storm|fog|"
+    r"winter|novem|decem|cast\b|tint|tinge|bedtime|dinner|cinema|pendant|\d ?[ap]\.?m\b|"
     r"(?:less|more|too) (?:blue|yellow|orange|red|white)|exposed|"
     r"winter|nocturnal|tungsten|cinematic|bleach|washed|hygge|temperature",
     re.IGNORECASE,
@@ -99,11 +139,18 @@ def _pieces(words: Sequence[Word]) -> list[list[Word]]:
     """The words between marks and conjunctions, without them."""
     found: list[list[Word]] = [[]]
     for word in words:
-        if word.text in _MARKS or word.text in _JOINING:
+        degree = word.text == "so" and bool(found[-1]) and found[-1][-1].text in ("not", "is", "are", "ever")
+        if word.text in _MARKS or (word.text in _JOINING and not degree):
             found.append([])
         else:
             found[-1].append(word)
     return [piece for piece in found if piece]
+
+
+def _switched_apart(pieces: Sequence[Sequence[Word]], thing: Callable[[str], Query | None]) -> bool:
+    """Whether the first and the last of several pieces switch lamps each: "table lamp on, floor lamp off"."""
+    said = [[w.text for w in piece] for piece in (pieces[0], pieces[-1])]
+    return all({"on", "off", "out"} & set(words) and switched(" ".join(words), thing) is not None for words in said)
 
 
 def _is_filler(pieces: Sequence[Sequence[Word]]) -> bool:
@@ -113,7 +160,7 @@ def _is_filler(pieces: Sequence[Sequence[Word]]) -> bool:
 
 def _bare(words: Sequence[str]) -> bool:
     """Whether words name nothing that they are about: "a bit brighter please", "it is too dark"."""
-    if tuple(words[:2]) in _IT_IS:
+    if tuple(words[:2]) in _IT_IS or any(pair in _HAVING for pair in pairwise(words)):
         return True
     return len(words) > 1 and not {"it", "this", "that", "them", "these", "those"} & set(words)
 
@@ -127,27 +174,58 @@ def _clause(words: Sequence[str], loose: bool, thing: Callable[[str], Query | No
         return _Said(heard.fields, EVERYTHING, heard.remark and not _asked(words))
     if (shone := _SHINE.fullmatch(said)) is not None and (query := thing(shone["what"])) is not None:
         return _Said({"exposure": _SHONE}, query)
-    return _somewhere(words, thing)
+    return _somewhere(words, loose, thing)
+
+
+def _there(said: _Said, before: _Said | None, words: Sequence[str]) -> _Said:
+    """A clause that says "it" of a place or lamp of the remark before: "the light there is too yellow, cool it"."""
+    named = before is not None and before.remark and before.target != EVERYTHING
+    toned = set(said.fields) == {"kelvin"} and words[0] in ("like", "at", "about", "around", "say")
+    if toned and before is not None and said.target == EVERYTHING:
+        return replace(said, target=before.target)  # "more light on the desk, like 4000 K"
+    if named and before is not None and said.target == EVERYTHING and {"it", "that"} & set(words):
+        return replace(said, target=before.target)
+    return said
 
 
 def _asked(words: Sequence[str]) -> bool:
     return bool({"make", "can", "could", "please", "want", "would"} & set(words))
 
 
-def _somewhere(words: Sequence[str], thing: Callable[[str], Query | None]) -> _Said | None:
-    """Light at a thing: "more light on the desk"."""
-    for at in range(2, len(words) - 1):
+def _somewhere(words: Sequence[str], loose: bool, thing: Callable[[str], Query | None]) -> _Said | None:
+    """Light at a thing: "more light on the desk", "the corner by the plant is too dark"."""
+    tried = 0
+    for at in range(1, len(words) - 1):
         if words[at] not in _PREPOSITIONS:
             continue
-        heard: Heard | None = read(words[:at])
-        if heard is None or "mood" in heard.fields or not _names_light(words[:at]):
-            continue
-        behind = list(words[at + 1 :])
-        while behind and behind[-1] in ("please", "thanks", "now"):
-            behind.pop()
-        if behind and (query := thing(" ".join(behind))) is not None:
-            return _Said(heard.fields, query)
+        two = tuple(words[at : at + 2]) in _TWO
+        start = at + 2 if two else at + 1
+        before = _without_area(words[:at])
+        for end in range(len(words), start, -1):
+            left = [*before, *words[end:]]
+            lit = _names_light(left) or before != list(words[:at])
+            heard: Heard | None = read(left, lit or (loose and words[at] not in ("for", "of", "from", "in")))
+            if heard is None or "mood" in heard.fields or not (lit or loose or heard.remark):
+                continue
+            behind = _trimmed(words[start:end])
+            tried += 1
+            if behind and tried <= _TRIED and (query := thing(" ".join(behind))) is not None:
+                return _Said(heard.fields, query, heard.remark and not _asked(words))
     return None
+
+
+def _without_area(words: Sequence[str]) -> list[str]:
+    """Words before a place without what stands for it: "the corner (by the plant)"; "the light" takes its part."""
+    if len(words) > 1 and words[-1] in _AREAS and words[-2] in ("the", "that", "this", "my"):
+        return [*words[:-2], "the", "light"]
+    return list(words)
+
+
+def _trimmed(words: Sequence[str]) -> list[str]:
+    behind = list(words)
+    while behind and behind[-1] in ("please", "thanks", "now"):
+        behind.pop()
+    return behind
 
 
 def _names_light(words: Sequence[str]) -> bool:
