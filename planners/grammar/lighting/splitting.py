@@ -27,6 +27,8 @@ _PREPOSITIONS = (
 )  # fmt: skip
 _TWO = (("next", "to"),)
 _AREAS = bag("corner area spot space part bit side end nook zone section place region light")
+_NEAR = ("over", "around", "near", "by", "under", "behind", "above", "at", "beside", "next", "below", "beneath")
+_COMPARED = bag("brighter darker dimmer brighten darken twice half double less more warmer cooler softer as")
 _TRIED = 8  # readings of a place that are tried
 _SHINE = re.compile(
     r"(?:(?:please|can you|could you|now|just|i want you to) )*(?:light up|illuminate|"
@@ -204,8 +206,9 @@ def _somewhere(words: Sequence[str], loose: bool, thing: Callable[[str], Query |
         for end in range(len(words), start, -1):
             left = [*before, *words[end:]]
             lit = _names_light(left) or before != list(words[:at])
-            heard: Heard | None = read(left, lit or (loose and words[at] not in ("for", "of", "from", "in")))
-            if heard is None or "mood" in heard.fields or not (lit or loose or heard.remark):
+            heard: Heard | None = read(left, lit or loose)
+            near = loose and words[at] in _NEAR and bool(_COMPARED & set(left))
+            if heard is None or "mood" in heard.fields or not (lit or near or (loose and heard.remark)):
                 continue
             behind = _trimmed(words[start:end])
             tried += 1

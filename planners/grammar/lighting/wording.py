@@ -107,7 +107,7 @@ _FORMS: tuple[tuple[str, str], ...] = (
     (r"\bglare (?:that is |that's )?(?:coming |shining )?(?:in )?(?:from|through|off|of|on) (?=(?:the|that|this|"
      r"my) )", "light on "),
     (rf"\b{_LOSE} (?:the |this |that |all (?:the |that )?|some of the )?glare\b", "less light"),
-    (rf"\b{_LOSE} (?:the |this |that |any |all |some of the )*({_TINTS}) (?:cast|tint|tinge|hue|tone|light)s?\b",
+    (rf"\b{_LOSE} (?:the |this |that |any |all |some of the )*({_TINTS}) (?:cast|tint|tinge|hue|tone)s?\b",
      r"less \1 light"),
     (r"\b(make (?:everything|it all|the room|the whole room|the place|it)) (?:bluish|blueish) (?=(?:like|as) )",
      r"\1 light bluer "),

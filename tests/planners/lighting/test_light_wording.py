@@ -70,6 +70,7 @@ def test_one_lamp_on_and_the_others_off(text: str) -> None:
         "what would it look like with a red sofa?", "how would the room look without the table", "put a candle here",
         "make the table under the window darker", "delete everything but the lamp", "put the pendant on the table",
         "purple light behind the tv", "make the sofa darker, like the rug", "make the corner sofa brighter",
+        "remove the yellow light", "a bit lighter on the walls", "let's go with black on the chandelier",
     ],
 )  # fmt: skip
 def test_other_words_are_left_to_the_grammar(text: str) -> None:
