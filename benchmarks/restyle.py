@@ -154,6 +154,7 @@ def _room(text: str, floor: str, walls: str) -> tuple[float, float]:
     """The share of floor and walls of a composed room that have the named material and show its colour, and the
     processor seconds that this took."""
     room = compose(text, seed=1).layout.graph
+    room = room.model_copy(update={"room": room.room.model_copy(update={"light": ""})})  # materials are measured
     scene = construct(room, seed=1).scene
     bare = room.model_copy(update={
         "room": room.room.model_copy(update={"floor": "", "walls": "", "ceiling": ""}),

@@ -1,4 +1,4 @@
-"""The surfaces of a composed room: what the brief says of the room and its things, else what its style means."""
+"""Surfaces and light of a composed room: what the brief says of the room and its things, else what its style means."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from ...gaussians.world.finishes import described, said
 from ...gaussians.world.styles import Role, material_for, materials_of
 from ..rooms.graph import SceneGraph
 from ..rooms.node import Node
+from . import knowledge
 from .brief import Brief
+from .sentence.lights import feature_mood
 from .sentence.surfaces import PARTS
 
 _METALS = frozenset({"gold", "copper", "brass", "bronze", "chrome"})  # colours that are metals on furniture
@@ -16,7 +18,7 @@ _PAINTED = ("walls", "ceiling")  # of which a colour alone is said
 
 
 def with_surfaces(graph: SceneGraph, brief: Brief, names: Mapping[int, str]) -> SceneGraph:
-    """The graph with the materials of its room and of its things.
+    """The graph with the materials of its room and of its things, and with its light.
 
     Args:
         names: for each node that the brief asked for, its id to the id of the brief's thing.
@@ -27,6 +29,7 @@ def with_surfaces(graph: SceneGraph, brief: Brief, names: Mapping[int, str]) -> 
         style["furniture"] = room["furniture"]
     parts: tuple[Role, ...] = ("floor", "walls", "ceiling")
     shape = graph.room.model_copy(update={part: room.get(part) or style.get(part, "") for part in parts})
+    shape = shape.model_copy(update={"light": _light(brief)})
     if graph.room.outdoor:
         shape = shape.model_copy(update={"walls": "", "ceiling": ""})
     things = {thing.id: thing for thing in brief.things}
@@ -53,6 +56,17 @@ def _room(brief: Brief) -> dict[str, str]:
         if told is not None:
             found[part] = phrase[:60]
     return found
+
+
+def _light(brief: Brief) -> str:
+    """The named light that the features of a brief mean, else its styles, "" for none."""
+    meant = [*brief.features, *(unshown for s in brief.styles if (unshown := _unshown(s)))]
+    return next((mood for text in meant if (mood := feature_mood(text))), "")
+
+
+def _unshown(style: str) -> str:
+    found = knowledge.styles().get(style)
+    return found.unshown if found is not None else ""
 
 
 def _style(brief: Brief) -> dict[Role, str]:

@@ -12,7 +12,7 @@ import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 import torch
@@ -137,7 +137,9 @@ def construct(
         cameras = (*_given(graph), overview(layout, closed), *eye_views(layout))
     with timed(seconds, "materials"):
         scene, more = with_materials(scene, graph, rows)
-    notes = tuple(dict.fromkeys((*notes, *more)))
+    with timed(seconds, "light"):
+        scene, dim = _with_light(scene, graph, cameras[0])
+    notes = tuple(dict.fromkeys((*notes, *more, *dim)))
     blocks = tuple(key for key, one in made.items() if one.block)
     return Built(scene.replace(cameras=cameras), rows, blocks, notes, seconds)
 
@@ -185,6 +187,20 @@ def _walls(graph: Drawn) -> tuple[str, ...]:
             gaps = {"north": depth / 2 - y, "west": width / 2 + x, "east": width / 2 - x}
             found.add(min(gaps, key=lambda wall: gaps[wall]))
     return tuple(wall for wall in WALLS if wall in found)
+
+
+def _with_light(scene: Scene, graph: Drawn, viewer: Camera) -> tuple[Scene, tuple[str, ...]]:
+    """The scene under the light that its graph names, and a note where no such light is known."""
+    if not graph.room.light:
+        return scene, ()
+    from ...tools.lighting.made_rooms import in_mood
+    from ...tools.lighting.moods import MoodName
+
+    mood = next((name for name in get_args(MoodName) if name == graph.room.light), None)
+    if mood is None:
+        known = ", ".join(get_args(MoodName))
+        return scene, (f"“{graph.room.light}” is no light that is known ({known}): it was left out",)
+    return in_mood(scene, mood, viewer), ()
 
 
 def _given(graph: Drawn) -> tuple[Camera, ...]:

@@ -79,6 +79,7 @@ class RoomShape(BaseModel):
 
     `outdoor`: it has no ceiling, and walls only where something hangs on them; its height is that of what stands in it.
     `floor`, `walls` and `ceiling`: their surfaces in words ("oak planks", "exposed brick", "pale green"), "" for any.
+    `light`: a mood that `relight` knows ("evening", "sunny"), "" for the light that it is built with.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -89,6 +90,7 @@ class RoomShape(BaseModel):
     floor: Annotated[str, Field(max_length=60)] = ""
     walls: Annotated[str, Field(max_length=60)] = ""
     ceiling: Annotated[str, Field(max_length=60)] = ""
+    light: Annotated[str, Field(max_length=40)] = ""
 
     @model_validator(mode="after")
     def _upright(self) -> Self:

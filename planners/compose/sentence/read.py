@@ -24,6 +24,7 @@ from . import amounts, vocabulary
 from .amounts import Side
 from .clauses import Clauses
 from .drafts import Said, brief_of
+from .lights import feature_mood, lights
 from .linking import Linker
 from .numbers_and_rows import standing, times
 from .relating import sides_at
@@ -60,9 +61,10 @@ def read(text: str) -> Brief:
         raise RefusedError("this is code or data, not a description in words", "not_understood")
     texts, slips = words_of(cleaned)
     refuse_others(texts)
+    texts, light = lights(texts)
     texts, features = extracted(texts)
     reader = _Reader(texts)
-    reader.features += features
+    reader.features += [*light, *features]
     reader.remarks += slips
     reader.run()
     return reader.brief()
@@ -124,7 +126,7 @@ class _Reader(Clauses):
             )  # fmt: skip
         self.remarks += [*reading.remarks(), *self.linker.lost, *self.unread()]
         for name in dict.fromkeys(self.styles):
-            if unshown := knowledge.styles()[name].unshown:
+            if (unshown := knowledge.styles()[name].unshown) and feature_mood(unshown) is None:
                 self.remarks.append(f"{name} also means {unshown}, which boxes do not show")
         rest: dict[str, Any] = {
             "styles": tuple(dict.fromkeys(self.styles))[:8],
