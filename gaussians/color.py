@@ -103,6 +103,17 @@ def parse(text: str) -> Rgb:
     """
     if len(text) > _TEXT_LIMIT:
         raise UserError(f"unknown colour {text[:40]!r}…; use a CSS name such as teal, or #1f8a8a")
+    if found := known(text):
+        return found
+    joined = _WORDS.sub(" ", text.lower()).strip().replace(" ", "")
+    hint = did_you_mean(joined, names()) or "use a CSS name such as teal, or #1f8a8a"
+    raise UserError(f"unknown colour {text!r}; {hint}")
+
+
+def known(text: str) -> Rgb | None:
+    """The value of a colour as in `parse`, None if it is unknown; much faster there, as no similar names are sought."""
+    if len(text) > _TEXT_LIMIT:
+        return None
     plain = _WORDS.sub(" ", text.lower()).strip()
     joined = plain.replace(" ", "")
     if named := _named(plain):
@@ -110,14 +121,12 @@ def parse(text: str) -> Rgb:
     if re.fullmatch(r"#([0-9a-f]{3}|[0-9a-f]{6})", joined):
         return _hex(joined)
     if found := _QUALIFIER.match(plain):
-        return _qualify(found.group(1), parse(found.group(2)))
+        base = known(found.group(2))
+        return None if base is None else _qualify(found.group(1), base)
     stem = plain.removesuffix("ish")
     if stem != plain and (named := _named(stem) or _named(stem[:-1]) or _named(f"{stem}e")):
         return named  # greenish, reddish, bluish
-    if described := _described(plain):
-        return described
-    hint = did_you_mean(joined, names()) or "use a CSS name such as teal, or #1f8a8a"
-    raise UserError(f"unknown colour {text!r}; {hint}")
+    return _described(plain)
 
 
 def _described(plain: str) -> Rgb | None:
@@ -129,11 +138,11 @@ def _described(plain: str) -> Rgb | None:
         return shade_of(SHADES[words])
     for taken in (2, 1):
         finish = FINISHES.get(" ".join(words[:taken])) if len(words) > taken else None
-        if finish is not None and (base := _known(" ".join(words[taken:]))):
+        if finish is not None and (base := known(BASIC.get(rest := " ".join(words[taken:]), rest))):
             return _qualify(finish, base) if finish else base
     if len(words) < 2:
         return _hex(BASIC[FAMILIES[plain]]) if plain in FAMILIES else None
-    first, last = _known(" ".join(words[:-1])), _known(words[-1])
+    first, last = (known(BASIC.get(part, part)) for part in (" ".join(words[:-1]), words[-1]))
     if first is None or last is None:
         return None
     tinge = words[0].endswith("ish")  # reddish brown
@@ -142,14 +151,6 @@ def _described(plain: str) -> Rgb | None:
     share = 0.3 if tinge else 0.5
     r, g, b = (share * x + (1 - share) * y for x, y in zip(first, last, strict=True))
     return (r, g, b)
-
-
-def _known(text: str) -> Rgb | None:
-    """The colour of a text, None if it is none."""
-    try:
-        return parse(BASIC.get(text, text))
-    except UserError:
-        return None
 
 
 def _named(plain: str) -> Rgb | None:

@@ -296,9 +296,7 @@ def described(text: str) -> Described | None:
 
 def _colors(told: list[str]) -> list[str]:
     """The colours among some words, in order."""
-    from ..color import BASIC, QUALIFIERS
-    from ..color import parse as color_of
-    from ..errors import UserError
+    from ..color import BASIC, QUALIFIERS, known
 
     found: list[str] = []
     i = 0
@@ -307,9 +305,7 @@ def _colors(told: list[str]) -> list[str]:
             phrase = " ".join(told[i : i + n])
             if i + n > len(told) or phrase in QUALIFIERS or phrase in ("and", "a", "the", "of", "in"):
                 continue
-            try:
-                color_of(phrase)
-            except UserError:
+            if known(phrase) is None:
                 continue
             if n > 1 and not any(w in BASIC or w in QUALIFIERS or w == "grey" for w in told[i : i + n]):
                 continue
