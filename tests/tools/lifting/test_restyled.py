@@ -80,6 +80,7 @@ def test_a_model_that_fails_leaves_the_material(room: Room) -> None:
     assert scene is room.fitted and told.reason == "out of memory"
 
 
+@pytest.mark.slow
 def test_restyle_is_completed_by_the_model(room: Room) -> None:
     """The whole way: the box becomes leather, and the model paints it."""
     scene, painter = room.fitted, Painter()
