@@ -132,9 +132,14 @@ _HINTS = re.compile(
 )
 
 
+_GREETING = re.compile(
+    r"(?:(?:hi|hello|hey),? )?(?:a )?(?:very )?good (?:morning|evening|night|day)\b[\w ]*[.!]*", re.IGNORECASE
+)
+
+
 def may_be_light(cleaned: str) -> bool:
     """Whether any word could be about light; most instructions have none, and take no more time."""
-    return _HINTS.search(cleaned) is not None
+    return _HINTS.search(cleaned) is not None and _GREETING.fullmatch(cleaned.strip()) is None
 
 
 def _pieces(words: Sequence[Word]) -> list[list[Word]]:
@@ -200,6 +205,8 @@ def _somewhere(words: Sequence[str], loose: bool, thing: Callable[[str], Query |
     for at in range(1, len(words) - 1):
         if words[at] not in _PREPOSITIONS:
             continue
+        if words[at] == "on" and switched(" ".join(words[: at + 1]), thing) is not None:
+            continue  # "switch the lamp on, and an evening light"
         two = tuple(words[at : at + 2]) in _TWO
         start = at + 2 if two else at + 1
         before = _without_area(words[:at])

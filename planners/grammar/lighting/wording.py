@@ -7,8 +7,8 @@ the words as they were said.
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 
+from ....gaussians.world.spelling import nearest
 from ..tagging.words import split
 from ..vocabulary.nouns import is_known
 from .vocabulary import meanings
@@ -178,9 +178,6 @@ def _spelled(said: str) -> str:
     for word in {w.text for w in split(said)}:
         if len(word) < _LONG or not word.isalpha() or word in known or is_known(word):
             continue
-        if close := get_close_matches(word, long, n=1, cutoff=_ALIKE):
+        if close := nearest(word, long, most=1, likeness=_ALIKE):
             said = re.sub(rf"\b{word}\b", close[0], said, flags=re.IGNORECASE)
     return said
-
-
-__all__ = ["is_comparison", "plainly"]

@@ -78,3 +78,13 @@ def test_a_remark_is_said_once() -> None:
 def test_light_goes_on_after_light() -> None:
     (op,) = fields("make it a bit warmer", "make the room brighter")
     assert (op["op"], op["warmth"]) == ("relight", 0.25)
+
+
+@pytest.mark.parametrize("said", ["good morning!", "Good evening everyone", "hello, good day", "good night"])
+def test_a_greeting_is_no_light(said: str) -> None:
+    assert not GrammarPlanner().plan(said).ok
+
+
+def test_a_lamp_that_is_switched_is_no_place_of_the_light_behind_it() -> None:
+    planned = GrammarPlanner().plan("switch the lamp on, and a cosy evening light please, a third darker")
+    assert [(op.op, op.target.text) for op in planned.ops] == [("relight", "lamp"), ("relight", "everything")]

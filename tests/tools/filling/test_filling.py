@@ -136,6 +136,7 @@ def test_the_same_edit_gives_the_same_bytes_and_leaves_the_scene_alone(room: Sce
     assert room.cloud.digest() == was
 
 
+@pytest.mark.slow
 def test_filling_again_adds_nothing(room: Scene) -> None:
     thing = room.cloud[room.cloud.group == BOX]
     scene = _delete(room).scene

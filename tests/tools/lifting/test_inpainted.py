@@ -221,6 +221,7 @@ def _one() -> tuple[torch.Tensor, ...]:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_delete_with_a_folder_of_pictures(room: Room, tmp_path: Path) -> None:
     """The whole way, twice: the views are written, somebody paints them, and they are lifted."""
     scene = room.fitted
