@@ -37,6 +37,8 @@ _SHINE = re.compile(
     r"shed (?:some |more )?light on|cast (?:some |more )?light on) (?P<what>.+?)(?: please| up| a bit)?"
 )
 _SHONE = 1.6
+_SWITCHING, _LAMPS = bag("switch turn flick"), bag("lamp lamps light lights lantern chandelier bulb")
+_POINTED = bag("the that this my our your")  # "turn the lights on the left down"
 
 
 @dataclass(frozen=True)
@@ -205,7 +207,7 @@ def _somewhere(words: Sequence[str], loose: bool, thing: Callable[[str], Query |
     for at in range(1, len(words) - 1):
         if words[at] not in _PREPOSITIONS:
             continue
-        if words[at] == "on" and switched(" ".join(words[: at + 1]), thing) is not None:
+        if words[at] == "on" and words[0] in _SWITCHING and words[at - 1] in _LAMPS and words[at + 1] not in _POINTED:
             continue  # "switch the lamp on, and an evening light"
         two = tuple(words[at : at + 2]) in _TWO
         start = at + 2 if two else at + 1
