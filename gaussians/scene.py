@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .camera import Camera, Vec3
 from .cloud import GaussianCloud
 from .errors import UserError
+from .painted import Painted
 
 if TYPE_CHECKING:
     from .language.field.language_field import LanguageField
@@ -75,6 +76,7 @@ class Scene:
         cameras: cameras that came with the scene (may be empty); the first is the viewer by default.
         language: the groups that phrases resolve to, or None before embedding.
         path: the file it was loaded from, or None.
+        painted: what was painted, with its colours before; None if nothing was, and in a scene just loaded.
     """
 
     cloud: GaussianCloud
@@ -82,6 +84,7 @@ class Scene:
     cameras: tuple[Camera, ...] = ()
     language: LanguageField | None = None
     path: Path | None = None
+    painted: Painted | None = None
 
     def replace(self, **changes: Any) -> Self:
         """A new scene with some fields replaced."""

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from ...gaussians.cloud import GaussianCloud
 from ...gaussians.language.field.measure import mean_lab, sample
 from ...gaussians.language.query.selection import Selection
+from ...gaussians.painted import unpainted
 from ...gaussians.scene import Scene
 from ..placement.bodies import rows_by_thing
 from .materials import Parts, materials
@@ -44,6 +46,7 @@ def surfaces(scene: Scene, selection: Selection, *, whole: bool = False) -> Surf
     """The surfaces of a selection: one for all things of nearly the same colour, else one for each thing.
 
     So patches of one cloth keep their shading relative to each other, while a white and a black chair both turn red.
+    What is left is told by the colours that are seen; what shares a map, by those before any paint.
 
     Args:
         whole: paint parts of other hues too, each as a surface of its own.
@@ -53,18 +56,24 @@ def surfaces(scene: Scene, selection: Selection, *, whole: bool = False) -> Surf
     left = [torch.zeros(0, dtype=torch.int64)]
     apart = _apart(scene, selection)
     count = max(sum(len(rows) for rows in apart), 1)
+    bare = unpainted(scene.cloud, scene.painted)
     for rows in apart:
         made = materials(scene.cloud, rows)
-        things.append(rows[made.main])
+        things += [rows[made.main]] if bare is scene.cloud else _by_material(bare, rows[made.main])
         if whole:
             things += [rows[made.part == n] for n in range(1, len(made.shares) + 1)]
             continue
         for name, share in made.shares:
             parts[name] = parts.get(name, 0.0) + share * len(rows) / count
         left.append(rows[~made.main])
-    painted = alike(scene, [rows for rows in things if len(rows)])
+    painted = alike(scene.replace(cloud=bare), [rows for rows in things if len(rows)])
     told = tuple(sorted(parts.items(), key=lambda p: -p[1]))
     return Surfaces(painted, told, torch.cat(left).sort().values)
+
+
+def _by_material(cloud: GaussianCloud, rows: Tensor) -> list[Tensor]:
+    made = materials(cloud, rows)
+    return [rows[made.main], *(rows[made.part == n] for n in range(1, len(made.shares) + 1))]
 
 
 def _apart(scene: Scene, selection: Selection) -> list[Tensor]:

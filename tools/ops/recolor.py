@@ -13,6 +13,7 @@ from ...gaussians.color import rgb_to_lab, shade_of
 from ...gaussians.language.field.measure import Sample, lightness_spread, mean_chroma, mean_lab, sample
 from ...gaussians.language.query.query import BACKGROUND, Query
 from ...gaussians.language.query.selection import Selection
+from ...gaussians.painted import Painted, painted_again, unpainted
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
 from ..checks import count_matches
@@ -113,8 +114,18 @@ class Recolor(TargetedOp):
         else:
             touched, notes = self._paint(scene, selection, draft)
         after = scene.replace(cloud=draft.done())
-        after = after.replace(language=after_recolor(after, touched))
+        after = after.replace(language=after_recolor(after, touched), painted=self._record(scene, after, touched))
         return Outcome(after, touched=touched, notes=tuple(notes))
+
+    def _record(self, scene: Scene, after: Scene, touched: Tensor) -> Painted | None:
+        """What is known of paint after this; an adjustment of what was never painted is none."""
+        if self.color is None and scene.painted is None:
+            return None
+        bare = unpainted(scene.cloud, scene.painted)
+        rows = rows_of(after.cloud, touched)
+        if self.color is None:
+            rows = rows[(bare.sh[rows] != scene.cloud.sh[rows]).flatten(1).any(dim=1)]
+        return painted_again(scene.painted, bare, after.cloud, rows)
 
     def _adjust(self, scene: Scene, selection: Selection, draft: Draft) -> list[str]:
         """Change the light or the pigment of the whole selection alike; notes for the receipt."""
@@ -140,6 +151,7 @@ class Recolor(TargetedOp):
     def _paint(self, scene: Scene, selection: Selection, draft: Draft) -> tuple[Tensor, list[str]]:
         """Give every surface of the selection a map to the colour; ids that were painted, and notes."""
         found = surfaces(scene, selection, whole=self.paints_parts)
+        scene = self._start(scene)
         light = scene_light(scene.cloud)
         clipped = 0.0
         for rows in found.painted:
@@ -153,6 +165,10 @@ class Recolor(TargetedOp):
         notes = [note for note in (found.note(), light.note()) if note is not None]
         return painted, [*notes, *_clipping(clipped)]
 
+    def _start(self, scene: Scene) -> Scene:
+        """What is painted: with a new colour the scene before any paint, so that a second coat costs no shading."""
+        return scene if self.adjust is not None else scene.replace(cloud=unpainted(scene.cloud, scene.painted))
+
     def aim(self, cloud: GaussianCloud, rows: Tensor, colors: Sample, light: SceneLight) -> Tensor:
         """`[3]` display colour that the requested pigment has on lit faces, where the rows `[M]` of the cloud are."""
         lit = float(lit_color(colors) @ torch.tensor(LUMA, dtype=torch.float64))
@@ -164,6 +180,7 @@ class Recolor(TargetedOp):
         return torch.tensor(shade_of(self.color), dtype=torch.float64)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        before = self._start(before)
         rows = rows_of(before.cloud, outcome.touched)
         was, now = (seen_colors(s, rows_of(s.cloud, outcome.touched)) for s in (before, outcome.scene))
         checks = [self._arrived(before.cloud, rows, was, now), count_matches(before, outcome.scene, outcome)]
@@ -213,7 +230,7 @@ class Recolor(TargetedOp):
 
 def _write(draft: Draft, cloud: GaussianCloud, rows: Tensor, made: Repaint | adjusting.Lift, shading: Shading) -> None:
     for block in torch.split(rows, _ROWS):
-        draft.write("sh", block, made.on_harmonics(draft.read("sh", block), shading.at(cloud.means[block])))
+        draft.write("sh", block, made.on_harmonics(cloud.sh[block], shading.at(cloud.means[block])))
 
 
 def _clipping(share: float) -> list[str]:

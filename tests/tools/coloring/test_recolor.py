@@ -127,3 +127,35 @@ def test_dark_wood_can_be_lightened() -> None:
     sh[:5000, 0] = color_to_dc(wood)
     dark = before.replace(cloud=before.cloud.replace(sh=sh))
     assert do(dark, slice(0, 5000), adjust="lighter").receipt.passed
+
+
+def test_a_second_coat_is_as_if_it_were_the_first() -> None:
+    """Whatever was painted before, and adjusted on the way: shading is not lost twice."""
+    before = scene(2)
+    at_once = do(before, slice(0, 5000), color="teal").scene
+    now = before
+    for fields in ({"color": "white"}, {"adjust": "darker"}, {"color": "black"}, {"color": "pink"}):
+        now = do(now, slice(0, 5000), **fields).scene
+    assert do(now, slice(0, 5000), color="teal").scene.cloud.digest() == at_once.cloud.digest()
+
+
+def test_things_of_different_colours_part_again_after_one_coat() -> None:
+    before = scene(0, 0.02)
+    at_once = do(before, slice(0, 6500), color="teal", whole=True).scene
+    white = do(before, slice(0, 6500), color="white", whole=True).scene
+    again = do(white, slice(0, 6500), color="teal").scene
+    assert torch.allclose(again.cloud.sh, at_once.cloud.sh, atol=0.02)
+
+
+def test_paint_starts_from_what_something_else_made_of_it() -> None:
+    """A thing that was relit, or given a material, after it was painted is painted as it looks now."""
+    white = do(scene(0, 0.05), slice(0, 5000), color="white").scene
+    sh = white.cloud.sh.clone()
+    sh[:5000] *= 0.5
+    changed = white.replace(cloud=white.cloud.replace(sh=sh))
+    again = do(changed, slice(0, 5000), color="teal").scene
+    bare = do(changed.replace(painted=None), slice(0, 5000), color="teal").scene
+    assert again.cloud.digest() == bare.cloud.digest()
+    # Deleted and dropped rows, and dropped bands, do no harm.
+    fewer = white.replace(cloud=white.cloud[torch.arange(100, 11500)])
+    assert do(fewer, slice(0, 4900), color="teal").receipt.passed

@@ -1,0 +1,64 @@
+"""What painted Gaussians looked like before, so that painting them again starts from there.
+
+A new pigment compresses the shading of a surface where the display's range asks for it. Painted again and again, a
+thing would lose a little shading each time; painted from its first colours, only the last paint counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from .cloud import GaussianCloud
+from .rows import rows_of_ids
+
+
+@dataclass(frozen=True, eq=False)
+class Painted:
+    """Gaussians that were painted, with their harmonics before the first paint and after the last.
+
+    A Gaussian whose harmonics are no longer those of the last paint was changed by something else (turned, relit, given
+    a material); it counts as never painted.
+
+    Attributes:
+        ids: `[M]` int64, ascending.
+        before: `[M, K, 3]` harmonics before the first paint.
+        after: `[M, K, 3]` harmonics after the last.
+    """
+
+    ids: Tensor
+    before: Tensor
+    after: Tensor
+
+    def unpainted(self, cloud: GaussianCloud) -> GaussianCloud:
+        """The cloud with the harmonics before the first paint, where nothing but paint changed them."""
+        if self.after.shape[1:] != cloud.sh.shape[1:]:  # bands were dropped
+            return cloud
+        rows = rows_of_ids(cloud.ids, self.ids)
+        places = torch.searchsorted(self.ids, cloud.ids[rows])
+        still = (cloud.sh[rows] == self.after[places]).flatten(1).all(dim=1)
+        if not bool(still.any()):
+            return cloud
+        return cloud.replace(sh=cloud.sh.index_copy(0, rows[still], self.before[places[still]]))
+
+
+def unpainted(cloud: GaussianCloud, painted: Painted | None) -> GaussianCloud:
+    """The cloud as it was before any paint; the cloud itself where none is known."""
+    return cloud if painted is None else painted.unpainted(cloud)
+
+
+def painted_again(painted: Painted | None, bare: GaussianCloud, now: GaussianCloud, rows: Tensor) -> Painted:
+    """The record after rows `[P]` of a cloud were painted.
+
+    Args:
+        painted: the record before.
+        bare: the cloud before the paint, `unpainted`.
+        now: the cloud after the paint, with the same rows.
+    """
+    if painted is not None:
+        rows = torch.unique(torch.cat([rows, rows_of_ids(now.ids, painted.ids)]))
+    order = now.ids[rows].argsort()
+    rows = rows[order]
+    return Painted(now.ids[rows], bare.sh[rows], now.sh[rows])
