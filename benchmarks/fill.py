@@ -15,6 +15,7 @@ import numpy as np
 
 from ..gaussians.cloud import GaussianCloud, concat
 from ..tools.filling.fill import merged, patches_behind, unshaded
+from ..tools.lifting.past import without_those_before
 from ._fill.lifted import capture_metrics
 from ._fill.measure import Scores, biharmonic, drawn, scored, telea, views_of
 from ._fill.rooms import PLACES, Deletion, deletions
@@ -61,11 +62,12 @@ def measured(case: Deletion) -> _Measured | None:
     rest = case.before.replace(cloud=case.before.cloud[~case.gone])
     thing = case.before.cloud[case.gone]
     started = time.process_time()
-    patches = patches_behind(rest, thing)
+    patches = without_those_before(case.before, rest, patches_behind(rest, thing))
     new = merged(rest, patches)
     seconds = time.process_time() - started
     cloud = _joined(unshaded(rest, patches), new)
-    again = len(merged(rest.replace(cloud=cloud), patches_behind(rest.replace(cloud=cloud), thing)))
+    once = rest.replace(cloud=cloud)
+    again = len(merged(once, without_those_before(case.before, once, patches_behind(once, thing))))
     pictures, alphas = drawn(cloud, seen)
     holes = [v.hidden & (v.bare_alpha < 0.5) for v in seen]
     scores = (

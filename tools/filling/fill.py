@@ -131,7 +131,9 @@ def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = No
     if len(own) < 4:
         return []
     up = scene.frame.up_vector
-    planes = planes_near(around, own, up)
+    middle = (low + high) / 2
+    eyes = [c.position for c in scene.cameras if c.contains(*c.project(middle[None]))[0]]
+    planes = planes_near(around, own, up, np.array(eyes).reshape(-1, 3))
     patches = list[Patch]()
     for plane in planes:
         clips = [p for p in planes if p is not plane and p.last]
@@ -254,16 +256,15 @@ def _patch(
     # Skirting boards and the like are in front of a wall and none of the floor.
     covered = (shown.alpha > COVERED) & own & _before(chart.points(), clips, max(_SKIRT * size, 1.5 * chart.cell))
     empty = (shown.alpha <= COVERED) & within
-    surface = Surface(chart, shown, covered, slab)
+    there = _covers(scene, earlier, plane, chart, size)
+    surface = Surface(chart, shown, covered, slab, there)
     hole, support = np.zeros_like(empty), 0.0
     if empty.sum() >= _FEWEST:
         was, open_ = _hidden_cells(scene, rows, slab, thing, plane, chart, empty, extent)
-        there = _covers(scene, earlier, plane, chart, size)
-        open_ &= ~there
         # Where nothing was seen, the surface is there if it is there around.
         filled = harmonic(covered.astype(np.float64)[..., None], covered | open_, was)[..., 0]
         hole = (was & (filled > 0.5)) | _gaps(was, empty, covered, within)
-        hole &= ~beyond(hole & ~there, covered, within)
+        hole &= ~beyond(hole, covered, within)
         hole = _large(hole & ~there, _LEAST * size**2 / chart.cell**2)
         rim = ndimage.binary_dilation(hole, iterations=2) & ~hole
         told = (covered | open_) & rim if plane.last or plane.carries else rim
@@ -282,12 +283,14 @@ def _covers(scene: Scene, rows: Tensor, plane: Plane, chart: Chart, size: float)
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A surface in its chart: what is seen of it, the cells that it covers `[H, W]`, and its rows."""
+    """A surface in its chart: what is seen of it, the cells that it covers `[H, W]`, its rows, and the cells that an
+    earlier fill covers, None if there was none."""
 
     chart: Chart
     shown: Seen
     covered: Mask
     rows: Tensor
+    made: Mask | None = None
 
 
 def _shadow(thing: GaussianCloud, surface: Surface, within: Mask, size: float) -> Shadow | None:
@@ -349,23 +352,22 @@ def continue_into(
     if reason or not hole.any():
         return Patch(chart.plane, chart, hole, nothing, support, 0.0, 0.0, reason, rows, factor, darkness)
     return replace(
-        _filled(scene, surface.rows, chart.plane, chart, shown, surface.covered, hole, support),
+        _filled(scene, replace(surface, shown=shown), hole, support),
         shaded=rows, factor=factor, darkness=darkness,
     )  # fmt: skip
 
 
-def _filled(
-    scene: Scene, slab: Tensor, plane: Plane, chart: Chart, shown: Seen, covered: Mask, hole: Mask, support: float
-) -> Patch:
-    known = _same(shown, covered & ~hole, hole)
+def _filled(scene: Scene, surface: Surface, hole: Mask, support: float) -> Patch:
+    chart, shown, plane = surface.chart, surface.shown, surface.chart.plane
+    known = _same(shown, surface.covered & ~hole, hole)
     result: Continued = continued(shown.rgb, known, hole)
     solid = known & (shown.alpha > 0.9) if (known & (shown.alpha > 0.9)).any() else known
     height = harmonic(shown.height[..., None], solid, hole | (known & ~solid))[..., 0]
     edge = ndimage.binary_dilation(hole) & known & (shown.alpha < 0.9)
-    cells = hole | edge
+    cells = hole | (edge if surface.made is None else edge & ~surface.made)
     points = torch.from_numpy(chart.points(height)[cells].astype(np.float32))
     look = Look(points, result.picture[cells], _groups(shown, known)[cells], gaze(scene.cameras, plane, points))
-    cloud = gaussians_of(chart, look, scene.cloud, slab)
+    cloud = gaussians_of(chart, look, scene.cloud, surface.rows)
     return Patch(plane, chart, hole, cloud, support, result.error, result.spread)
 
 

@@ -25,6 +25,8 @@ _CARRIES = 0.85  # upward part of the normal of what things stand on
 _REACHES = 0.12  # of the thing's extent: how near it comes to a surface that is neither floor nor wall
 _LEVEL, _UPRIGHT = 1.15, 1.1  # weight of level and of upright planes against oblique ones
 _BEHIND = 0.02  # share of the surroundings behind a plane up to which nothing lies behind it
+_SAME = 0.9  # cosine between normals: a larger surface of the same side that lies behind another is the last of both
+_EYES = 0.25  # of the photographs that look at the thing: where more lie behind a plane, something else does too
 _STRAIGHT = 0.998  # cosine of the angle up to which a plane may be level or upright
 _COARSE, _NOISIER = 3.0, 2.2  # the wider tolerance over the first, and by which it must hold more to be taken
 _GROWS = 1.45  # by which twice the tolerance must hold more points for it to be too narrow
@@ -67,13 +69,14 @@ class Plane:
         return np.asarray(local @ self.axes + self.origin)
 
 
-def planes_near(around: F64, thing: F64, up: F64) -> list[Plane]:
+def planes_near(around: F64, thing: F64, up: F64, eyes: F64 | None = None) -> list[Plane]:
     """The flat surfaces that a thing may have hidden, the largest first.
 
     Args:
         around: `[M, 3]` opaque points around the thing, without its own.
         thing: `[K, 3]` its points.
         up: `[3]`, unit.
+        eyes: `[V, 3]` from where it was photographed: where many of them lie behind a surface, it is not the last one.
     """
     low, high = thing.min(axis=0), thing.max(axis=0)
     size = float((high - low).max())
@@ -97,7 +100,8 @@ def planes_near(around: F64, thing: F64, up: F64) -> list[Plane]:
             break
         left &= ~near
         behind = plane.height(points) < -2 * max(wide, plane.noise)
-        last = bool(behind.mean() <= _BEHIND)
+        last = bool(behind.mean() <= _BEHIND) and not _seen_from_behind(plane, eyes)
+        last &= not any(p.last and p.normal @ plane.normal > _SAME and plane.height(p.origin) < 0 for p in found)
         gap = float(np.quantile(plane.height(body), _ENDS))
         if last or (gap < _REACHES * size and plane.normal @ up > _FACING):
             # What things stand on is found first, as it is the largest; shelves and seats above it carry nothing of it.
@@ -106,6 +110,10 @@ def planes_near(around: F64, thing: F64, up: F64) -> list[Plane]:
                 continue
             found.append(Plane(plane.origin, plane.axes, plane.noise, last, carries))
     return found
+
+
+def _seen_from_behind(plane: Plane, eyes: F64 | None) -> bool:
+    return eyes is not None and len(eyes) > 0 and bool((plane.height(eyes) < 0).mean() > _EYES)
 
 
 def _some(points: F64, most: int) -> F64:

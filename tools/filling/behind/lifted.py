@@ -8,6 +8,7 @@ only what those before it left open, so that all of them show the same.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -37,7 +38,9 @@ _THROUGH = 1e-3  # least weight between neighbouring pixels
 _STRETCHED = 2.5  # times the size of a pixel at its depth: how far a Gaussian reaches at most on slanted ground
 _SEEN_PAST = 0.97  # of the depth that another view shows: what is nearer, or hardly farther, was seen by it
 _COVER = 0.75  # standard deviation of a Gaussian over the side of a pixel at its depth: no gaps seen from aside
+_SHOWN = 0.5  # alpha from which a view without the thing shows a surface
 _TRIED = 20  # depths along a ray
+_TURNS = 4  # of all views, at most: what one view fills may surround the hole of another that was refused before
 _FARTHER = 1.3  # times the largest depth around a hole: that of the last
 _UNCOVERED = 0.2  # of a pixel that the thing filled, below which what is behind it was seen
 _OUTSIDE = 3.0  # times the thing's distance: what surrounds a hole and is farther away is the outside of a window
@@ -88,12 +91,16 @@ def holes_filled(cloud: GaussianCloud, place: Place, glass: frozenset[int] = fro
         glass: groups that show something else than themselves: mirrors and windows.
     """
     now, found, left = cloud, list[Hole](), dict[str, Hole]()
-    for k, view in enumerate(place.views):
-        view = view if now is cloud else seen_again(view, now)
+    told, started = _Told(cloud.sh.shape[1], glass), dict[int, GaussianCloud]()
+    for k in itertools.chain.from_iterable([range(len(place.views))] * _TURNS):
+        if started.get(k) is now:  # nothing was made since this view was looked at
+            break
+        view = place.views[k] if now is cloud else seen_again(place.views[k], now)
+        started[k] = now
         open_ = view.open_pixels()
         if not open_.any():
             continue
-        made = _filled(view, k, open_, place.witnesses, _Told(cloud.sh.shape[1], glass))
+        made = _filled(view, k, open_, place, told)
         found += [h for h in made if not h.reason]
         for hole in (h for h in made if h.reason):  # every view tells of the same place
             left[hole.reason] = max(left.get(hole.reason, hole), hole, key=lambda h: h.area)
@@ -112,7 +119,7 @@ def _joined(cloud: GaussianCloud, new: Sequence[GaussianCloud]) -> GaussianCloud
     return concat([cloud, *numbered])
 
 
-def _filled(view: View, index: int, open_: Mask, witnesses: Sequence[View], told: _Told) -> list[Hole]:
+def _filled(view: View, index: int, open_: Mask, place: Place, told: _Told) -> list[Hole]:
     """The holes of one view."""
     bands, glass = told
     behind = ~open_ & ~view.before & ((view.covers < 0.02) | (view.alpha > 0.5))
@@ -142,7 +149,7 @@ def _filled(view: View, index: int, open_: Mask, witnesses: Sequence[View], told
     colours = patched(picture, known & ~soft, soft | (open_ & ~every))
     depth = _depths(view, colours, every, known)
     depth = np.maximum(depth, np.where(view.front > 0, view.front, 0.0))
-    depth, unseen = _unseen(view, every, depth, witnesses)
+    depth, unseen = _unseen(view, every, depth, place)
     found = [
         _lifted(view, index, h & unseen, colours, depth, known, bands) for h in holes if (h & unseen).sum() >= SPECK
     ]
@@ -202,18 +209,22 @@ def _rays(view: View, pixels: Mask) -> F64:
     return np.asarray(local @ camera.world_to_camera[:3, :3])
 
 
-def _unseen(view: View, hole: Mask, depth: F64, witnesses: Sequence[View]) -> tuple[F64, Mask]:
-    """`[H, W]` depths of a hole moved backward along its rays until no other view saw the point there, and which
-    pixels have such a depth. What another view saw is there already, or is known to be empty.
+def _unseen(view: View, hole: Mask, depth: F64, place: Place) -> tuple[F64, Mask]:
+    """`[H, W]` depths of a hole moved backward along its rays until no other view saw the point there, and it hides
+    nothing that another view shows; and which pixels have such a depth. What another view saw is there already, or is
+    known to be empty, and what is known behind the thing from one side is not hidden by a guess from another, but for
+    what the thing stood on.
     """
     rays, eye = _rays(view, hole), view.camera.position
     start = depth[hole]
     far = max(float(np.quantile(start, 0.98)) * _FARTHER, 1e-9)
-    others = [w for w in witnesses if w.camera is not view.camera]
+    others = [w for w in place.witnesses if w.camera is not view.camera]
+    beside = [v for v in place.views if v.camera is not view.camera]
     best, left = start.copy(), np.arange(len(start))
     for step in range(_TRIED):
         tried = start[left] * (np.maximum(far / start[left], 1.0)) ** (step / (_TRIED - 1))
-        bad = _was_seen(eye + rays[left] * tried[:, None], others)
+        points = eye + rays[left] * tried[:, None]
+        bad = _was_seen(points, others) | (_hides(points, beside) & ~place.under(points))
         best[left[~bad]] = tried[~bad]
         left = left[bad]
         if not len(left):
@@ -237,6 +248,17 @@ def _was_seen(points: F64, views: Sequence[View]) -> Mask:
         slack = 2 - _SEEN_PAST if view.taken else _SEEN_PAST  # what nobody is known to have seen may have to be made
         seen |= inside & clear & (away < slack * view.depth[y, x])
     return seen
+
+
+def _hides(points: F64, views: Sequence[View]) -> Mask:
+    """Which points stand before what views show without the thing."""
+    before = np.zeros(len(points), bool)
+    for view in views:
+        at, away = view.camera.project(points)
+        inside = view.camera.contains(at, away)
+        x, y = (np.clip(np.floor(at[:, k]).astype(int), 0, view.alpha.shape[1 - k] - 1) for k in (0, 1))
+        before |= inside & (view.alpha[y, x] > _SHOWN) & (away < _SEEN_PAST * view.depth[y, x])
+    return before
 
 
 def _lifted(view: View, index: int, hole: Mask, colours: F64, depth: F64, known: Mask, bands: int) -> Hole:

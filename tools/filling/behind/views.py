@@ -33,6 +33,7 @@ _CLEAR = 0.02  # share below which the pixel is not touched by it
 _GONE = 0.5  # of the alpha around: a pixel with less shows nothing
 VOID = 0.12  # alpha below which nothing is there: dark surfaces in captures on black reach no high alpha
 SPECK = 5  # pixels of a hole
+_FOOT = 0.05  # of the thing's extent: how high above its lowest point what it stands on may be
 _BEFORE = 0.5  # of the thing's extent in depth: what is nearer than its front beside it by more hides a part of it
 _BESIDE, _MEETS, _MET = 16, 3, 0.12  # pixels from the thing within which that is asked, within which it begins, and
 # what share of it lies there at least
@@ -107,10 +108,18 @@ class Place:
         views: of it, that from the middle of all first, then each as far as may be from the others.
         witnesses: views of the whole scene, with the thing, that tell what was seen, or the same views where there are
             no photographs.
+        up: `[3]`, unit.
+        bottom: height along it up to which the thing may have stood on something.
     """
 
     views: tuple[View, ...]
     witnesses: tuple[View, ...]
+    up: F64
+    bottom: float
+
+    def under(self, points: F64) -> Mask:
+        """Which points `[M, 3]` are no higher than the bottom of the thing."""
+        return np.asarray(points @ self.up <= self.bottom)
 
 
 def place_of(
@@ -145,8 +154,9 @@ def place_of(
                 views.append(view)
     views = views[: 2 * MOST_VIEWS]
     if not any(v.open_pixels().any() for v in views):
-        return Place((), ())
-    return Place(tuple(views), tuple(witnesses) or tuple(views))
+        views = []
+    bottom = float((box @ up).min()) + _FOOT * size
+    return Place(tuple(views), tuple(witnesses) or tuple(views), up, bottom)
 
 
 def witnesses_of(cloud: GaussianCloud, thing: GaussianCloud, cameras: Sequence[Camera]) -> list[View]:
