@@ -36,6 +36,8 @@ class GaussianCloud:
             sign convention of Kerbl et al. 2023; colour is `max(0, 0.28209 * sh[:, 0] + 0.5 + ...)`, display space.
         group: `[N]` int32, the object each Gaussian belongs to, `NO_GROUP` for none.
         ids: `[N]` int64, stable identity; the row number in the file that was loaded, new ones above.
+        first_free: no column: ids below it were given, if only to Gaussians that are deleted by now; new ones get none
+            of them.
     """
 
     means: Tensor
@@ -45,6 +47,7 @@ class GaussianCloud:
     sh: Tensor
     group: Tensor
     ids: Tensor
+    first_free: int = 0
 
     def __post_init__(self) -> None:
         n = self.means.shape[0] if self.means.ndim else -1
@@ -117,7 +120,7 @@ class GaussianCloud:
 
     def columns(self) -> list[tuple[str, Tensor]]:
         """The columns by name, in field order."""
-        return [(f.name, getattr(self, f.name)) for f in fields(self)]
+        return [(name, getattr(self, name)) for name in _COLUMNS]
 
     def __getitem__(self, index: Tensor | slice) -> Self:
         """Rows by boolean mask `[N]`, integer index `[M]` or slice; every column stays aligned."""
@@ -128,8 +131,8 @@ class GaussianCloud:
             rows = rows_where(index)  # one scan of the mask instead of one a column
         if isinstance(rows, Tensor) and rows.ndim == 1 and (not len(rows) or int(rows.min()) >= 0):
             # Unlike `column[rows]` this does not wait for threads that other processes keep busy: 0.02 ms, not 16.
-            return type(self)(**{name: taken(column, rows) for name, column in self.columns()})
-        return type(self)(**{name: column[rows] for name, column in self.columns()})
+            return self.replace(**{name: taken(column, rows) for name, column in self.columns()})
+        return self.replace(**{name: column[rows] for name, column in self.columns()})
 
     def replace(self, **columns: Any) -> Self:
         """A new cloud with some columns replaced; the others are shared."""
@@ -137,7 +140,7 @@ class GaussianCloud:
 
     def to(self, device: str | torch.device) -> Self:
         """The same cloud on another device."""
-        return type(self)(**{name: column.to(device) for name, column in self.columns()})
+        return self.replace(**{name: column.to(device) for name, column in self.columns()})
 
     def with_degree(self, degree: int) -> Self:
         """The same cloud with its harmonics cut to, or padded with zeros up to, `degree`."""
@@ -158,6 +161,9 @@ class GaussianCloud:
         return h.hexdigest()
 
 
+_COLUMNS = tuple(f.name for f in fields(GaussianCloud) if f.name != "first_free")
+
+
 def concat(clouds: list[GaussianCloud]) -> GaussianCloud:
     """Stack clouds row by row; harmonics are padded to the largest degree; ids must not collide.
 
@@ -169,7 +175,8 @@ def concat(clouds: list[GaussianCloud]) -> GaussianCloud:
     degree = max(c.degree for c in clouds)
     clouds = [c.with_degree(degree) for c in clouds]
     parts = [dict(c.columns()) for c in clouds]
-    joined = type(clouds[0])(**{name: torch.cat([p[name] for p in parts]) for name in parts[0]})
+    columns = {name: torch.cat([p[name] for p in parts]) for name in parts[0]}
+    joined = type(clouds[0])(**columns, first_free=max(c.first_free for c in clouds))
     if len(clouds) > 1 and _ranges_overlap(clouds) and len(torch.unique(joined.ids)) != len(joined):
         raise UserError("concat: two Gaussians share an id; renumber the added ones above the largest id")
     return joined

@@ -22,9 +22,18 @@ def rows_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
 
 
 def fresh_ids(cloud: GaussianCloud, count: int) -> Tensor:
-    """`[count]` int64 ids above every id of `cloud`."""
-    first = span_of(cloud.ids).high + 1 if len(cloud) else 0
+    """`[count]` int64 ids above every id of `cloud`, those of deleted Gaussians included."""
+    first = _first_free(cloud)
     return torch.arange(first, first + count, dtype=torch.int64, device=cloud.device)
+
+
+def without(cloud: GaussianCloud, gone: Tensor) -> GaussianCloud:
+    """The rows of a cloud outside the mask `gone` `[N]`, whose ids are given to nothing else."""
+    return cloud[~gone].replace(first_free=_first_free(cloud))
+
+
+def _first_free(cloud: GaussianCloud) -> int:
+    return max(cloud.first_free, span_of(cloud.ids).high + 1 if len(cloud) else 0)
 
 
 def selection_of(selection: Selection, ids: Tensor, groups: tuple[int, ...], reason: str) -> Selection:
@@ -48,7 +57,7 @@ def joined(cloud: GaussianCloud, without: Tensor | None, added: list[GaussianClo
             torch.index_select(column, 0, keep, out=out[:n])
         torch.cat([getattr(c, name) for c in added], out=out[n:])
         columns[name] = out
-    return GaussianCloud(**columns)
+    return GaussianCloud(**columns, first_free=max(_first_free(c) for c in (cloud, *added)))
 
 
 class Draft:

@@ -353,7 +353,7 @@ def _degenerate(ground: Ground) -> Row:
         columns = {key: column.clone() for key, column in scene.cloud.columns()}
         for key, column in bad.columns():
             columns[key][rows] = column
-        hostile = scene.replace(cloud=GaussianCloud(**columns))
+        hostile = scene.replace(cloud=scene.cloud.replace(**columns))
         values.append((name, fmean(_holds(hostile, data, chosen, context) for data in _ALL_OPS)))
     return _row("edit.degenerate_gaussians", 1.0, values, "share sound", len(_ALL_OPS) * len(_HOSTILE), law=True)
 

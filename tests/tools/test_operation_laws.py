@@ -201,3 +201,16 @@ def test_fifty_random_edits_undo_to_the_same_bytes() -> None:
         digests.append(history[-1].cloud.digest())
     for old, digest in zip(reversed(history), reversed(digests), strict=True):
         assert old.cloud.digest() == digest
+
+
+@pytest.mark.parametrize("removal", ["delete", "isolate"])
+def test_ids_of_what_was_deleted_are_given_to_nothing_else(removal: str) -> None:
+    """Else "it", said of a thing that was deleted, would mean the next thing that is made."""
+    scene = random_scene(3)
+    top = scene.cloud.ids.sort().values[-40:]
+    rest = scene.cloud.ids[~torch.isin(scene.cloud.ids, top)].sort().values
+    chosen = top if removal == "delete" else rest
+    after = do(scene, {"op": removal}, Selection(Query(last=True), "found", chosen)).scene
+    copied = do(after, {"op": "duplicate", "direction": "up"}, Selection(Query(last=True), "found", rest[:20])).scene
+    made = copied.cloud.ids[~torch.isin(copied.cloud.ids, after.cloud.ids)]
+    assert len(made) == 20 and int(made.min()) > int(top.max())

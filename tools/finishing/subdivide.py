@@ -67,7 +67,7 @@ def subdivided(cloud: GaussianCloud, counts: Tensor) -> tuple[GaussianCloud, Ten
     parent = torch.cat(parents)
     columns = {name: torch.cat([getattr(c, name) for c in made]) for name, _ in cloud.columns()}
     by_parent = parent.argsort(stable=True)
-    return GaussianCloud(**columns)[by_parent], parent[by_parent]
+    return cloud.replace(**columns)[by_parent], parent[by_parent]
 
 
 def _children(cloud: GaussianCloud, order: Tensor, counts: tuple[int, int], reach: float) -> GaussianCloud:

@@ -13,6 +13,7 @@ from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..carried_objects import MAX_NAMED, Stack, stacks_on
 from ..checks import count_matches, none_left, supported
+from ..cloud_diff import without
 from ..field_update import after_removal
 from ..operation import Context, Outcome, TargetedOp
 from ..placement.bodies import bodies_of
@@ -71,7 +72,7 @@ class Delete(TargetedOp):
             raise InstructionError(
                 "that would leave no Gaussian: say what to keep, or delete all objects to keep the room"
             )
-        cloud = scene.cloud[~go]
+        cloud = without(scene.cloud, go)
         after = scene.replace(cloud=cloud, language=after_removal(scene, cloud, removed.sort().values))
         if self.on_it != "settles" or not stacks:
             return Outcome(after, removed=removed, notes=notes)

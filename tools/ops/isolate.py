@@ -11,6 +11,7 @@ from ...gaussians.language.query.keeping import without_strays
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..checks import count_matches, none_left
+from ..cloud_diff import without
 from ..field_update import after_removal
 from ..operation import Context, Outcome, TargetedOp
 from ..receipt import Check
@@ -37,7 +38,7 @@ class Isolate(TargetedOp):
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         keep = mask_of(scene.cloud, self._kept(scene, selection))
-        cloud, removed = scene.cloud[keep], scene.cloud.ids[~keep]
+        cloud, removed = without(scene.cloud, ~keep), scene.cloud.ids[~keep]
         after = scene.replace(cloud=cloud, language=after_removal(scene, cloud, removed))
         strays = len(selection) - int(keep.sum())
         notes = (f"{strays:,} stray Gaussians of what is kept went too: they float apart from it",) if strays else ()
