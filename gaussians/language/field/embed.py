@@ -32,6 +32,7 @@ from ..segmentation.orient import estimate_frame
 from ..segmentation.segment import VIEWS_PER_CANDIDATE, Progress, Segment, segment
 from ..segmentation.settle import settled
 from ..segmentation.surface import MIN_OPACITY, Surface, least_opacity, surface_of
+from .exposure import exposed, gain_of
 from .group_table import vector_of_votes, with_table
 from .making import MaskSource
 from .photograph_crops import crops_of
@@ -70,9 +71,10 @@ def embed(
     if not len(scene.cloud):
         raise UserError("the scene has no Gaussians, so there is nothing to embed")
     progress("surface", 0.0)
-    surface = surface_of(scene.cloud)
+    lit = exposed(scene.cloud, gain_of(scene.cloud))
+    surface = surface_of(lit)
     frame = estimate_frame(surface, scene.cameras, scene.frame)
-    surface = settled(surface, scene.cloud, frame)
+    surface = settled(surface, lit, frame)
     scene = scene.replace(frame=frame)
     progress("views", 0.0)
     seen = choose_views(scene)
@@ -85,7 +87,7 @@ def embed(
         # trained on photographs cannot, and takes a hundred times longer; it only names the groups found.
         judge = encoder if encoder.image_size and not encoders.uses_background(encoder) else encoders.load()
         about = [one.at(surface.rows) for one in sources]
-        found = segment(scene, surface, judge, progress, views_per_candidate, about)
+        found = segment(scene.replace(cloud=lit), surface, judge, progress, views_per_candidate, about)
         labels, segments = found.labels, found.segments
         group = _segment_of_superpoint(segments, int(labels.max(initial=-1)) + 1)[labels]
         column = _assign(scene.cloud, surface, group)

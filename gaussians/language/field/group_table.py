@@ -17,6 +17,7 @@ from ..encoders import Encoder
 from ..segmentation.group_renders import mean_vectors, one_thread
 from ..segmentation.segment import Segment
 from ..specs import spec_of
+from .exposure import exposed, gain_of
 from .group_index import index_groups
 from .language_field import Group, LanguageField, Names
 from .making import Making, package_version, rules_digest
@@ -139,9 +140,14 @@ def vector_of_votes(encoder: Encoder, votes: Names) -> NDArray[np.float32] | Non
 def vectors_of(
     encoder: Encoder, clouds: Sequence[GaussianCloud], frame: Frame, whole: GaussianCloud
 ) -> NDArray[np.float32]:
-    """Mean image vector `[G, D]` of each cloud, seen from the middle of the whole one; zero for an empty one."""
+    """Mean image vector `[G, D]` of each cloud, seen from the middle of the whole one; zero for an empty one.
+
+    A dim scene is shown brighter, see `exposure`.
+    """
     middle = whole.means[:: max(1, len(whole) // 50_000)].median(dim=0).values.double().numpy()
-    vectors: NDArray[np.float32] = mean_vectors(encoder, clouds, frame, middle, around=whole)
+    gain = gain_of(whole)
+    lit = [exposed(cloud, gain) for cloud in clouds]
+    vectors: NDArray[np.float32] = mean_vectors(encoder, lit, frame, middle, around=exposed(whole, gain))
     return vectors
 
 
