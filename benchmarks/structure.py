@@ -9,9 +9,10 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -113,16 +114,50 @@ def product() -> dict[str, Path]:
     return {".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path for path in paths}
 
 
+class Import(NamedTuple):
+    """An import statement: `import a.b` has the names `("a.b",)` and no module, `from ..a import b` has the level 2."""
+
+    line: int
+    level: int
+    module: str
+    names: tuple[str, ...]
+
+
+class Source(NamedTuple):
+    """What a module says first, and its import statements, wherever in it they are."""
+
+    docstring: str | None
+    imports: tuple[Import, ...]
+
+
+@cache
+def source(path: Path) -> Source:
+    """A module read once. Only statements are visited: no expression holds an import."""
+    tree = ast.parse(path.read_text("utf-8"))
+    found: list[Import] = []
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            module, level = (node.module or "", node.level) if isinstance(node, ast.ImportFrom) else ("", 0)
+            found.append(Import(node.lineno, level, module, tuple(alias.name for alias in node.names)))
+        for block in ("body", "orelse", "finalbody", "handlers", "cases"):
+            inner = getattr(node, block, None)
+            if isinstance(inner, list):  # a lambda and a choice have an expression there
+                waiting += inner
+    return Source(ast.get_docstring(tree), tuple(found))
+
+
 def imported(name: str, path: Path, modules: dict[str, Path]) -> Iterator[str]:
     """Modules of the product that a module imports, anywhere in it, each once."""
     package = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
     found = set[str]()
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.level:
-            base = [*package[: len(package) - node.level + 1], *(node.module or "").split(".")]
+    for statement in source(path).imports:
+        if statement.level:
+            base = [*package[: len(package) - statement.level + 1], *statement.module.split(".")]
             target = ".".join(part for part in base if part)
-            for alias in node.names:
-                nested = f"{target}.{alias.name}" if target else alias.name
+            for imports in statement.names:
+                nested = f"{target}.{imports}" if target else imports
                 found.add(nested if nested in modules else target)
     yield from sorted(found & modules.keys() - {name})
 

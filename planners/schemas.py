@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from ..gaussians.errors import UserError
@@ -37,6 +38,13 @@ def schema(name: str) -> dict[str, Any]:
     """
     if name not in _MAKERS:
         raise UserError(f"there is no schema {name!r}; schemas are {', '.join(NAMES)}")
+    made: dict[str, Any] = json.loads(_text(name))
+    return made
+
+
+@cache
+def _text(name: str) -> str:
+    """A schema as JSON. Each caller of `schema` gets its own copy: generating one takes a tenth of a second."""
     made = _MAKERS[name]()
     known = {cls.__name__: cls for cls in registry.OPS.values()}
     for title, definition in made.get("$defs", {}).items():
@@ -45,4 +53,4 @@ def schema(name: str) -> dict[str, Any]:
             example = f"{json.dumps(words)} is {json.dumps(data)}"
             definition["description"] = f"{definition.get('description', '').strip()}\n\nExample: {example}"
             definition["examples"] = [data]
-    return {"$schema": _DIALECT, **made}
+    return json.dumps({"$schema": _DIALECT, **made})

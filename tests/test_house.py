@@ -40,17 +40,12 @@ def _modules(package: str) -> list[Path]:
 def _packages_imported(path: Path) -> Iterator[tuple[str, int]]:
     """Packages that a module imports, absolutely or relatively, anywhere in it, with the line."""
     package = ("scenewright", *path.relative_to(ROOT).parent.parts)
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        names: list[tuple[str, ...]] = []
-        if isinstance(node, ast.Import):
-            names = [tuple(alias.name.split(".")) for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            base = package[: len(package) - node.level + 1] if node.level else ()
-            base += tuple(node.module.split(".")) if node.module else ()
-            names = [(*base, alias.name) for alias in node.names]
-        for name in names:
+    for statement in structure.source(path).imports:
+        base = package[: len(package) - statement.level + 1] if statement.level else ()
+        base += tuple(statement.module.split(".")) if statement.module else ()
+        for name in ((*base, *imported.split(".")) for imported in statement.names):
             if name[0] == "scenewright" and len(name) > 1:
-                yield name[1], node.lineno  # type: ignore[attr-defined]
+                yield name[1], statement.line
 
 
 @pytest.mark.parametrize("package", PACKAGES)
@@ -74,9 +69,7 @@ def test_no_module_imports_itself_through_others() -> None:
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_every_file_says_what_it_knows(package: str) -> None:
-    silent = [
-        p for p in _modules(package) if p.stat().st_size and not ast.get_docstring(ast.parse(p.read_text("utf-8")))
-    ]
+    silent = [p for p in _modules(package) if p.stat().st_size and not structure.source(p).docstring]
     assert not silent
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import torch
 import trimesh
+from amounts import some
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -166,7 +167,7 @@ _LABELS = st.sampled_from(
 _SIDE = st.floats(0.0, 3.0)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=some(12), deadline=None)
 @given(
     st.lists(st.tuples(_LABELS, st.tuples(_SIDE, _SIDE, _SIDE), st.floats(-359, 360), st.integers(0, 6)), max_size=4)
 )

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from amounts import some
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -86,7 +87,7 @@ WORDS = ["a", "the", "with", "and", ",", ".", "next to", "on", "it", "each", "be
          "4 by 5 m", "for six people", "surrounded by", "one", "large", "under", "only", "zorblax"]  # fmt: skip
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=some(300), deadline=None)
 @given(st.lists(st.sampled_from(WORDS), max_size=25))
 def test_words_in_any_order_give_a_valid_brief_or_an_error_that_says_why(words: list[str]) -> None:
     try:
@@ -98,7 +99,7 @@ def test_words_in_any_order_give_a_valid_brief_or_an_error_that_says_why(words: 
         assert ("zorblax" in words) == ("zorblax" in brief.unknown)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=some(100), deadline=None)
 @given(st.text(max_size=200))
 def test_any_text_is_read_or_refused(text: str) -> None:
     try:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from amounts import some
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from same_plan import same
@@ -102,7 +103,7 @@ def test_nothing_is_half_done(bad: str, case: dict[str, Any]) -> None:
 VOCABULARY = sorted({w for c in CASES for w in c["text"].split()})
 
 
-@settings(max_examples=300)
+@settings(max_examples=some(300))
 @given(st.lists(st.sampled_from(VOCABULARY), max_size=14).map(" ".join))
 @example("the the of of and and")
 @example("delete all all all but but")
@@ -113,7 +114,7 @@ def test_word_salad_gives_a_valid_plan(text: str) -> None:
     assert plan.ok or plan.reason
 
 
-@settings(max_examples=300)
+@settings(max_examples=some(300))
 @given(st.text(max_size=MAX_CHARS), st.one_of(st.none(), st.text(max_size=80)))
 @example("\x00\x07\x1b[31mdelete the chair\x1b[0m", None)
 @example("delete the \u202echair\u202c", None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 import pytest
+from amounts import some
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -70,7 +71,7 @@ def problems(draw: st.DrawFn) -> Problem:
     return Problem.model_validate({"size": (*size, 2.5), "items": items, "wishes": wishes, "free": free})
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=some(60), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(problems(), st.integers(0, 3))
 def test_what_is_returned_is_sound_and_all_is_accounted_for(problem: Problem, seed: int) -> None:
     layout = solve(problem, seed, effort=0.3)
@@ -87,7 +88,7 @@ def test_what_is_returned_is_sound_and_all_is_accounted_for(problem: Problem, se
     assert layout.conflicts if failed else layout.ok or problem.free, "a disc without a place is a failure too"
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=some(15), deadline=None)
 @given(problems())
 def test_the_same_problem_and_seed_give_the_same_layout(problem: Problem) -> None:
     assert without_time(solve(problem, 5, effort=0.3)) == without_time(solve(problem, 5, effort=0.3))

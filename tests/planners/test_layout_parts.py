@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from amounts import some
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -41,7 +42,7 @@ def graph(*nodes: Node, relations: tuple[tuple[str, str, str], ...] = ()) -> Sce
     return SceneGraph(room=RoomShape(size=SIZE), nodes=nodes, relations=relations)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=some(60), deadline=None)
 @given(spots(), st.lists(spots(), min_size=1, max_size=3), yaws)
 def test_forbidden_middles_are_those_at_which_boxes_are_in_each_other(
     one: YawBox, others: list[YawBox], frame: float
@@ -57,7 +58,7 @@ def test_forbidden_middles_are_those_at_which_boxes_are_in_each_other(
                 assert taken[i, j] == (deep > 0.0)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=some(60), deadline=None)
 @given(spots(), st.floats(0.1, 2.0))
 def test_a_disc_is_reached_into_where_a_point_of_the_box_is_in_it(one: YawBox, radius: float) -> None:
     lattice = Lattice(np.linspace(-3, 3, 7), np.linspace(-3, 3, 7), one.yaw)
@@ -69,7 +70,7 @@ def test_a_disc_is_reached_into_where_a_point_of_the_box_is_in_it(one: YawBox, r
             assert found[i, j] == (inside < radius) or abs(inside - radius) < ulp
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=some(80), deadline=None)
 @given(spots(), spots())
 def test_gaps_are_symmetric_and_tell_overlaps(one: YawBox, other: YawBox) -> None:
     assert float(plan_gap(one, other)) == pytest.approx(float(plan_gap(other, one)), abs=ulp)
@@ -77,7 +78,7 @@ def test_gaps_are_symmetric_and_tell_overlaps(one: YawBox, other: YawBox) -> Non
         assert float(plan_penetration(one, other)) <= ulp
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=some(60), deadline=None)
 @given(st.lists(spots(on_floor=True), min_size=1, max_size=5))
 def test_the_walkable_grid_finds_what_the_checker_finds(things: list[YawBox]) -> None:
     grid = WalkableGrid((SIZE[0], SIZE[1]), SHOULDERS)
@@ -96,7 +97,7 @@ def test_what_is_taken_away_leaves_no_trace() -> None:
     assert (grid.taken == before).all() and not grid.unreached()
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=some(150), deadline=None)
 @given(
     spots(st.sampled_from([0.0, 90.0, 180.0, -90.0])),
     spots(st.sampled_from([0.0, 90.0, 180.0, -90.0])),

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from amounts import some
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -79,7 +80,7 @@ def test_the_floor_ends_the_room_where_no_wall_does(corner: Scene, context: Cont
     assert move(corner, context, "backward", 2.0).receipt.passed
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=some(40), deadline=None)
 @given(st.integers(0, 10**6))
 def test_the_free_way_is_that_of_small_steps(seed: int) -> None:
     g = np.random.default_rng(seed)

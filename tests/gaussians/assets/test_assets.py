@@ -15,6 +15,15 @@ from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.world import kinds
 
 SEEDS = (0, 1, 2, 3)
+each_kind = pytest.mark.parametrize("kind", assets.kinds())
+
+
+def first_or_all(seeds: tuple[int, ...], first: int) -> pytest.MarkDecorator:
+    """The first few seeds, and in the slow run all of them."""
+    every = pytest.param(seeds, marks=pytest.mark.slow, id="all")
+    return pytest.mark.parametrize("seeds", [pytest.param(seeds[:first], id="first"), every])
+
+
 SH_C0 = 0.28209479177387814
 
 
@@ -44,10 +53,11 @@ def test_what_the_encoder_was_shown_is_what_its_vocabulary_holds() -> None:
     assert shown < set(assets.kinds())
 
 
-@pytest.mark.parametrize("kind", assets.kinds())
-def test_every_kind_is_sound(kind: str) -> None:
+@each_kind
+@first_or_all(SEEDS, 2)
+def test_every_kind_is_sound(kind: str, seeds: tuple[int, ...]) -> None:
     low, high = np.array(kinds.extent(kind)).T
-    for seed in SEEDS:
+    for seed in seeds:
         a = made(kind, seed)
         c = a.cloud
         for name, column in c.columns():
@@ -69,17 +79,20 @@ def test_every_kind_is_sound(kind: str) -> None:
         assert 500 <= len(c) <= 12_000
 
 
-@pytest.mark.parametrize("kind", assets.kinds())
-def test_seeds_differ_and_repeat(kind: str) -> None:
-    digests = [made(kind, s).cloud.digest() for s in SEEDS]
-    assert len(set(digests)) == len(SEEDS)
-    assert assets.make(kind, 2).cloud.digest() == made(kind, 2).cloud.digest()
+@each_kind
+@first_or_all(SEEDS, 2)
+def test_seeds_differ_and_repeat(kind: str, seeds: tuple[int, ...]) -> None:
+    digests = [made(kind, s).cloud.digest() for s in seeds]
+    assert len(set(digests)) == len(seeds)
+    again = seeds[len(seeds) // 2]
+    assert assets.make(kind, again).cloud.digest() == made(kind, again).cloud.digest()
 
 
-@pytest.mark.parametrize("kind", assets.kinds())
-def test_a_colour_asked_for_is_the_one_seen(kind: str) -> None:
+@each_kind
+@first_or_all(SEEDS[:3], 1)
+def test_a_colour_asked_for_is_the_one_seen(kind: str, seeds: tuple[int, ...]) -> None:
     asked = color.rgb_to_lab(torch.tensor(color.parse("#2a5ac8")))
-    for seed in SEEDS[:3]:
+    for seed in seeds:
         a = made(kind, seed, "#2a5ac8")
         assert a.color == "blue"
         seen = color.rgb_to_lab(rgb(a)[a.main]).mean(dim=0)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from amounts import some
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from PIL import Image
@@ -21,7 +22,7 @@ from scenewright.gaussians.errors import FileError
 SHAPE = ["f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"]
 PACKED = ["packed_position", "packed_rotation", "packed_scale", "packed_color"]
 CHUNK = [f"{e}_{n}" for e in ("min", "max") for n in ("x", "y", "z", "scale_x", "scale_y", "scale_z", "r", "g", "b")]
-fuzz = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=200)
+fuzz = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=some(200))
 
 
 def check(path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import torch
+from amounts import some
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -56,7 +57,7 @@ def invert(cloud: GaussianCloud, ids: set[int]) -> set[int]:
 
 
 @given(clouds(), distances)
-@settings(max_examples=40)
+@settings(max_examples=some(40))
 def test_growing_is_what_every_distance_compared_says(made: Sets, by: float) -> None:
     cloud, a, _ = made
     points, ids = cloud.means.double().numpy(), cloud.ids.tolist()
@@ -71,7 +72,7 @@ def test_growing_is_what_every_distance_compared_says(made: Sets, by: float) -> 
 
 
 @given(clouds(), distances)
-@settings(max_examples=40)
+@settings(max_examples=some(40))
 def test_shrinking_grows_the_rest(made: Sets, by: float) -> None:
     cloud, a, _ = made
     assert shrink(cloud, a, by) == invert(cloud, grow(cloud, invert(cloud, a), by))
@@ -80,7 +81,7 @@ def test_shrinking_grows_the_rest(made: Sets, by: float) -> None:
 
 
 @given(clouds(), distances)
-@settings(max_examples=40)
+@settings(max_examples=some(40))
 def test_both_keep_the_order_of_sets_and_are_each_others_adjoint(made: Sets, by: float) -> None:
     cloud, a, b = made
     assert grow(cloud, a & b, by) <= grow(cloud, b, by) and shrink(cloud, a & b, by) <= shrink(cloud, b, by)
@@ -90,7 +91,7 @@ def test_both_keep_the_order_of_sets_and_are_each_others_adjoint(made: Sets, by:
 
 
 @given(clouds(), distances)
-@settings(max_examples=25)
+@settings(max_examples=some(25))
 def test_there_and_back_fills_holes_or_removes_specks_once_and_for_all(made: Sets, by: float) -> None:
     cloud, a, _ = made
     closed = shrink(cloud, grow(cloud, a, by), by)

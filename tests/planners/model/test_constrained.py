@@ -83,37 +83,51 @@ def thrown(vocabulary: Vocabulary, schema: dict[str, Any], seed: int, longest: i
     return text.text, closed
 
 
-@pytest.mark.parametrize(("name", "count"), [("plan", 60), ("reply", 40), ("op", 150), ("query", 60), ("graph", 40)])
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [
+        *[("plan", 15), ("reply", 10), ("op", 50), ("query", 15), ("graph", 10)],
+        *[
+            pytest.param(name, count, marks=pytest.mark.slow)
+            for name, count in {"plan": 60, "reply": 40, "op": 150, "query": 60, "graph": 40}.items()
+        ],
+    ],
+)
 def test_whatever_the_dice_say_is_valid(vocabulary: Vocabulary, name: str, count: int) -> None:
     kind = TYPES[name]
+    schema = kind.json_schema()
     for seed in range(count):
-        text, _ = thrown(vocabulary, kind.json_schema(), seed)
+        text, _ = thrown(vocabulary, schema, seed)
         try:
             kind.validate_json(text)
         except ValidationError as error:
             assert all(any(known in e["msg"] for known in BEYOND_SCHEMAS) for e in error.errors()), f"{error}\n{text}"
 
 
-def test_vocabularies_of_pieces_will_do_as_well(pieces: Vocabulary) -> None:
-    for seed in range(30):
-        EditPlan.model_validate_json(thrown(pieces, EditPlan.model_json_schema(), seed, 200)[0])
+@pytest.mark.parametrize("count", [8, pytest.param(30, marks=pytest.mark.slow)])
+def test_vocabularies_of_pieces_will_do_as_well(pieces: Vocabulary, count: int) -> None:
+    schema = EditPlan.model_json_schema()
+    for seed in range(count):
+        EditPlan.model_validate_json(thrown(pieces, schema, seed, 200)[0])
 
 
 @pytest.mark.slow
 def test_thousands_of_plans_are_valid(vocabulary: Vocabulary) -> None:
+    schema = EditPlan.model_json_schema()
     for seed in range(1000, 4000):
-        EditPlan.model_validate_json(thrown(vocabulary, EditPlan.model_json_schema(), seed)[0])
+        EditPlan.model_validate_json(thrown(vocabulary, schema, seed)[0])
 
 
-def test_from_anywhere_a_text_comes_to_a_valid_end(vocabulary: Vocabulary) -> None:
+@pytest.mark.parametrize("count", [1, pytest.param(3, marks=pytest.mark.slow)])
+def test_from_anywhere_a_text_comes_to_a_valid_end(vocabulary: Vocabulary, count: int) -> None:
     """Cut at every length, in strings, numbers, names and between the bytes of a character."""
     schema, ends = EditPlan.model_json_schema(), []
-    for seed in range(3):
+    for seed in range(count):
         for longest in range(1, 160):
             text, closed = thrown(vocabulary, schema, seed, longest)
             EditPlan.model_validate_json(text)
             ends.append(closed)
-    assert sum(ends) > 200  # most of them were really cut
+    assert sum(ends) > 0.42 * len(ends)  # most of them were really cut
 
 
 def loosened(schema: dict[str, Any]) -> dict[str, Any]:
@@ -130,11 +144,12 @@ def reads(answer: Constrained, text: str) -> bool:
     return bool(answer._matcher.try_consume_tokens(tokens) == len(tokens)) and answer.done
 
 
-def test_schemas_say_exactly_what_validators_check(vocabulary: Vocabulary) -> None:
+@pytest.mark.parametrize("count", [200, pytest.param(800, marks=pytest.mark.slow)])
+def test_schemas_say_exactly_what_validators_check(vocabulary: Vocabulary, count: int) -> None:
     """Operations that keep to their fields' types but not to what goes together: schema and validator agree on each."""
     schema = ONE_OP.json_schema()
     loose, verdicts = loosened(schema), []
-    for seed in range(800):
+    for seed in range(count):
         text, _ = thrown(vocabulary, loose, seed)
         try:
             ONE_OP.validate_json(text)

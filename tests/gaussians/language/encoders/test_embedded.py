@@ -22,12 +22,15 @@ def encoder() -> encoders.Encoder:
     return encoders.load("auto")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="module", params=[3, pytest.param(1, marks=pytest.mark.slow)], ids=["every third", "all"])
 def fresh(
-    encoder: encoders.Encoder, tmp_path_factory: pytest.TempPathFactory
+    request: pytest.FixtureRequest, encoder: encoders.Encoder, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[list[str], np.ndarray, np.ndarray]:
-    """Labels `[M]`, view vectors `[M, V, D]` and extents `[M, 3]` of one new design of each kind, whole."""
-    things = renders.things_of_seed(renders.drawn_kinds(), FRESH_SEED)
+    """Labels `[M]`, view vectors `[M, V, D]` and extents `[M, 3]` of one new design of each kind, whole.
+
+    Of every third kind; of all in the slow run.
+    """
+    things = renders.things_of_seed(renders.drawn_kinds()[:: request.param], FRESH_SEED)
     whole = (thing for thing in things if thing.state == renders.WHOLE)
     crops = renders.cached("fresh", "", lambda: whole, tmp_path_factory.mktemp("crops"), lambda line: None)
     rows = np.ones(len(crops), dtype=bool)
@@ -98,6 +101,7 @@ def test_new_designs_are_recognised(encoder: encoders.Encoder, fresh: tuple[list
     sized = np.mean([label == t for (label, _), t in zip(labels(encoder, pooled, sizes), truth, strict=True)])
     card = json.loads((encoders.weights_folder() / "measured.json").read_text())["figures"]
     # One design of each of some 130 kinds: the standard error is about 0.03, so five of them below the measured rate.
+    # Of a third of the kinds it is 0.05.
     assert right >= card["top1_mean_whole"] - 0.15
     assert sized >= card["top1_mean_size_whole"] - 0.15
     assert np.mean(wholeness(encoder, pooled) > 0.5) >= card["whole_called_whole"] - 0.15
