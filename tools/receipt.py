@@ -159,6 +159,7 @@ class Lifted(BaseModel):
         held_out: of these, how many measured the result and were not optimised against; 0: all did both.
         pixels: of all these pictures, that count.
         psnr_before, psnr_after: dB in these pixels, with the plain fill and now; None if nothing was measured.
+        steps: of the optimisation; fewer than the work is worth where a clock ended it.
         seconds: wall time.
         reason: why the fill stays as it was; "" if it was optimised.
     """
@@ -174,6 +175,7 @@ class Lifted(BaseModel):
     pixels: int = 0
     psnr_before: float | None = None
     psnr_after: float | None = None
+    steps: int = 0
     seconds: float = 0.0
     reason: str = ""
 

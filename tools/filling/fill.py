@@ -437,7 +437,9 @@ def _hidden_cells(
     flat = points.reshape(-1, 3)
     touched = _touched(thing, chart, size / HIDING)
     if not plane.last:  # a surface among others is known to go on only where the thing lay on it
-        empty = empty & ndimage.binary_dilation(touched, iterations=max(1, round(_BESIDE * size / chart.cell)))
+        # Nobody saw the underside of what stands on it: all that lies below the thing may have been touched.
+        lay = seen(chart, thing).alpha > COVERED if plane.carries else touched
+        empty = empty & ndimage.binary_dilation(lay, iterations=max(1, round(_BESIDE * size / chart.cell)))
         if not empty.any():
             return empty, empty
     least, most = np.minimum(flat.min(axis=0), low), np.maximum(flat.max(axis=0), high)

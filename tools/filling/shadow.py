@@ -39,6 +39,7 @@ _FAINTEST = 0.03  # logarithm of a shadow that is not worth taking off
 _APART = 9.0  # cells of a pattern that vary together
 _SEEN_MODEL, _DARKEST_LOG = 0.99, 1.6  # ratio above which nothing is changed, and logarithm of the darkest
 _RIDGE, _ROUNDS, _CELLS = 0.004, 5, 4_000  # of the fit, and most cells that it takes
+_CORRECTED, _BRIGHT = 1.4, 0.98  # by which a ratio is corrected at most, and quantile of the brightness around
 _OUTSIDE = 0.2  # how far from one the ratio may be where the shadow ends, which then counts as one
 
 
@@ -89,10 +90,34 @@ def most_even(rgb: F64, known: Mask, footprint: Mask, zone: Mask, shade: Blocked
         least = _EVENER if best is None or one is both else 1.0
         if one is not None and (spread := _unevenness(rgb, around, one.ratio)) < least * left:
             best, left = one, spread
-    if best is None or best is not shaped:
-        return best
-    more = _with(best, estimated(rgb / best.ratio[..., None], known, footprint, zone))
-    return more if more is not None and _unevenness(rgb, around, more.ratio) < _EVENER * left else best
+    if best is None:
+        return None
+    more = _with(best, estimated(rgb / best.ratio[..., None], known, footprint, zone)) if best is shaped else None
+    if more is not None and _unevenness(rgb, around, more.ratio) < _EVENER * left:
+        best = more
+    return _levelled(rgb, known, around, best)
+
+
+def _levelled(rgb: F64, known: Mask, around: Mask, shadow: Shadow) -> Shadow:
+    """The shadow with its ratio corrected by what it leaves too bright or too dark, where that makes the surface more
+    even; nothing becomes brighter than the surface is around the shadow.
+
+    Args:
+        around: `[H, W]`, the shadow and what it is compared with.
+    """
+    inside = known & (shadow.ratio < _SEEN_MODEL)
+    outside = around & ~inside
+    if inside.sum() < _FEWEST or outside.sum() < _FEWEST:
+        return shadow
+    picture = rgb / shadow.ratio[..., None]
+    clear = continued_far(picture, known & ~inside, inside)
+    rest = np.clip(_ratio(picture, clear, inside, _SMOOTH), 1 / _CORRECTED, _CORRECTED)
+    ratio = np.where(inside, np.minimum(shadow.ratio * rest, 1.0), shadow.ratio)
+    if _unevenness(rgb, around, ratio) >= _EVENER * _unevenness(rgb, around, shadow.ratio):
+        ratio = shadow.ratio
+    bright = _GLOW * max(float(np.quantile(rgb[outside].mean(axis=1), _BRIGHT)), 1e-3)
+    ratio = np.where(inside, np.maximum(ratio, np.minimum(rgb.mean(axis=2) / bright, 1.0)), ratio)
+    return Shadow(ratio, float(1 - ratio[inside].mean()))
 
 
 def _with(first: Shadow, second: Shadow | None) -> Shadow | None:

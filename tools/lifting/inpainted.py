@@ -66,14 +66,14 @@ def with_inpainted(
         return after, new, told
     shown = _shown(revealed, views)
     kept = after.cloud[~shown]
-    changed = optimised(kept, made, targets, seed, RATES)
+    changed, steps = optimised(kept, made, targets, seed, RATES)
     top = max(int(c.ids.max()) if len(c) else -1 for c in (before.cloud, after.cloud)) + 1
     changed = changed.replace(ids=torch.arange(top, top + len(changed), device=changed.device))
     cloud = joined(kept, None, [changed])
     told = Lifted(
         source=inpainter.name, looked=len(views), views=len(targets), made=len(changed), replaced=int(shown.sum()),
         pixels=sum(int(t.counts.sum()) for t in targets), psnr_before=psnr(after.cloud, targets),
-        psnr_after=psnr(cloud, targets), seconds=_since(started),
+        psnr_after=psnr(cloud, targets), steps=steps, seconds=_since(started),
     )  # fmt: skip
     rest = kept.ids[mask_of_ids(kept.ids, new)]
     scene = after.replace(cloud=cloud, language=recount(after.language, cloud))

@@ -1,12 +1,15 @@
 """Optimise new Gaussians through the differentiable renderer so that they look like pictures; all others stay.
 
-The number of steps depends on the size of the work alone, so that the same input and seed give the same bytes.
+The number of steps depends on the size of the work alone, so that the same input and seed give the same bytes, unless
+the machine is so slow that a clock ends it: the rates fall before that, and the steps that were done are told.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -27,6 +30,8 @@ Columns = tuple[F32, F32, F32, F32, F32]  # means, quats, scales, opacities, har
 PASSES = 40  # over all targets, if the work allows
 MOST_STEPS, LEAST_STEPS = 1200, 120
 WORK = 1.2e9  # (rows + pixels) of all steps: about half a minute on one core
+SECONDS = 45.0  # wall time of all steps at most: with what comes before and after, an edit waits a minute for it
+_LATE = 0.8  # of this time, from which on the rates fall as at the end
 SSIM_SHARE = 0.2  # of the loss, as in training
 LAST = 0.1  # of the rates, at the last step
 _REACH = 2.0  # standard deviations of a new Gaussian that its centre may move
@@ -115,6 +120,13 @@ class _Free:
         )  # fmt: skip
 
 
+class Optimised(NamedTuple):
+    """New Gaussians as they were optimised, and the steps that this took."""
+
+    cloud: GaussianCloud
+    steps: int
+
+
 def optimised(
     old: GaussianCloud,
     new: GaussianCloud,
@@ -122,7 +134,8 @@ def optimised(
     seed: int = 0,
     rates: Rates | None = None,
     passes: int = PASSES,
-) -> GaussianCloud:
+    seconds: float = SECONDS,
+) -> Optimised:
     """The new Gaussians, changed so that they and the old ones look like the targets where these count.
 
     Centres move at most two standard deviations, proportions and directions stay.
@@ -132,18 +145,22 @@ def optimised(
         new: float32, on any device.
         seed: of the order of the targets.
         passes: over all targets, if the work allows.
+        seconds: of wall time, after which no step is begun.
     """
     targets = [t for t in targets if t.counts.any()]
     if not targets or not len(new):
-        return new
+        return Optimised(new, 0)
     device, new = new.device, new.to(torch.device("cpu"))
     free, rates = _Free.of(new), rates or Rates()
     behind = [_visible(old, target) for target in targets]
     adam = {name: Adam.of(getattr(free, name)) for name in ("shifts", "log_sizes", "logits", "sh")}
     count = _steps(targets, behind, len(new), passes)
-    order = _order(len(targets), count, seed)
-    for step, which in enumerate(order):
-        slow = LAST ** (step / max(count - 1, 1))
+    started, done = time.perf_counter(), 0
+    for step, which in enumerate(_order(len(targets), count, seed)):
+        spent = (time.perf_counter() - started) / max(seconds, 1e-9)
+        if spent >= 1:
+            break
+        slow = LAST ** max(step / max(count - 1, 1), (spent - _LATE) / (1 - _LATE))
         found = _gradients(free, behind[which], targets[which])
         adam["shifts"].step(free.shifts, found["shifts"], slow * rates.means)
         adam["log_sizes"].step(free.log_sizes, found["log_sizes"], slow * rates.sizes)
@@ -151,7 +168,8 @@ def optimised(
         dc = slow * rates.colors / _DC
         adam["sh"].step(free.sh, found["sh"], dc, slow * rates.bands / _DC)
         free.limit()
-    return free.weighed(_evidence(old, new, targets)).to(device)
+        done += 1
+    return Optimised(free.weighed(_evidence(old, new, targets)).to(device), done)
 
 
 _DC = float(dc_to_color(torch.ones(1)) - dc_to_color(torch.zeros(1)))

@@ -42,7 +42,7 @@ def with_photographs(scene: Scene, photographs: Photographs, new: torch.Tensor, 
     learnt = [t for k, t in enumerate(behind.targets) if (k - first) % HELD_EVERY]
     own = mask_of_ids(scene.cloud.ids, new)
     rows = own.nonzero().squeeze(1)
-    changed = optimised(scene.cloud[~own], scene.cloud[rows], learnt, seed)
+    changed, steps = optimised(scene.cloud[~own], scene.cloud[rows], learnt, seed)
     cloud = scene.cloud.replace(
         **{
             name: getattr(scene.cloud, name).index_copy(0, rows, getattr(changed, name))
@@ -54,7 +54,7 @@ def with_photographs(scene: Scene, photographs: Photographs, new: torch.Tensor, 
     told = Lifted(
         source=PHOTOGRAPHS, looked=behind.looked, views=len(behind.targets), held_out=len(measured),
         pixels=behind.pixels, psnr_before=was, psnr_after=now if kept else was,
-        seconds=_since(started),
+        steps=steps, seconds=_since(started),
         reason="" if kept else "the fill is as near to the photographs as it gets",
     )  # fmt: skip
     return (scene.replace(cloud=cloud) if kept else scene), told

@@ -46,12 +46,13 @@ def restyled(scene: Scene, ids: Tensor, prompt: str, restyler: Restyler, seed: i
     views = views_showing(scene.cloud, own, scene.cameras, scene.frame.up_vector)
     if not views:
         return scene, Lifted(source=restyler.name, reason="no view shows it")
-    rest, thing, targets = scene.cloud[~own], scene.cloud[own], list[Target]()
+    rest, thing, targets, steps = scene.cloud[~own], scene.cloud[own], list[Target](), 0
     cloud, rows = scene.cloud, own.nonzero().squeeze(1)
     try:
         for k, strength in enumerate(STRENGTHS):
             targets = _painted(cloud, own, [v.camera for v in views], restyler, (prompt, strength, seed + k))
-            thing = optimised(rest, thing, targets, seed + k, RATES, PASSES)
+            thing, done = optimised(rest, thing, targets, seed + k, RATES, PASSES)
+            steps += done
             cloud = scene.cloud.replace(sh=scene.cloud.sh.index_copy(0, rows, thing.sh))
     except ScenewrightError as error:
         told = Lifted(source=restyler.name, looked=len(views), reason=str(error), seconds=_since(started))
@@ -59,7 +60,8 @@ def restyled(scene: Scene, ids: Tensor, prompt: str, restyler: Restyler, seed: i
     after = scene.replace(cloud=cloud)
     told = Lifted(
         source=restyler.name, looked=len(views), views=len(targets), pixels=sum(int(t.counts.sum()) for t in targets),
-        psnr_before=psnr(scene.cloud, targets), psnr_after=psnr(cloud, targets), seconds=_since(started),
+        psnr_before=psnr(scene.cloud, targets), psnr_after=psnr(cloud, targets), steps=steps,
+        seconds=_since(started),
     )  # fmt: skip
     return after.replace(language=after_recolor(after, scene.cloud.ids[own])), told
 

@@ -18,7 +18,7 @@ def note(told: Lifted) -> str:
         return f"{seen}; {told.reason} ({told.psnr_before:.1f} dB there), and stays as it was"
     there = f"there it went from {told.psnr_before:.1f} to {told.psnr_after:.1f} dB"
     held = f" in {told.held_out} that were kept apart" if told.held_out else ""
-    return f"{seen}; the fill was optimised against them: {there}{held}, in {told.seconds:.0f} s"
+    return f"{seen}; the fill was optimised against them: {there}{held}, in {told.steps} steps and {told.seconds:.0f} s"
 
 
 def restyle_note(told: Lifted) -> str:

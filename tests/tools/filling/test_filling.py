@@ -19,7 +19,7 @@ from scenewright.tools.completing import completed, filled
 from scenewright.tools.execute import Done, carry_out
 from scenewright.tools.filling.fill import beyond, merged, patches_behind
 from scenewright.tools.filling.missing import patches_in
-from scenewright.tools.filling.shadow import multiplied
+from scenewright.tools.filling.shadow import Shadow, _levelled, multiplied
 from scenewright.tools.operation import Context
 from scenewright.tools.registry import parse
 
@@ -298,6 +298,18 @@ def test_a_deletion_takes_the_shadow_off() -> None:
     assert done.receipt.filled[0].lighter > 50
     far = ratio > 0.999
     assert torch.equal(done.scene.cloud.sh[: len(ratio)][far], scene.cloud.sh[: len(ratio)][far])
+
+
+@pytest.mark.parametrize("wrong", [0.6, 1.6])
+def test_a_shadow_told_too_dark_or_too_faint_is_corrected(wrong: float) -> None:
+    """An even floor under a round shadow, whose logarithm was told wrong by a factor."""
+    y, x = np.mgrid[:60, :60] - 30.0
+    true = np.exp(-0.6 * np.exp(-(x**2 + y**2) / 150))
+    floor = 0.6 + np.random.default_rng(0).normal(0, 0.01, (60, 60, 1)) + np.zeros(3)
+    every = np.ones((60, 60), bool)
+    found = _levelled(floor * true[..., None], every, every, Shadow(np.where(true < 0.99, true**wrong, 1.0), 0.0)).ratio
+    assert np.abs(np.log(found / true)).max() < 0.5 * np.abs(np.log(true)).max() * abs(wrong - 1)
+    assert found.max() <= 1.0
 
 
 def test_a_move_takes_the_shadow_along() -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,6 +23,7 @@ from scenewright.gaussians.scene import Scene
 from scenewright.tools import completing
 from scenewright.tools.execute import carry_out
 from scenewright.tools.filling.new_rows import is_fill
+from scenewright.tools.lifting import optimise
 from scenewright.tools.lifting.behind import Photographs, differing, seen_behind
 from scenewright.tools.lifting.photographs import with_photographs
 from scenewright.tools.lifting.told import note
@@ -74,6 +77,19 @@ def test_what_no_photograph_sees_stays(room: Room, lifted: Result) -> None:
     was, now = room.filled.cloud[own], lifted[0].cloud[own]
     under = (was.means[:, :2].abs() < 0.1).all(dim=1)
     assert under.any() and _same(was[under], now[under])
+
+
+def test_a_clock_ends_the_steps(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = mask_of_ids(room.filled.cloud.ids, room.new)
+    old, new = room.filled.cloud[~own], room.filled.cloud[own]
+    targets = seen_behind(room.photographs, room.filled.cloud, room.new).targets[:2]
+    ticks = itertools.count()
+    clock = SimpleNamespace(perf_counter=lambda: float(next(ticks)))  # a second a step
+    monkeypatch.setattr(optimise, "time", clock)
+    changed, steps = optimise.optimised(old, new, targets, seconds=4.0)
+    assert steps == 3 and not _same(changed, new)
+    same, none = optimise.optimised(old, new, targets, seconds=0.0)
+    assert none == 0 and torch.equal(same.means, new.means)
 
 
 def test_limits_of_what_may_change(room: Room, lifted: Result) -> None:
