@@ -102,15 +102,14 @@ Assets = Annotated[
     Path | None,
     typer.Option("--assets", metavar="FOLDER", help="Insert the .glb and .ply files in this folder by their names."),
 ]
-Infill = Annotated[
-    str,
-    typer.Option(
-        "--infill", metavar="NAME",
-        help="What fills the surfaces that deleted, moved and replaced things hid: 'scene' (what is around them), "
-        "'none', or also a model that inpaints pictures: 'onnx:FILE' (LaMa), 'diffusers:FOLDER', or 'folder:FOLDER' "
-        "(made elsewhere).",
-    ),
-]  # fmt: skip
+_INFILL = typer.Option(
+    "--infill", metavar="NAME",
+    help="What fills the surfaces that deleted, moved and replaced things hid: 'scene' (what is around them; the "
+    "default), 'none', or also a model that inpaints pictures: 'onnx:FILE' (LaMa), 'diffusers:FOLDER', or "
+    "'folder:FOLDER' (made elsewhere).",
+)  # fmt: skip
+Infill = Annotated[str, _INFILL]
+InfillOrDial = Annotated[str | None, _INFILL]  # None: what --effort means, else "scene"
 RestyleBy = Annotated[
     str | None,
     typer.Option(
@@ -165,6 +164,14 @@ Judge = Annotated[
         "--judge", metavar="[NAME]",
         help="Judge each edit from the scenes before and after it, repair it if possible, else take it back; "
         "'vlm' also asks the vision model.",
+    ),
+]  # fmt: skip
+Effort = Annotated[
+    str | None,
+    typer.Option(
+        "--effort", metavar="LEVEL",
+        help="fast, balanced, accurate, or seconds: settings are chosen from measured points (docs/effort.md); other "
+        "options win.",
     ),
 ]  # fmt: skip
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Random seed; the same seed gives the same bytes.")]

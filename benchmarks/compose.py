@@ -14,12 +14,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..gaussians.effort.points import method
 from ..gaussians.errors import InstructionError
 from ..planners.compose import Composition, compose, sample_brief
 from ..planners.rooms.check import check
 from . import _composed, _data
 from ._composed import Case, Judged
-from .harness import Metric, Result
+from ._effort.named import words
+from .harness import Metric, Point, Result
 
 FOLDER = Path(__file__).resolve().parent.parent / "tests" / "planners" / "written"
 _UNSOUND = ("collision", "bounds", "support")
@@ -50,12 +52,12 @@ class Made:
     seconds: float
 
 
-def made(case: Case, seed: int = _SEED) -> Made:
+def made(case: Case, seed: int = _SEED, effort: float = 1.0) -> Made:
     """A case composed by the embedded reader; a refused one has no graph."""
     started = time.process_time()
     result: Composition | None = None
     try:
-        result = compose(case["text"], seed=seed)
+        result = compose(case["text"], seed=seed, effort=effort)
         refused = "; ".join(s for c in result.layout.conflicts[:1] for s in c.statements)
     except InstructionError as error:
         refused = str(error)
@@ -123,9 +125,10 @@ def run(quick: bool = False) -> Result:
         "rooms composed from sentences",
         "share as said",
         tuple(found),
-        (),
+        tuple(_dialled(cases(FOLDER / "rooms.jsonl")[:: 4 * step])),
         (
             *counts,
+            "points: every fourth of the written rooms at each effort of the dial.",
             "written: by somebody who saw neither the reader nor its words. forms: by the author of the reader, for "
             "rows, circles, distances, sides and quantifiers that distribute.",
             "things, relations, colors: as said in the finished graph, judged by names and boxes with tolerances of "
@@ -138,6 +141,18 @@ def run(quick: bool = False) -> Result:
         ),
         (_SEED,),
     )
+
+
+def _dialled(rooms: Sequence[Case]) -> Iterator[Point]:
+    """Seconds a room against the share of what was said, at each setting of the dial."""
+    known = method("compose")
+    for k, point in enumerate(known.points):
+        found = [made(room, effort=float(point.settings["effort"])) for room in rooms]
+        parts = [_composed.shares([m.judged for m in found], part) for part in ("things", "relations", "colors")]
+        kept, said = (sum(column) for column in zip(*parts, strict=True))
+        seconds = statistics.fmean(m.seconds for m in found)
+        setting = point.setting + words("compose", **point.settings)
+        yield Point("written rooms", setting, seconds, kept / max(said, 1), 0, k == known.default)
 
 
 def _times(count: int) -> Iterator[float]:

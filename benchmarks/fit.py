@@ -12,6 +12,7 @@ from ..gaussians.fit import Settings
 from ..gaussians.fit.fitting import EVAL_PHOTOS
 from . import _fits
 from ._data import missing
+from ._effort.named import words
 from ._fits import Made, Run
 from .harness import Metric, Point, Result
 
@@ -64,7 +65,7 @@ def _runs(quick: bool) -> tuple[Run, ...]:
     return (
         Run("default-15", "default, 15 min", long),
         Run("classic-15", "classic growth, 15 min", replace(long, growth="classic")),
-        Run("default-5", "default, 5 min", short),
+        Run("default-5", f"default, 5 min{words('fit', clock=SHORT)}", short),
         Run("classic-5", "classic growth, 5 min", replace(short, growth="classic")),
         Run("coarse-5", "coarse to fine, 5 min", replace(short, coarse=0.4)),
         Run("60k-5", "60,000 Gaussians, 5 min", replace(short, max_gaussians=60_000)),

@@ -16,6 +16,7 @@ from ..planners.compose import knowledge, problem_of, sample_brief
 from ..planners.layout import Item, Keepout, Layout, Problem, Wish, solve
 from ..planners.rooms.check import check
 from . import _data, _rooms, _tasks
+from ._effort.named import words
 from .harness import Metric, Point, Result
 
 SEED = 7000  # of what is only measured; the solver was developed on 8000 and up
@@ -145,7 +146,8 @@ def _curve(quick: bool) -> Iterable[Point]:
         for effort in EFFORTS:
             found = [judge(kind, problem, effort) for kind, problem in problems]
             kept = share([*(j.hard for j in found), *(j.soft for j in found)])
-            yield Point(name, f"effort {effort:g}", statistics.median(j.seconds for j in found), kept, 0, effort == 1.0)
+            setting = f"effort {effort:g}{words('compose', effort=effort)}"
+            yield Point(name, setting, statistics.median(j.seconds for j in found), kept, 0, effort == 1.0)
 
 
 def _conflicts() -> float:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Batch, Budget, Debug, Encoder, Force, Json, View, Vlm, Window
+from ..options import Batch, Budget, Debug, Effort, Encoder, Force, Json, View, Vlm, Window
+from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import read_batch, terminal
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ def command(
     vlm: Vlm = "auto",
     budget: Budget = None,
     window: Window = None,
+    effort: Effort = None,
     encoder: Encoder = "auto",
     view: View = "auto",
     force: Force = False,
@@ -46,11 +49,13 @@ def command(
     What nobody can tell is said. With --json the answer is
     {"answer", "answer_type", "text", "confidence", "source", "evidence", "frame", "unit"}.
     """
+    started = time.perf_counter()
     from ...gaussians.errors import UserError
     from ..output_files import refuse_existing
     from ..session.opening import SessionOptions, open_session
     from ..session.plan_report import format_usage
 
+    dial = dialled(effort, started)
     given = arguments or []
     scene, text = _scene_and_text(given, batch is not None, graph is not None)
     if picture is not None and (graph is not None or batch is not None):
@@ -59,7 +64,7 @@ def command(
         refuse_existing([picture], force)
     rows = read_batch(str(batch)) if batch else [{"text": text}]
     session = (
-        open_session(SessionOptions(scene, "grammar", encoder, view, budget=budget, vlm=vlm))[0]
+        open_session(SessionOptions(scene, "grammar", encoder, view, budget=budget, vlm=vlm, dial=dial))[0]
         if scene is not None
         else None
     )
@@ -69,7 +74,8 @@ def command(
             terminal.row({"id": row["id"], **_one_of_batch(ask, row)})
             continue
         found = ask(row["text"], None)
-        terminal.result(found.text, found.to_json())
+        terminal.result(found.text, found.to_json() | reported(dial))
+        tell(dial)
         if found.usage is not None:
             terminal.say(format_usage(found.usage))
         if picture is not None and session is not None:

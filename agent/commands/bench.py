@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 def command(
     name: Annotated[
-        str | None, typer.Argument(metavar="NAME", help="Benchmark, 'all' or 'guard'; without it, list them.")
+        str | None,
+        typer.Argument(metavar="NAME", help="Benchmark, 'all', 'guard' or 'calibrate'; without it, list them."),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Much faster and less precise.")] = False,
     chart: Annotated[
@@ -41,10 +42,14 @@ def command(
 
     Times do not carry over to other machines; ratios and accuracies do. `bench all` runs every benchmark and writes one
     page with its charts: 3 minutes with --quick, else an hour. `bench guard` holds quick accuracies against the
-    committed baseline, exit code 3 if one is worse; with --force it takes them as the new baseline.
+    committed baseline, exit code 3 if one is worse; with --force it takes them as the new baseline. `bench calibrate`
+    measures in a few minutes how fast this machine is, for the predictions of --effort; it needs no checkout.
     """
     from ...gaussians.errors import UserError
 
+    if name == "calibrate":  # works without a checkout
+        _calibrate()
+        return
     try:
         from ...benchmarks import _chart, harness
     except ModuleNotFoundError as error:
@@ -95,6 +100,19 @@ def _all(quick: bool, folder: Path, against: Path | None, force: bool) -> None:
     _tell([f"{r.name}: {s}" for r in found.results if r.name in before for s in r.regressions(before[r.name])])
     if found.failed:
         raise typer.Exit(1)
+
+
+def _calibrate() -> None:
+    """Measure how fast this machine is, and write the file that the dial reads."""
+    from ...gaussians.effort import user_file
+    from ..calibrating import calibrated
+
+    found, seconds = calibrated(terminal.progress)
+    path = user_file.write(found)
+    lines = [f"{name}: {found.factors[name]:.2f} times the reference machine's {took / found.factors[name]:.2f} s"
+             for name, took in seconds.items()]  # fmt: skip
+    data = {"path": str(path), "factors": found.factors, "seconds": seconds, "machine": found.machine}
+    terminal.result("\n".join([*lines, f"written to {path}; `--effort` uses it from now on"]), data)
 
 
 def _guard(update: bool) -> None:

@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...gaussians.timing import timed
-from ..options import Budget, Debug, Force, Json, Planner, Seed, Size, View, Window
+from ..options import Budget, Debug, Effort, Force, Json, Planner, Seed, Size, View, Window
+from ..terminal.effort import dialled, tell
 from ..terminal.output import terminal
 
 if TYPE_CHECKING:
+    from ...gaussians.effort import Dial
     from ...gaussians.scene import Scene
     from ...planners.rooms.build import Built
     from ...planners.rooms.graph import SceneGraph
@@ -56,6 +58,7 @@ def command(
     ] = False,
     detail: Annotated[float, typer.Option("--detail", help="Factor on the number of Gaussians, 0.05 to 8.")] = 1.0,
     planner: Planner = "auto",
+    effort: Effort = None,
     budget: Budget = None,
     window: Window = None,
     seed: Seed = 0,
@@ -70,12 +73,13 @@ def command(
     With --json the scene graph goes to stdout. If the wishes cannot all be met, the smallest conflict is printed and
     the exit code is 3; --best writes the scene that meets as many as possible.
     """
+    started = time.perf_counter()
+    dial = dialled(effort, started)
     targets = _Targets(output, scene, picture, force, view, size)
     _check_paths(targets, assets)
     seconds: dict[str, float] = {}
-    started = time.perf_counter()
     with timed(seconds, "compose"):
-        graph, unmet = _graph(wish, seed, planner, budget, best)
+        graph, unmet = _graph(wish, seed, planner, budget, best, dial)
     with timed(seconds, "check"):
         _print_violations(graph, unmet)
     built = None
@@ -91,6 +95,7 @@ def command(
         _write(graph, built, targets)
     seconds["total"] = time.perf_counter() - started
     terminal.result(_summary(graph), graph.model_dump(mode="json", exclude_none=True))
+    tell(dial, always=True)  # the JSON is the graph alone
     terminal.say("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in seconds.items()))
 
 
@@ -113,7 +118,9 @@ def _check_paths(targets: _Targets, assets: Path | None) -> None:
         raise UserError(f"{assets} is not a folder; give one that holds .glb or .ply files")
 
 
-def _graph(wish: str, seed: int, planner: str, budget: str | None, best: bool) -> tuple[SceneGraph, int]:
+def _graph(
+    wish: str, seed: int, planner: str, budget: str | None, best: bool, dial: Dial | None
+) -> tuple[SceneGraph, int]:
     """The given graph, or one composed from the words, and how many of their wishes are not met; prints what was
     assumed, left out and not met."""
     from ...planners.rooms.graph import SceneGraph
@@ -122,7 +129,7 @@ def _graph(wish: str, seed: int, planner: str, budget: str | None, best: bool) -
         return SceneGraph.read(Path(wish)), 0
     from ...planners.compose.api import composed
 
-    composition = composed(wish, seed=seed, planner=planner, budget=budget)
+    composition = composed(wish, seed=seed, planner=planner, budget=budget, dial=dial)
     for remark in composition.remarks:
         terminal.say(f"note: {remark}")
     layout = composition.layout

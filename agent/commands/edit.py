@@ -17,10 +17,11 @@ from ..options import (
     Budget,
     Capture,
     Debug,
+    Effort,
     Encoder,
     Force,
     Harmony,
-    Infill,
+    InfillOrDial,
     Json,
     Judge,
     Log,
@@ -41,6 +42,7 @@ from ..options import (
     Window,
     Yes,
 )
+from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import error_json, terminal
 
 if TYPE_CHECKING:
@@ -98,7 +100,8 @@ def command(
     assets: Assets = None,
     picture: Picture = False,
     judge: Judge = None,
-    infill: Infill = "scene",
+    effort: Effort = None,
+    infill: InfillOrDial = None,
     no_infill: NoInfill = False,
     capture: Capture = None,
     restyle: RestyleBy = None,
@@ -118,6 +121,7 @@ def command(
 
     A language field saved beside SCENE (see `embed`) is used, and then saved beside the edited scene too.
     """
+    started = time.perf_counter()
     from ...gaussians.errors import UserError
     from ..session.opening import SessionOptions, open_session
 
@@ -132,7 +136,9 @@ def command(
         raise UserError("--session names a session of a log; give the log with --replay")
     chosen = _logged(replay, session_of_log) if replay is not None else None
     _check_targets(None if dry_run else output, preview, pictures, force)
-    started = time.perf_counter()
+    dial = dialled(effort, started)
+    if dial is not None and (no_infill or infill is not None):
+        dial.overrule("--no-infill" if no_infill else "--infill")
     seconds: dict[str, float] = {}
     options = SessionOptions(
         scene, planner, encoder, view, size, None if dry_run else log, seed, True, up, metres_per_unit, budget, picture,
@@ -140,12 +146,13 @@ def command(
         vlm,
         yes,
         assets,
-        "none" if no_infill else infill,
+        "none" if no_infill else infill or "scene",
         capture,
         restyle,
         reference or (),
         reference_width,
         harmony,
+        dial,
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)
@@ -160,7 +167,8 @@ def command(
     lines += [data["change"]] if "change" in data else []
     lines += ["dry run: no scene was written"] if dry_run else [f"wrote {data['output']}"]
     lines += [f"wrote {path}" for path in data.get("pictures", ())]
-    terminal.result("\n".join(lines), data)
+    terminal.result("\n".join(lines), data | reported(dial))
+    tell(dial)
     if not as_json:
         from ..session.plan_report import usage_lines
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 
-from ..options import Capture, Debug, Encoder, Force, Json, Masks, Scale, SceneFile, Up
+from ..options import Capture, Debug, Effort, Encoder, Force, Json, Masks, Scale, SceneFile, Up
+from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import terminal
 
 
@@ -15,6 +16,7 @@ def command(
     capture: Capture = None,
     up: Up = None,
     metres_per_unit: Scale = None,
+    effort: Effort = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
@@ -22,11 +24,13 @@ def command(
     """Make the language field of a scene and save it beside the file, so that later commands need not embed again.
 
     A saved field is used as long as the scene file has not changed; another --encoder names its groups anew. --force
-    embeds again, and so do --masks and --capture, and --up and --metres-per-unit, which are saved with the field.
+    embeds again, and so do --masks, --capture and --effort, and --up and --metres-per-unit, which are saved with the
+    field.
 
     --capture names the photographs that the scene was fitted from: what belongs together is then also read from them,
     and an encoder that was trained on photographs is shown crops of them instead of renders.
     """
+    started = time.perf_counter()
     from ...gaussians.files import load
     from ...gaussians.files.captures.capture import read_capture
     from ...gaussians.language import encoders
@@ -37,20 +41,24 @@ def command(
     from ..pictures.named_cameras import with_frame
     from ..terminal.thing_names import describe_things
 
-    started = time.perf_counter()
+    dial = dialled(effort, started)
     loaded, chosen = load(scene), encoders.load(encoder)
     loaded = with_frame(loaded, up, metres_per_unit)
-    again = force or any(said is not None for said in (up, metres_per_unit, masks, capture))
+    again = force or any(said is not None for said in (up, metres_per_unit, masks, capture, effort))
     taken = None if capture is None else read_capture(capture)
     if taken is not None and not loaded.cameras:
         loaded = loaded.replace(cameras=taken.cameras)
     sources, notes = maskers.load_all(masks, capture)
+    if dial is not None and masks is None:
+        sources = ()  # the dial chooses them
+    elif dial is not None:
+        dial.overrule("--masks")
     for note in notes:
         terminal.say(f"note: {note}")
     known = None if again else load_field(loaded, scene)
     if known is None and not again and (why := mismatch(scene)) is not None:
         terminal.say(f"note: the language field beside {scene} {why}: embedding again")
-    embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=sources, capture=taken)
+    embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=sources, capture=taken, effort=dial)
     language = embedded.language
     assert language is not None
     other = language.encoder != chosen.fingerprint
@@ -78,4 +86,6 @@ def command(
         done = f"the same groups, named by another encoder in {seconds} s, saved as {path}"
     elif known:
         done = "was embedded already (--force does it again)"
-    terminal.result("\n".join([f"{scene}: {done}", describe_things(language.objects()), *language.notes]), data)
+    text = "\n".join([f"{scene}: {done}", describe_things(language.objects()), *language.notes])
+    terminal.result(text, data | reported(dial))
+    tell(dial)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+import time
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from ..options import Debug, Force, Json, Seed
+from ..options import Debug, Effort, Force, Json, Seed
+from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import terminal
 
 if TYPE_CHECKING:
@@ -64,6 +66,7 @@ def command(
         Path | None,
         typer.Option("--report", metavar="FOLDER", help="Write report.json and comparisons with held-out photographs."),
     ] = None,
+    effort: Effort = None,
     seed: Seed = 0,
     force: Force = False,
     as_json: Json = False,
@@ -75,6 +78,7 @@ def command(
     (OUTPUT.checkpoint). If the photographs have no poses, these are estimated first (extra sfm) and kept in
     OUTPUT.poses; they are estimated again only if the photographs change.
     """
+    started = time.perf_counter()
     from ...gaussians.errors import FileError, UserError
     from ...gaussians.files import save
     from ...gaussians.files.captures.capture import unposed_photos
@@ -84,6 +88,9 @@ def command(
 
     if minutes is not None and steps is not None:
         raise UserError("give --minutes or --steps, not both")
+    dial = dialled(effort, started)
+    if dial is not None and (minutes is not None or steps is not None):
+        dial.overrule("--minutes" if steps is None else "--steps")
     where = resolve_device(device)
     _check_targets(output, report, force)
     seconds = None if steps is not None else 60 * (5.0 if minutes is None else minutes)
@@ -99,7 +106,8 @@ def command(
     if kept.exists():
         terminal.say(f"going on from {kept}")
     try:
-        done = fit(photos, settings, checkpoint_path=kept, on_status=_show_status)
+        free = None if dial is None or dial.overruled else dial
+        done = fit(photos, settings, effort=free, checkpoint_path=kept, on_status=_show_status)
     except KeyboardInterrupt:
         terminal.say(_resume_hint(kept))
         raise
@@ -111,7 +119,8 @@ def command(
     data = _data(done, photos, settings, output)
     if report is not None:
         _write_report(done, photos, data, report, force)
-    terminal.result("\n".join([_summary(done, output), *_chosen(done)]), data)
+    terminal.result("\n".join([_summary(done, output), *_chosen(done)]), data | reported(dial))
+    tell(dial)
 
 
 def _resume_hint(kept: Path) -> str:

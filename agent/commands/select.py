@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Batch, Debug, Encoder, Force, Json, Planner, SceneFile, View, Vlm
+from ..options import Batch, Debug, Effort, Encoder, Force, Json, Planner, SceneFile, View, Vlm
+from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import read_batch, terminal
 
 if TYPE_CHECKING:
@@ -51,18 +52,21 @@ def command(
     planner: Planner = "auto",
     vlm: Vlm = "auto",
     view: View = "auto",
+    effort: Effort = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Select what a phrase describes: found, unconfirmed (chosen, but not by a confirmed name), ambiguous (with the
     candidates) or absent (with the nearest)."""
+    started = time.perf_counter()
     from ...gaussians.errors import UserError
     from ..output_files import make_folder
     from ..session.opening import SessionOptions, open_session
 
     if (text is None) == (batch is None):
         raise UserError('give either TEXT or --batch FILE: scenewright select SCENE "the red chair"')
+    dial = dialled(effort, started)
     rows = read_batch(str(batch)) if batch else [{"id": None, "text": text}]
     targets = [_target(ids, row["id"], batch is not None) for row in rows]
     _check_targets([t for t in targets if t is not None], force)
@@ -71,7 +75,7 @@ def command(
     if save is not None:
         _check_save(save, batch is not None, force)
     changes = SelectionChanges(_steps(grow, shrink, invert), explain)
-    session, _ = open_session(SessionOptions(scene, planner, encoder, view, vlm=vlm))
+    session, _ = open_session(SessionOptions(scene, planner, encoder, view, vlm=vlm, dial=dial))
     if batch is None:
         _one(session, str(text), changes, _Files(targets[0], save, force))
         return
@@ -157,7 +161,8 @@ def _check_save(save: Path, batch: bool, force: bool) -> None:
 def _one(session: Session, text: str, changes: SelectionChanges, files: _Files) -> None:
     selection, data = _answer(session, text, changes)
     if selection is None or not selection.chosen:
-        terminal.result(data["reason"], data)
+        terminal.result(data["reason"], data | reported(session.dial))
+        tell(session.dial)
         for number, c in enumerate(selection.candidates if selection is not None else (), start=1):
             terminal.say(f"  {number}. {c.describe()}, score {c.score:.2f}")
         raise typer.Exit(3)
@@ -171,7 +176,8 @@ def _one(session: Session, text: str, changes: SelectionChanges, files: _Files) 
     things = ", ".join(c.describe() for c in selection.candidates) or data["asked"]
     note = f" ({selection.reason})" if selection.reason else ""
     doubt = "unconfirmed, " if selection.verdict == "unconfirmed" else ""
-    terminal.result(f"{doubt}{len(selection):,} Gaussians: {things}{note}", data)
+    terminal.result(f"{doubt}{len(selection):,} Gaussians: {things}{note}", data | reported(session.dial))
+    tell(session.dial)
 
 
 def _answer(session: Session, text: str, changes: SelectionChanges) -> tuple[Selection | None, dict[str, Any]]:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from ..options import Capture, Debug, Force, Json, SceneFile
+from ..options import Capture, Debug, Effort, Force, Json, SceneFile
+from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import terminal
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def command(
         Path | None,
         typer.Option("--ids", metavar="FILE", help="Write for each row of OUT its row number in SCENE (.npy)."),
     ] = None,
+    effort: Effort = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
@@ -56,23 +58,25 @@ def command(
     photographs, without it from computed views around and inside the scene, and from an orbit. A language field is
     kept: groups, names and vectors stay, and the field is written beside OUT.
     """
+    started = time.perf_counter()
     from ...gaussians.files.captures.capture import read_capture
     from ...gaussians.language.field.loading import load
     from ...gaussians.language.field.store import field_path
     from ...gaussians.slim import Settings, slim
     from ..output_files import refuse_existing, require_folder
 
+    dial = dialled(effort, started)
     target = named(output, format)
     settings = Settings(psnr, size, *_length(optimise))
     require_folder(target)
     refuse_existing([target, field_path(target), *([ids] if ids else [])], force)
-    started = time.perf_counter()
     loaded = load(scene)
     cameras = () if capture is None else read_capture(capture).cameras
-    done = slim(loaded, _suffix(target), settings, cameras, terminal.progress)
+    done = slim(loaded, _suffix(target), settings, cameras, terminal.progress, effort=dial)
     paths = _write(done, loaded, target, ids, force)
     data = _data(done, loaded, scene, target, psnr) | paths | {"seconds": round(time.perf_counter() - started, 2)}
-    terminal.result(_text(data), data)
+    terminal.result(_text(data), data | reported(dial))
+    tell(dial)
 
 
 def _length(text: str | None) -> tuple[int | None, float | None]:

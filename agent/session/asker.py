@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from ...planners.questions.survey import Survey
     from .vision_client import VisionClient
 
+FIRST_VIEWS = 3  # pictures of the first request to a vision model
+
 
 @dataclass
 class Asker:
@@ -37,11 +39,13 @@ class Asker:
 
 
 def see_answer(
-    text: str, measured: Answer, survey: Survey, scene: Scene, viewer: Camera, vision: VisionClient
-) -> Answer:
+    text: str, measured: Answer, survey: Survey, scene: Scene, viewer: Camera, vision: VisionClient,
+    first: int = FIRST_VIEWS,
+) -> Answer:  # fmt: skip
     """What a vision model answers from pictures where geometry has no answer.
 
-    A model that cannot be asked leaves geometry's answer, with the reason in its text.
+    A model that cannot be asked leaves geometry's answer, with the reason in its text. `first`: pictures of the first
+    request.
     """
     from ...gaussians.errors import BackendError
     from ...planners.vision.answering import Terms, ask_about
@@ -51,7 +55,7 @@ def see_answer(
     groups = tuple(id for id in measured.evidence.ids if isinstance(id, int))
     wanted = measured.answer_type if measured.answer_type != "text" else None
     try:
-        terms = Terms(wanted, groups, ledger=vision.ledger, progress=vision.progress)
+        terms = Terms(wanted, groups, first, ledger=vision.ledger, progress=vision.progress)
         return ask_about(text, Facts(survey.graph), SceneLooker(scene, viewer), vision.backend, terms)
     except BackendError as error:
         told = f"{measured.text} The vision model was no help: {error}"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from ...gaussians.scene import Scene
 
@@ -16,12 +17,15 @@ _ANEW = "the groups are of the encoder "
 
 
 def embedded_by(
-    encoder: Encoder, scene: Scene, progress: Callable[[str, float], None] = lambda stage, share: None
+    encoder: Encoder,
+    scene: Scene,
+    progress: Callable[[str, float], None] = lambda stage, share: None,
+    made: Mapping[str, Any] = MappingProxyType({}),
 ) -> Scene:
     """The scene with a language field of an encoder.
 
     A field of another encoder keeps its groups, which are embedded and named anew; a note says so. Its column of groups
-    stays as it is, so that ids of groups mean the same.
+    stays as it is, so that ids of groups mean the same. `made`: more arguments of `embed`.
 
     Raises:
         UserError: the scene has no Gaussians.
@@ -30,7 +34,7 @@ def embedded_by(
     from ...gaussians.language.field.group_table import renamed
 
     if scene.language is None:
-        return embed(scene, encoder, progress=progress)
+        return embed(scene, encoder, progress=progress, **made)
     if scene.language.encoder == encoder.fingerprint:
         return scene
     progress("names", 0.0)

@@ -11,6 +11,7 @@ from ..terminal.output import terminal
 from .embedding import embedded_by, told_anew
 
 if TYPE_CHECKING:
+    from ...gaussians.effort import Dial
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.scene import Frame, Scene
     from .session import Progress, Session
@@ -39,6 +40,7 @@ class SessionOptions:
         references: photographs of materials that instructions name.
         reference_width: metres that each of them shows from left to right, or None.
         harmony: fit what is put into the scene to its light, and let it cast shadows.
+        dial: chooses settings of the session, or None.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
 
@@ -64,6 +66,7 @@ class SessionOptions:
     references: Sequence[Path] = ()
     reference_width: float | None = None
     harmony: bool = True
+    dial: Dial | None = None
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -107,6 +110,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         restyle=options.restyle,
         references=photographs,
         harmony=options.harmony,
+        effort=options.dial,
     )
     for note in session.log_notes:
         terminal.say(f"note: {note}")

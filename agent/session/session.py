@@ -20,7 +20,8 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
 from . import log as session_log
-from .asker import Asker, see_answer
+from .asker import FIRST_VIEWS, Asker, see_answer
+from .dialled import SessionDial
 from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
@@ -38,6 +39,7 @@ from .sight import needs_sight, point_out
 from .vision_client import VisionClient
 
 if TYPE_CHECKING:
+    from ...gaussians.effort import Dial, Effort
     from ...gaussians.files.captures.capture import Capture
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.language.query.explain import Explanation
@@ -91,6 +93,8 @@ class Session:
         references: photographs of materials, which instructions name by their files or as "the photo"; see
             `add_reference`.
         harmony: fit what is put into the scene to its light, and let it cast shadows.
+        effort: "fast", "balanced", "accurate", or seconds for each instruction or question: settings of embedding,
+            filling and looking are chosen from measured points (`dial` tells which). None: the usual settings.
         vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
             takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
@@ -130,6 +134,7 @@ class Session:
         restyle: str | Restyler | None = None,
         references: str | Path | Sequence[str | Path] | Mapping[str, Photograph] = (),
         harmony: bool = True,
+        effort: Effort | Dial | None = None,
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
         # The planner comes first, so that an unknown name creates no log file.
@@ -138,10 +143,12 @@ class Session:
         self._encoder = encoder
         self._assets = own_assets(assets)
         self._infill, self._inpainter = infill_of(infill)
+        self._fills = self._infill  # in the present instruction
         self._restyler = restyler_of(restyle)
         scene, self._photographs = photographed(scene, capture)
         self._references = own_references(references)
         self._harmony = harmony
+        self._dialled = SessionDial.of(effort)
         self._asker = Asker()
         self._viewer = viewer
         self._seed = seed
@@ -171,6 +178,11 @@ class Session:
     def log_path(self) -> Path | None:
         """The session log, if there is one."""
         return self._log.path if self._log is not None else None
+
+    @property
+    def dial(self) -> Dial | None:
+        """The dial with what it chose for the last job; None without `effort`."""
+        return self._dialled.dial
 
     @property
     def last(self) -> Selection | None:
@@ -204,8 +216,11 @@ class Session:
             self._encoder = encoders.load(self._encoder)
         return self._encoder
 
-    def embed(self) -> Scene:
+    def embed(self, then: str | None = None) -> Scene:
         """The scene with its language field, made now if it has none.
+
+        Args:
+            then: the method of the dial that needs seconds after it, or None.
 
         The groups of a field that another encoder made are named anew by that of the session; a note of the field says
         so.
@@ -216,7 +231,8 @@ class Session:
         language = self.scene.language
         if language is None or language.encoder != self.encoder.fingerprint:
             present = self._history.present
-            state = replace(present, scene=embedded_by(self.encoder, present.scene, self._progress))
+            made = self._dialled.embedding(present.scene, then)
+            state = replace(present, scene=embedded_by(self.encoder, present.scene, self._progress, made))
             self._record("embed", session_log.embed_fields, present, state)
             self._history.amend(state)
         return self.scene
@@ -272,7 +288,7 @@ class Session:
         encoder = self.encoder if self.scene.language is not None else None
         return Context(
             viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks,
-            assets=self._assets, infill=self._infill, inpainter=self._inpainter, photographs=self._photographs,
+            assets=self._assets, infill=self._fills, inpainter=self._inpainter, photographs=self._photographs,
             restyler=self._restyler,
             references=self._references,
             harmony=self._harmony,
@@ -328,6 +344,7 @@ class Session:
             InstructionError: it cannot be done as said.
             BackendError: a language model that was chosen as the only planner gave no plan.
         """
+        self._dialled.begin()
         if (step := undo_or_redo(text)) is not None:
             return self.undo() if step == "undo" else self.redo()
         if (changed := self._stronger(text)) is not None:
@@ -376,6 +393,7 @@ class Session:
 
     def preview(self, instruction: str | EditPlan) -> Result:
         """A dry run: the result as it would be. Nothing is edited or logged, but the scene may become embedded."""
+        self._dialled.begin()
         plan = self.plan(instruction) if isinstance(instruction, str) else instruction
         return self._carry_out(plan, {}, dry_run=True)[0]
 
@@ -461,6 +479,7 @@ class Session:
         Raises:
             UserError: the phrase was not understood.
         """
+        self._dialled.begin()
         query = self._planner.query(phrase)
         self.embed()
         found = replace(self._context(self.last).resolve(self.scene, query), query=query)
@@ -533,11 +552,13 @@ class Session:
         from ...planners.questions.asking import route
         from ...planners.questions.topic import topic
 
+        self._dialled.begin()
         survey = self.survey()
         reading = route(text, survey)
         given = reading.answer
         if self._vision and reading.sight:
-            given = see_answer(text, given, survey, self.scene, self.viewer, self._vision)
+            first = self._dialled.views(FIRST_VIEWS)
+            given = see_answer(text, given, survey, self.scene, self.viewer, self._vision, first)
         if groups := tuple(id for id in topic(given, survey) if isinstance(id, int)):
             self.remember(groups)
         return given
@@ -675,7 +696,8 @@ class Session:
             raise refusal(plan)
         if has_queries(plan):
             with timed(seconds, "embed"):
-                self.embed()
+                self.embed("edit")
+        self._fills = self._dialled.fills(plan, self.scene, self._infill)
         before = start or self._history.present
         if before.last is None and (only := only_thing(self.scene)) is not None:  # "twice as big" can mean nothing else
             before = replace(before, last=self._context(None).resolve(self.scene, Query(groups=(only.id,))))

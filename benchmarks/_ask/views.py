@@ -19,6 +19,7 @@ from ...gaussians import assets
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.render import render
 from ...gaussians.viewpoints import for_groups
+from .._effort.named import words
 from .._select import cases
 from .._select.cases import Part
 from ..harness import Metric, Point
@@ -105,7 +106,7 @@ def measure(seeds: Sequence[int], encoder: Encoder, detail: float, quick: bool) 
     points = [
         Point(
             f"stand-in for a vision model, views {how}",
-            "1 view" if n == 1 else f"{n} views",
+            ("1 view" if n == 1 else f"{n} views") + (words("ask", views=n) if name == "ours" else ""),
             fmean(seconds[name, n]),
             fmean(v),
             0,

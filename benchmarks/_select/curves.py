@@ -11,6 +11,7 @@ import numpy as np
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.segmentation.segment import VIEWS_PER_CANDIDATE
 from .. import _clip, _data
+from .._effort.named import words
 from ..harness import Metric, Point
 from . import lifted, pictures, vectors
 from .cases import Case, Part, embedded
@@ -37,7 +38,7 @@ def portraits(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case],
     points = []
     for count in counts:
         known = [grouped(room) if count == VIEWS_PER_CANDIDATE else embedded(room, encoder, count) for room in rooms]
-        name = f"{count} portrait{'s' * (count > 1)}"
+        name = f"{count} portrait{'s' * (count > 1)}{words('embed') if count == VIEWS_PER_CANDIDATE else ''}"
         points.append(_embedded_point(name, known, encoder, count == VIEWS_PER_CANDIDATE))
     return Part(points=tuple(points))
 

@@ -6,12 +6,13 @@ import hashlib
 import math
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
+from ..effort import Dial, Effort
 from ..errors import FileError, UserError
 from ..scene import Scene
 from . import checkpoint, held_out_choice
@@ -24,6 +25,7 @@ from .photographs.photos import Photos
 from .quality import Quality, measure
 from .train import REFINE_STOP, Schedule, Trainer
 
+SECONDS = 300.0  # of a training whose length nobody says
 EVAL_PHOTOS = 6  # held-out photographs that are evaluated during training
 EVALUATIONS = 20  # number of evaluations during training
 CHECKPOINT_EVERY = 30.0  # seconds
@@ -113,14 +115,18 @@ class _Record:
 
 def fit(
     photos: Photos,
-    settings: Settings,
+    settings: Settings | None = None,
     *,
+    effort: Effort | Dial | None = None,
     checkpoint_path: Path | None = None,
     on_status: Callable[[Status], None] = lambda status: None,
 ) -> Fitted:
     """Train a scene.
 
     Args:
+        settings: default: five minutes.
+        effort: "fast", "balanced", "accurate", or seconds for the whole with its measurements: it replaces the length
+            of `settings` by one chosen from measured points.
         checkpoint_path: file for checkpoints; training resumes from it if it exists. The caller deletes it after saving
             the scene (`checkpoint.delete`), so that a full disk at the end does not cost the training.
         on_status: called every `REPORT_EVERY` seconds.
@@ -129,6 +135,10 @@ def fit(
         FileError: the checkpoint belongs to another training, or cannot be written.
         BackendError: the device is not available.
     """
+    settings = settings or Settings(seconds=SECONDS)
+    if effort is not None:
+        dial = effort if isinstance(effort, Dial) else Dial(effort)
+        settings = replace(settings, seconds=dial.choose("fit", megapixels(photos)).clock, steps=None)
     engine = engine_for(resolve_device(settings.device))
     rng = np.random.default_rng(settings.seed)
     initial = initial_cloud(photos, settings.max_gaussians, rng)
@@ -146,6 +156,11 @@ def fit(
     scene = Scene(cloud, cameras=cameras)
     quality = measure(cloud, photos.held_out)
     return Fitted(scene, quality, trainer.steps, trainer.seconds, tuple(record.curve), tuple(record.choices))
+
+
+def megapixels(photos: Photos) -> float:
+    """Millions of pixels of the held-out photographs: what measuring during a training takes grows with it."""
+    return sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in photos.held_out) / 1e6
 
 
 def _train(

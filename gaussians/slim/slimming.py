@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..camera import Camera
+from ..effort import Dial, Effort
 from ..errors import CheckFailedError, UserError
 from ..scene import Scene
 from .encoding import Files
@@ -58,6 +59,8 @@ def slim(
     cameras: Sequence[Camera] = (),
     progress: Progress | None = None,
     prepared: Prepared | None = None,
+    *,
+    effort: Effort | Dial | None = None,
 ) -> Slimmed:
     """The smallest file found whose pictures keep `settings.psnr` dB from the held-out views. Same input, same bytes.
 
@@ -66,6 +69,8 @@ def slim(
         cameras: of photographs of the scene; computed views are used without them.
         progress: called with the stage and its share.
         prepared: what `prepare` gave for this scene; its views are used.
+        effort: "fast", "balanced", "accurate", or seconds. There is one measured point, so that it only predicts and
+            reports; an optimisation of `settings` wins.
 
     Raises:
         UserError: the format cannot be written, or no view shows anything.
@@ -74,6 +79,12 @@ def slim(
     if len(scene.cloud) == 0:
         raise UserError("there is nothing to make smaller: the scene holds zero Gaussians")
     say = progress or (lambda stage, share: None)
+    if effort is not None:
+        dial = effort if isinstance(effort, Dial) else Dial(effort)
+        if settings.steps is None and settings.seconds is None:
+            dial.choose("slim", len(scene.cloud))
+        else:
+            dial.overrule("an optimisation")
     with tempfile.TemporaryDirectory() as folder:
         files = Files(Path(folder), suffix)
         if settings.psnr >= EXACT:

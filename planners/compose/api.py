@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Literal
 
+from ...gaussians.effort import Dial, Effort
 from ...gaussians.errors import InstructionError, UserError
 from .. import MODEL_VARIABLE
 from ..rooms.graph import SceneGraph
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
 Mode = Literal["auto", "model"]
 
 
-def compose(text: str, *, seed: int = 0, planner: str = "auto", best: bool = False) -> SceneGraph:
+def compose(
+    text: str, *, seed: int = 0, planner: str = "auto", best: bool = False, effort: Effort | None = None
+) -> SceneGraph:
     """The graph of the room that `text` describes; the same arguments give the same graph.
 
     Args:
@@ -27,20 +30,25 @@ def compose(text: str, *, seed: int = 0, planner: str = "auto", best: bool = Fal
         seed: different seeds give different rooms of one description.
         planner: what proposes the brief, see `composed`.
         best: if wishes conflict, return the best layout instead of raising an error.
+        effort: how long the layout is searched: "fast", "balanced", "accurate" or seconds; with seconds the graph
+            depends on the machine's speed.
 
     Raises:
         UserError: the words describe no room, or no planner has this name.
         InstructionError: not all wishes are possible together; the message names the smallest conflict.
         BackendError: the model cannot be reached.
     """
-    layout = composed(text, seed=seed, planner=planner).layout
+    dial = None if effort is None else Dial(effort)
+    layout = composed(text, seed=seed, planner=planner, dial=dial).layout
     if layout.conflicts and not best:
         smallest = min(layout.conflicts, key=lambda conflict: len(conflict.statements))
         raise InstructionError(f"not all of this is possible together: {'; '.join(smallest.statements)}")
     return layout.graph
 
 
-def composed(text: str, *, seed: int = 0, planner: str = "auto", budget: str | None = None) -> Composition:
+def composed(
+    text: str, *, seed: int = 0, planner: str = "auto", budget: str | None = None, dial: Dial | None = None
+) -> Composition:
     """The room that `text` describes, with its brief, remarks, omissions and conflicts.
 
     Args:
@@ -48,6 +56,7 @@ def composed(text: str, *, seed: int = 0, planner: str = "auto", budget: str | N
             (`SCENEWRIGHT_MODEL`), or the one named after "auto:", where the reader does not understand everything; a
             model alone ("openai:...") is always asked.
         budget: limits of the model, as `Budget.parse` reads them: "20s,0.05usd".
+        dial: chooses how long the layout is searched.
 
     Raises:
         UserError: the words describe no room, no planner has this name, or the budget is none.
@@ -58,7 +67,7 @@ def composed(text: str, *, seed: int = 0, planner: str = "auto", budget: str | N
 
     ledger = Ledger(Budget.parse(budget)) if budget is not None else None
     backend, mode = _proposer(planner)
-    return proposed(text, seed=seed, planner=backend, mode=mode, ledger=ledger)
+    return proposed(text, seed=seed, planner=backend, mode=mode, ledger=ledger, dial=dial)
 
 
 def _proposer(spec: str) -> tuple[ModelBackend | None, Mode]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 from ...gaussians.errors import BackendError
 from ..budget import Budget, Ledger
-from ..layout import solve
 from ..layout.problem import Conflict, Layout, Problem
+from ..layout.solver import Attempt, attempt
 from ..plan import Usage
 from ..rooms.check import check
 from .brief import Brief, RefusedError
@@ -19,6 +19,7 @@ from .surfaces import with_surfaces
 from .unmet import unmet_wishes
 
 if TYPE_CHECKING:
+    from ...gaussians.effort import Dial
     from ..model.backend import ModelBackend
     from .proposing import Proposal
 
@@ -71,6 +72,7 @@ def compose(
     mode: Mode = "auto",
     effort: float = 1.0,
     ledger: Ledger | None = None,
+    dial: Dial | None = None,
 ) -> Composition:
     """A room from a description.
 
@@ -80,7 +82,8 @@ def compose(
         planner: a language model that proposes the brief; without one the embedded reader does. Where the wishes of a
             brief conflict, it is asked once for a second brief.
         mode: "auto" asks the model only where the embedded reader did not understand everything; "model" always.
-        effort: of the layout solver.
+        effort: of the layout solver, 1 is usual.
+        dial: chooses the effort of the layout solver in place of `effort`.
         ledger: limits of the model, and what it has spent; None: two minutes, all attempts together.
 
     Raises:
@@ -92,12 +95,12 @@ def compose(
     ledger = ledger if ledger is not None else Ledger(Budget(seconds=_SECONDS))
     started = time.monotonic()
     brief, proposal = _brief(text, planner, mode, ledger)
-    posed, layout = arranged(brief, seed, effort)
+    posed, layout = arranged(brief, seed, effort, dial)
     if layout.conflicts and planner is not None and isinstance(text, str):
         left = ledger.budget.seconds - (time.monotonic() - started)
         second = _second(text, brief, layout, planner, ledger, left)
         if second is not None:
-            again = arranged(second.brief, seed, effort)
+            again = arranged(second.brief, seed, effort, dial)
             if len(again[1].conflicts) < len(layout.conflicts) and _names_as_much(second.brief, brief):
                 brief, (posed, layout), proposal = second.brief, again, _joined(proposal, second)
     layout = layout.model_copy(update={"graph": with_surfaces(layout.graph, brief, posed.names)})
@@ -143,24 +146,28 @@ def _names_as_much(second: Brief, first: Brief) -> bool:
     return sum(t.count for t in second.things) >= sum(t.count for t in first.things)
 
 
-def arranged(brief: Brief, seed: int, effort: float) -> tuple[Posed, Layout]:
+def arranged(brief: Brief, seed: int, effort: float, dial: Dial | None = None) -> tuple[Posed, Layout]:
     """The layout of a brief. A room without a stated size grows until everything that was asked for fits; in one with
-    a stated size the things shrink, as far as their own sizes are not stated. What fails in the end is explained."""
-    best: tuple[int, Posed, int] | None = None
-    layout: Layout | None = None
-    for attempt, (grow, shrink) in enumerate(_attempts(brief)):
+    a stated size the things shrink, as far as their own sizes are not stated. What fails in the end is explained.
+    `dial` chooses the effort in place of `effort`, and seconds that it promises end the search."""
+    best: tuple[int, Posed, Attempt] | None = None
+    until: float | None = None
+    for number, (grow, shrink) in enumerate(_attempts(brief)):
         posed = problem_of(brief, seed, grow=grow, shrink=shrink)
-        tried = solve(posed.problem, seed + _STRIDE * attempt, effort=effort, explained=False)
-        failures = _failures(posed, tried)
+        if dial is not None and number == 0:
+            things = len(posed.problem.items)
+            effort = float(dial.choose("compose", things).settings["effort"])
+            until = dial.until
+        tried = attempt(posed.problem, seed + _STRIDE * number, effort, until)
+        failures = _failures(posed, tried.layout)
         if best is None or failures < best[0]:
-            best, layout = (failures, posed, attempt), tried
-        if failures == 0 or (attempt and failures < _WORSE):
+            best = (failures, posed, tried)
+        late = until is not None and time.perf_counter() >= until
+        if failures == 0 or (number and failures < _WORSE) or late:
             break
-    assert best is not None and layout is not None
-    failures, posed, attempt = best
-    if failures:
-        layout = solve(posed.problem, seed + _STRIDE * attempt, effort=effort)
-    return posed, _with_missing_items(posed, layout)
+    assert best is not None
+    failures, posed, tried = best
+    return posed, _with_missing_items(posed, tried.explained() if failures else tried.layout)
 
 
 def _failures(posed: Posed, layout: Layout) -> int:

@@ -2,10 +2,12 @@
 
 Each start places the bodies one after another at their cheapest positions, then moves every body in turn to the best
 position given all others. Bodies that failed are placed sooner in the next start. Work is counted, not timed, so the
-same problem gives the same layout on every machine.
+same problem gives the same layout on every machine, unless a moment is given at which the search ends.
 """
 
 from __future__ import annotations
+
+import time
 
 import numpy as np
 
@@ -35,10 +37,11 @@ class Search:
         prepared: the problem.
         seed: of the noise on costs.
         effort: 1 is usual; scales the number of starts and improvement passes.
+        until: `time.perf_counter()` at which the search ends, if a start more would take it beyond; None: never.
     """
 
-    def __init__(self, prepared: Prepared, seed: int, effort: float) -> None:
-        self.prepared, self.effort = prepared, effort
+    def __init__(self, prepared: Prepared, seed: int, effort: float, until: float | None = None) -> None:
+        self.prepared, self.effort, self.until = prepared, effort, until
         self.rng = np.random.default_rng(seed)
         self.split = set[int]()
         self.placed = 0  # number of placements: the work done so far
@@ -52,8 +55,12 @@ class Search:
         """The best layout of all starts."""
         state = State(self.prepared)
         empty, best, lowest = state.copy(), state.copy(), np.inf
-        raw, idle = np.inf, 0
+        raw, idle, began = np.inf, 0, time.perf_counter()
         for start in range(self.starts):
+            if self.until is not None and start:
+                now = time.perf_counter()
+                if now + (now - began) / start > self.until:
+                    break
             state.restore(empty)
             bodies = self._construct(state, 0.15 if start == 0 else 0.8)
             rough = state.cost()

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...cloud import NO_GROUP, GaussianCloud
+from ...effort import Dial, Effort
 from ...errors import UserError
 from ...files.captures.capture import Capture
 from ...rotations import to_matrix
@@ -50,6 +51,9 @@ def embed(
     views_per_candidate: int = VIEWS_PER_CANDIDATE,
     masks: Masker | Sequence[Masker] | None = None,
     capture: Capture | None = None,
+    *,
+    effort: Effort | Dial | None = None,
+    reserve: float = 0.0,
 ) -> Scene:
     """The scene with `cloud.group` filled and a language field; nothing else of the cloud changes.
 
@@ -62,6 +66,9 @@ def embed(
             and with geometry; what no mask shows follows geometry.
         capture: the photographs that the scene was fitted from. An encoder that was trained on photographs is shown
             crops of them; the embedded one is shown renders, which it was trained on.
+        effort: "fast", "balanced", "accurate", or seconds: the pictures that masks are made of are chosen from measured
+            points; `masks` of the caller win. None: no masks but those given.
+        reserve: of the seconds of `effort`, those that are needed afterwards.
 
     Raises:
         UserError: the scene has no Gaussians, the vectors of the masks have another width than the encoder's, or the
@@ -70,6 +77,8 @@ def embed(
     """
     if not len(scene.cloud):
         raise UserError("the scene has no Gaussians, so there is nothing to embed")
+    if effort is not None:
+        masks = _dialled(scene, effort if isinstance(effort, Dial) else Dial(effort), masks, capture, reserve)
     progress("surface", 0.0)
     lit = exposed(scene.cloud, gain_of(scene.cloud))
     surface = surface_of(lit)
@@ -108,6 +117,23 @@ def embed(
     believed = iter(found.agreement)
     made = [t.source(next(believed) if one.labels else None) for t, one in zip(tallies, read, strict=True)]
     return _with_mask_note(embedded, made) if made else embedded
+
+
+def _dialled(
+    scene: Scene, dial: Dial, masks: Masker | Sequence[Masker] | None, capture: Capture | None, reserve: float
+) -> Masker | Sequence[Masker] | None:
+    """The sources of masks that an effort means; those of the caller if there are any."""
+    if masks:
+        dial.overrule("masks")
+        return masks
+    from ..masks.sources import pictures
+
+    photographs = capture is not None and bool(present(capture))
+    fitted = least_opacity(scene.cloud) < MIN_OPACITY
+    name = "embed with photographs" if photographs else "embed a fit" if fitted else "embed"
+    chosen = dial.choose(name, len(scene.cloud), reserve)
+    count = int(chosen.settings["pictures"])
+    return replace(pictures.load(), capture=capture if photographs else None, count=count) if count else None
 
 
 def _maskers(masks: Masker | Sequence[Masker] | None) -> list[Masker]:
