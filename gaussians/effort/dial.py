@@ -215,8 +215,14 @@ def _names(choices: Sequence[Choice]) -> str:
 
 
 def _named(known: Method, word: str, size: float, factor: float) -> Choice:
-    """The point that a word means; on this machine its clock is as long as the same work takes."""
-    point = known.by_name[word]
+    """The point that a word means; on this machine its clock is as long as the same work takes.
+
+    Raises:
+        UserError: nothing was measured that the word could mean.
+    """
+    point = known.by_name.get(word)
+    if point is None:
+        raise UserError(f"nothing {word} was measured of {known.name}; say {' or '.join(known.by_name)}, or seconds")
     return Choice(known, point, size, factor, factor * point.seconds(size), factor * point.clock)
 
 

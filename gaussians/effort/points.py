@@ -83,12 +83,13 @@ class Method:
         """From the JSON of `points.json`.
 
         Raises:
-            ValueError: a word of the dial means no point, or two.
+            ValueError: a word of the dial means two points, or there is none that means one.
         """
         points = tuple(Point(**{**p, "names": tuple(p.get("names", ()))}) for p in data["points"])
         by_name = {word: p for p in points for word in p.names}
-        if sorted(word for p in points for word in p.names) != sorted(WORDS):
-            raise ValueError(f"{name}: each of {', '.join(WORDS)} must mean one point")
+        said = [word for p in points for word in p.names]
+        if not said or len(set(said)) < len(said) or not set(said) <= set(WORDS):
+            raise ValueError(f"{name}: each of {', '.join(WORDS)} may mean one point, and one of them must")
         return cls(name, **{**data, "points": points}, by_name=by_name)
 
 

@@ -68,12 +68,18 @@ def test_filling_is_chosen_by_an_edit_that_reveals_something(call: Any, room: Pa
     assert told["2"]["points"] == [] and told["2"]["overruled"] == ["--infill"]
 
 
-def test_slim_has_one_point_and_an_optimisation_wins(call: Any, room: Path, tmp_path: Path) -> None:
-    arguments = ("slim", room, "-o", tmp_path / "a.sog", "--psnr", 30, "--pixels", 64, "--json", "--force")
-    code, out, err = call(*arguments, "--effort", "fast")
+SLIM = ("--psnr", 30, "--pixels", 64, "--json", "--effort", "fast")
+
+
+def test_slim_has_one_point(call: Any, room: Path, tmp_path: Path) -> None:
+    code, out, err = call("slim", room, "-o", tmp_path / "a.sog", *SLIM)
     assert code == 0, err
     assert json.loads(out)["steps"] == 0 and json.loads(out)["effort"]["points"][0]["method"] == "slim"
-    code, out, err = call(*arguments, "--effort", "accurate", "--optimise", "1steps")
+
+
+@pytest.mark.slow
+def test_an_optimisation_wins_over_the_dial(call: Any, room: Path, tmp_path: Path) -> None:
+    code, out, err = call("slim", room, "-o", tmp_path / "a.sog", *SLIM, "--optimise", "1steps")
     assert code == 0, err
     assert json.loads(out)["effort"]["overruled"] == ["an optimisation"] and json.loads(out)["steps"] > 0
 
