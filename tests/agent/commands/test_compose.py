@@ -81,7 +81,7 @@ def test_words_are_composed_with_seed_and_planner(compose: Any, monkeypatch: pyt
     asked = _composer(monkeypatch)
     code, out, err = compose("a small room", "--seed", "7", "--planner", "grammar", "--json")
     assert code == 0 and SceneGraph.model_validate_json(out).nodes
-    assert asked == [{"text": "a small room", "seed": 7, "planner": "grammar", "budget": None}]
+    assert asked == [{"text": "a small room", "seed": 7, "planner": "grammar", "budget": None, "dial": None}]
     assert "warm light" in err and "harp (9)" in err
 
 
