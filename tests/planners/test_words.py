@@ -177,12 +177,13 @@ def test_synonyms_are_mutual() -> None:
     assert ("couch",) in narrower(("seat",)) and narrower(("sofa",)) == frozenset()
 
 
-def test_other_peoples_sentences(data_dir: Path) -> None:
+@pytest.mark.parametrize("every", [80, pytest.param(40, marks=pytest.mark.slow)])
+def test_other_peoples_sentences(data_dir: Path, every: int) -> None:
     path = data_dir / "language" / "nr3d_utterances.json.gz"
     if not path.is_file():
         pytest.skip(f"no sentences at {path}")
-    found = _nouns.measure(_nouns.sentences(path, every=40), PLANNER)
-    # A sample of 521; the whole set gives 0.91, and a share of 0.91 varies by 0.013 between such samples.
+    found = _nouns.measure(_nouns.sentences(path, every=every), PLANNER)
+    # A sample of 261 or 521; the whole set gives 0.91, which varies by 0.018 or 0.013 between such samples.
     assert found.right_of_named >= 0.86
     assert found.relations >= 0.95
     assert len(found.failures) == 20

@@ -189,7 +189,7 @@ def test_what_was_left_is_filed_under_its_thing(corner: Scene) -> None:
     assert refiled(torn, Selection(Query(text="chair"), "found", ids), torn.cloud.ids[piece]) is None
 
 
-@pytest.mark.parametrize("lift", [0.08, 0.5, -0.15])
+@pytest.mark.parametrize("lift", [0.08, -0.15, pytest.param(0.5, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("data", [d for d in CLEAN if d["op"] in ("insert", "replace") or d.get("place")],
                          ids=lambda d: f"{d['op']} {sorted(d)}")  # fmt: skip
 def test_a_floating_or_sunk_thing_is_caught(corner: Scene, context: Context, data: Json, lift: float) -> None:

@@ -7,6 +7,7 @@ import pytest
 import torch
 
 from scenewright.gaussians.assets import furnish
+from scenewright.gaussians.assets.furnishing.furnish import Room
 from scenewright.gaussians.language import encoders
 from scenewright.gaussians.language.field.language_field import LanguageField
 from scenewright.training import room_groups
@@ -22,6 +23,11 @@ def test_groups_of_a_room_are_named_after_its_things() -> None:
     assert len(named) >= 0.7 * len(kinds) and all(named.count(kind) <= kinds.count(kind) for kind in named)
 
 
+@pytest.fixture(scope="module")
+def room() -> Room:
+    return furnish(3)
+
+
 @pytest.mark.parametrize(
     ("first", "second", "label"),
     [  # percent of a chair and of a table that one group holds
@@ -31,11 +37,10 @@ def test_groups_of_a_room_are_named_after_its_things() -> None:
         (70, 30, None),
     ],
 )
-def test_a_group_is_one_thing_a_piece_or_several(first: int, second: int, label: str | None) -> None:
+def test_a_group_is_one_thing_a_piece_or_several(room: Room, first: int, second: int, label: str | None) -> None:
     objects = np.repeat(np.array([0, 1], np.int32), 1000)
     group = np.full(2000, -1)
     group[: 10 * first], group[1000 : 1000 + 10 * second] = 0, 0
-    room = furnish(3)
     few = torch.arange(2000)  # which ones does not matter
     scene = room.scene.replace(cloud=room.scene.cloud[few].replace(group=torch.from_numpy(group.astype(np.int32))))
     table = _table(10 * (first + second))

@@ -148,6 +148,7 @@ def test_objects_are_about_as_many_as_the_room_has(room: Room, field: LanguageFi
     assert 0.5 * true <= len(field.objects()) <= 3 * true
 
 
+@pytest.mark.slow  # the next test compares an embedding of the same cloud to the last bit too
 def test_the_same_scene_gives_the_same_bytes(room: Room, embedded: Scene) -> None:
     again = embed(room.scene, ENCODER)
     assert again.cloud.digest() == embedded.cloud.digest()

@@ -162,14 +162,15 @@ def test_vectors_must_agree_among_views() -> None:
         lifted.features()
 
 
-def test_the_same_masks_give_the_same_bytes_wherever_their_arrays_lie() -> None:
+@pytest.mark.parametrize("times", [12, pytest.param(40, marks=pytest.mark.slow)])
+def test_the_same_masks_give_the_same_bytes_wherever_their_arrays_lie(times: int) -> None:
     """Compiled loops may come in two versions, of which the addresses of their arrays choose one (seen once in 60)."""
     made = yard()
     cloud, truth = made.cloud(), made.labels(THINGS)
     views, rng = seen_by(cloud, truth, around(9)), np.random.default_rng(0)
     held: list[Any] = []
     seen = set()
-    for _ in range(40):
+    for _ in range(times):
         held += [np.empty(rng.integers(1, 200_000), np.uint8), bytearray(int(rng.integers(1, 3000)))]
         held = [held[i] for i in rng.permutation(len(held))[:40]]
         seen.add(lift(cloud, views).seen.data.tobytes())

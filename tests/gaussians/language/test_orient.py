@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
+from amounts import spread
 from numpy.typing import NDArray
 
 from scenewright.gaussians.camera import Camera
@@ -46,11 +47,14 @@ def frame_of(cloud: GaussianCloud, cameras: tuple[Camera, ...] = (), known: Fram
 
 
 @pytest.mark.parametrize(
-    ("axis", "degrees"),
-    [((1.0, 0.0, 0.0), 0.0), ((1.0, 0.3, 0.0), 9.0), ((0.2, -1.0, 0.0), 17.0), ((0, 1, 0.5), -22.0), ((1, 1, 0), 20)],
+    "tilt",
+    spread(
+        [((1, 0.3, 0), 9.0), ((1, 0, 0), 0.0), ((0.2, -1, 0), 17.0), ((0, 1, 0.5), -22.0), ((1, 1, 0), 20.0)],
+        3,
+    ),
 )
-def test_up_of_a_tilted_room_is_found(world: type[Any], axis: tuple[float, float, float], degrees: float) -> None:
-    turn = turned(axis, degrees)
+def test_up_of_a_tilted_room_is_found(world: type[Any], tilt: tuple[tuple[float, float, float], float]) -> None:
+    turn = turned(*tilt)
     frame = frame_of(room(world).cloud(turn))
     assert off(frame.up_vector, turn @ [0, 0, 1]) < WITHIN
     assert frame.up_source == "estimated"

@@ -56,9 +56,10 @@ def counted(parts: checkpoint.Checkpoint, seeds: range) -> tuple[int, int]:
     return len(answers), sum(answer.end == "done" for answer in answers)
 
 
-def test_random_weights_give_valid_plans(parts: checkpoint.Checkpoint) -> None:
-    valid, ended = counted(parts, range(12))
-    assert valid == 12 and ended >= 10  # a text of random words may well be cut
+@pytest.mark.parametrize("count", [4, pytest.param(12, marks=pytest.mark.slow)])
+def test_random_weights_give_valid_plans(parts: checkpoint.Checkpoint, count: int) -> None:
+    valid, ended = counted(parts, range(count))
+    assert valid == count and ended >= count * 10 / 12  # a text of random words may well be cut
 
 
 @pytest.mark.slow
