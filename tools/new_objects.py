@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import torch
@@ -21,20 +21,31 @@ from ..gaussians.world.person import HUNG_AT
 from . import field_update
 from .cloud_diff import fresh_ids, joined
 from .field_update import NewObject
+from .harmony.form import Pigment
 from .operation import Affine, AssetSource, Context, Length, Placement
 from .placement.bodies import Array, Body, as_vec, contact_box, heading
 from .placement.occupancy import obstacle_points
 from .placement.overhead import Mount, region_above
 from .placement.place import Spot, anchors_of, free_spot, hanging_spot
-from .placement.surroundings import Surroundings
+from .placement.seen_surface import seen_height
+from .placement.surroundings import FLOOR_WORDS, Surroundings
 from .transform import transformed
 
 _ASSUMED_WIDTH = 4.5  # metres, assumed width of a scene that gives no other hint of its scale
 _EYES = 1.35  # metres above the floor at which people hold a camera that they point at a room
+_THIN = 0.6  # depth over the shorter of its other sides: what falls over
 _FEW_EYES = 8  # cameras that tell it
 _FLOOR_BAND, _FLOOR_SHARE = 0.05, 0.03  # of that height, how thick a floor is; of the scene's Gaussians, its share
 _SURE = 0.5  # probability from which a name tells a size
 _WIDER = 1.3  # of the footprint of what is replaced: how wide a thing of unknown scale may be in its place
+# How furniture of a colour is painted or stained where nobody asked for one.
+_PAINTS = {
+    "red": "#8e3b32", "blue": "#465c7c", "green": "#5c7250", "yellow": "#c29a4c", "orange": "#b66a3e",
+    "purple": "#68506f", "pink": "#c08d93", "brown": "#96683f", "black": "#2e2c2b", "white": "#dedad0",
+    "gray": "#84858a", "beige": "#c6b597",
+}  # fmt: skip
+_AXIS, _FIRST, _FEW_MET = 0.06, 0.25, 12  # tangent of the angle about a viewer's axis; which point there, of how many
+_DETAIL = 2.5  # of library assets: people look at new things from close by
 _DOOR_HEIGHT = 1.6  # metres: taller objects at walls (doors, curtains, wardrobes) reach down to the floor
 
 
@@ -145,6 +156,7 @@ class ScaledAsset:
         size: (width, depth, height) of its solid Gaussians, scene units.
         support: what its kind stands on or hangs from: "floor", "table", "wall" or "ceiling".
         notes: for the receipt.
+        pigment: colours of its Gaussians without light; None if they cannot be told from its light.
     """
 
     cloud: GaussianCloud
@@ -152,6 +164,7 @@ class ScaledAsset:
     size: Vec3
     support: str
     notes: tuple[str, ...] = ()
+    pigment: Pigment | None = None
 
 
 @dataclass(frozen=True)
@@ -173,11 +186,12 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
         UserError: the library has no such kind, or the colour is unknown.
     """
     made, told = request.own.natural(request.kind, request.color) if request.own is not None else (None, ())
+    owned = made is not None
     if made is None:
         from ..gaussians import assets
 
-        color = request.color or _usual_color(request)
-        made = assets.make(_known_name(request.kind), request.seed, color=color)
+        color = request.color or _usual_color(request) or _usual_paint(request)
+        made = assets.make(_known_name(request.kind), request.seed, color=color, detail=_DETAIL)
     factor, notes = request.scale.units_per_metre, request.scale.notes
     if request.height is not None:
         factor = request.height.in_units(scene.frame) / made.size[2]
@@ -190,7 +204,9 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
     cloud = transformed(cloud, np.eye(3), center)
     size = as_vec(np.array([max(high - low, 1e-6) for low, high in spans]))
     kind = kinds.find(made.kind)
-    return ScaledAsset(cloud, made.kind, size, kind.support if kind is not None else "floor", (*told, *notes))
+    pigment = Pigment(made.unlit.albedo, made.unlit.two_sided, not owned) if made.unlit.is_pigment else None
+    support = kind.support if kind is not None else "floor"
+    return ScaledAsset(cloud, made.kind, size, support, (*told, *notes), pigment)
 
 
 def _usual_color(request: AssetRequest) -> str | None:
@@ -204,6 +220,14 @@ def _usual_color(request: AssetRequest) -> str | None:
     said = " ".join(kinds.words_of(request.kind))
     named = {kind.name, *(kind.also or ())}
     return kind.colors[request.seed % len(kind.colors)] if said in named else None
+
+
+def _usual_paint(request: AssetRequest) -> str | None:
+    """How furniture of a kind is usually painted, stained or covered; None for kinds of no usual colour."""
+    kind = kinds.find(request.kind)
+    if kind is None or kind.support != "floor" or not kind.colors:
+        return None
+    return _PAINTS.get(kind.colors[request.seed % len(kind.colors)])
 
 
 def _material(name: str) -> tuple[str, str] | None:
@@ -241,19 +265,47 @@ def set_down(asset: ScaledAsset, foot: Array, axes: Axes) -> GaussianCloud:
     return transformed(asset.cloud, np.array(axes).T, foot)
 
 
-def in_its_light(cloud: GaussianCloud, scene: Scene, wanted: bool, free: bool) -> tuple[GaussianCloud, tuple[str, ...]]:
+def in_its_light(
+    cloud: GaussianCloud, scene: Scene, wanted: bool, free: bool, pigment: Pigment | None = None
+) -> tuple[GaussianCloud, tuple[str, ...]]:
     """A new thing with its colours fitted to the light of the scene if that is wanted, and a note of what changed.
 
     Args:
         free: whether nobody asked for a colour of it.
+        pigment: its colours without light, if they are known.
     """
     if not wanted:
         return cloud, ()
     from .harmony.matched import matched
 
-    cloud, told = matched(cloud, scene, free)
+    cloud, told = matched(cloud, scene, free, pigment)
     said = told.describe()
     return cloud, (f"its colours were fitted to the light of the scene: {said}",) if said else ()
+
+
+def laid(asset: ScaledAsset, place: Placement | None) -> ScaledAsset:
+    """A thing that leans on a seat, as a cushion, lying flat where there is no seat."""
+    kind = kinds.find(asset.label)
+    width, depth, height = asset.size
+    leans = kind is not None and any(k is not None and k.seats for k in map(kinds.find, kind.on or ()))
+    if not leans or depth > _THIN * min(width, height) or (place is not None and place.relation != "on"):
+        return asset
+    if place is not None and any(q.text.lower() not in FLOOR_WORDS for q in place.anchors):
+        return asset
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # its front, -y, comes to face up
+    cloud = transformed(asset.cloud, turn, np.array([0.0, -height / 2, depth / 2]))
+    return replace(asset, cloud=cloud, size=(width, height, depth))
+
+
+def rested(around: Surroundings, spot: Spot, asset: ScaledAsset) -> Spot:
+    """A spot in a capture at the height at which its surface is seen there: the ground of a capture is uneven, and its
+    Gaussians lie above and below what a picture shows."""
+    if around.sight is None or not around.rests:
+        return spot
+    height = seen_height(around.scene.cloud, around.moving, spot.foot, spot.axes, asset.size)
+    if height is None:
+        return spot
+    return replace(spot, foot=spot.foot + around.up * height, support=spot.support + height)
 
 
 def find_spot(around: Surroundings, asset: ScaledAsset, place: Placement | None, start: Array) -> Spot:
@@ -310,9 +362,23 @@ def viewed_point(around: Surroundings) -> Array:
     middle = middle + up * (around.floor - float(middle @ up))
     if down > -0.05 or height <= 0:
         return middle
-    seen = camera.position + camera.forward * (height / -down)
+    away = height / -down
+    if around.sight is not None and (thing := _first_seen(around)) is not None:
+        away = min(away, thing)  # a picture of a thing looks at it, and not at the floor behind it
+    seen = camera.position + camera.forward * away
+    seen = seen + up * (around.floor - float(seen @ up))
     spread = float(np.linalg.norm(np.ptp(np.quantile(around.sampled, [0.05, 0.95], axis=0), axis=0)))
     return seen if np.linalg.norm(seen - middle) < spread else middle
+
+
+def _first_seen(around: Surroundings) -> float | None:
+    """Distance along the viewer's axis at which it meets a thing; None if it meets none."""
+    camera = around.context.viewer
+    apart = around.sampled.astype(np.float64) - camera.position
+    along = apart @ camera.forward
+    aside = np.linalg.norm(apart - along[:, None] * camera.forward, axis=1)
+    met = along[(along > 0) & (aside < _AXIS * along)]
+    return float(np.quantile(met, _FIRST)) if len(met) >= _FEW_MET else None
 
 
 @dataclass(eq=False)

@@ -26,6 +26,7 @@ _RINGS, _AROUND = 5, 12  # directions: inclinations, and turns at each
 _LEAST, _MOST = 0.15, 0.8  # of a footprint's extent: how far a shadow is looked at beyond it
 _TALL = 0.6  # of a thing's height, likewise between the two
 _FADES = 0.35  # of that reach: the outer part within which occlusion fades to none
+_GAMMA, _REFLECTED = 1 / 2.2, 0.3  # of a display; share of the light that is there wherever it is blocked
 _SOFT = 0.7  # cells: standard deviation by which the shares are smoothed
 
 
@@ -76,6 +77,13 @@ def blocked(points: F64, chart: Chart, reach: float) -> Blocked:
     away = ndimage.distance_transform_edt(~footprint) * chart.cell
     fade = np.clip((reach - away) / max(_FADES * reach, 1e-12), 0.0, 1.0)
     return Blocked(chart, footprint, layers[0], shares * fade, reach)
+
+
+def depth_of(share: F64) -> F64:
+    """How dark a shadow is where a thing takes a share of the light, in units of its strength: minus the logarithm of a
+    display's value for the light that is left, with what the room reflects into it. So it is soft where light comes
+    from most sides, and narrow and dark at the contact."""
+    return np.asarray(-_GAMMA * np.log1p(-(1 - _REFLECTED) * np.clip(share, 0, 1)))
 
 
 @functools.cache

@@ -14,7 +14,7 @@ from torch import Tensor
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.harmonics import SH_C0
 from .charts import Chart
-from .occlusion import LOBES, Blocked
+from .occlusion import LOBES, Blocked, depth_of
 from .planes import F64, Mask
 from .texture import continued_far
 
@@ -37,7 +37,7 @@ _FEWEST = 20  # cells of each
 _EVENER = 0.97  # of a surface's unevenness that may be left by taking a shadow off
 _FAINTEST = 0.03  # logarithm of a shadow that is not worth taking off
 _APART = 9.0  # cells of a pattern that vary together
-_SEEN_MODEL, _DARKEST_LOG = 0.99, 1.6  # ratio above which nothing is changed, and logarithm of the darkest
+_SEEN_MODEL, _DARKEST_LOG = 0.99, 2.0  # ratio above which nothing is changed, and logarithm of the darkest
 _RIDGE, _ROUNDS, _CELLS = 0.004, 5, 4_000  # of the fit, and most cells that it takes
 _CORRECTED, _BRIGHT = 1.4, 0.98  # by which a ratio is corrected at most, and quantile of the brightness around
 _OUTSIDE = 0.2  # how far from one the ratio may be where the shadow ends, which then counts as one
@@ -131,9 +131,10 @@ def modelled(rgb: F64, known: Mask, shade: Blocked) -> Shadow | None:
     if min(int(near.sum()), int(none.sum())) < _FEWEST:
         return None
     table, values = _table(rgb, known), -_log(rgb[known])
+    deep = depth_of(shade.shares)
     step = max(1, len(values) // _CELLS)
-    weights, rest = _fitted(np.column_stack([shade.shares[:, known].T, table])[::step], values[::step])
-    dark = np.tensordot(weights, shade.shares, 1)
+    weights, rest = _fitted(np.column_stack([deep[:, known].T, table])[::step], values[::step])
+    dark = np.tensordot(weights, deep, 1)
     share = dark[near] > 0.5 * float(dark[near].max())
     if not dark[near].max() or dark[near][share].mean() < max(_FAINTEST, 0.5 * rest / np.sqrt(share.sum() / _APART)):
         return None

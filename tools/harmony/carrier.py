@@ -12,15 +12,19 @@ from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.language.field.measure import reach, solid_points
+from ...gaussians.render import contributions
 from ...gaussians.rows import rows_within
 from ...gaussians.scene import Frame, Scene
 from ..filling.charts import Chart
 from ..filling.fill import spread
 from ..filling.occlusion import Blocked, blocked, reach_of
-from ..filling.planes import Plane
+from ..filling.planes import Mask, Plane
 
 F64 = NDArray[np.float64]
 _CELLS = 72  # along the longer side of a chart
+_DEEP, _ROUGH, _HAZE = 0.5, 0.1, 0.3  # of its extent: how deep a surface's layers go, how high it and its haze rise
+_SEEN_FROM, _SOLID = 0.02, 0.1  # opacity from which a Gaussian counts at all, and as a part of the surface
+_CLEAR, _SHOWS = 0.5, 0.02  # opacity below which a Gaussian is haze; cells of a chart that it must fill to be seen
 _FEW = 4_000  # Gaussians of a surface that tell whether it is seen
 _POINTS = 12_000  # of a thing, from which its occlusion is measured
 _SLAB = 0.05  # of a thing's extent: how far from its underside the surface that carries it may be
@@ -50,17 +54,32 @@ class Carried:
         Args:
             lobes: `[LOBES]` weights of `shade.shares`; None: that of an even sky.
         """
-        table = self.shade.shares[0] if lobes is None else np.tensordot(lobes, self.shade.shares, 1)
-        return _averaged(self.shade, table, cloud, self.rows)
+        return self.share_of(cloud[self.rows], lobes)
+
+    def share_of(self, cloud: GaussianCloud, lobes: F64 | None = None) -> F64:
+        """`[M]` likewise, of other Gaussians on the surface: all of a cloud."""
+        return _averaged(self.shade, self._table(lobes), cloud)
+
+    def at(self, points: Tensor, lobes: F64 | None = None) -> F64:
+        """`[M]` likewise, at points `[M, 3]` (world)."""
+        chart = self.shade.chart
+        at = (chart.plane.local(points.to(torch.float64).cpu().numpy())[:, :2] - chart.low) / chart.cell - 0.5
+        return np.asarray(ndimage.map_coordinates(self._table(lobes), at[:, ::-1].T, order=1, mode="nearest"))
+
+    def _table(self, lobes: F64 | None) -> F64:
+        return np.asarray(self.shade.shares[0] if lobes is None else np.tensordot(lobes, self.shade.shares, 1))
 
 
-def carried(scene: Scene, thing: Tensor, without: Tensor | None = None, most: int | None = None) -> Carried | None:
+def carried(
+    scene: Scene, thing: Tensor, without: Tensor | None = None, most: int | None = None, layers: bool = False
+) -> Carried | None:
     """The surface that carries a thing; None if it hangs in the air, or no surface was seen there.
 
     Args:
         thing: rows `[M]` of the scene's cloud, ascending.
         without: `[N]` bool, Gaussians that are no surface: other things that are put there. None: there are none.
         most: Gaussians of the surface that are wanted, about; None: all.
+        layers: whether what is seen of a level surface above and below its middle is wanted too.
     """
     cloud = scene.cloud
     points = solid_points(cloud, thing)
@@ -72,12 +91,12 @@ def carried(scene: Scene, thing: Tensor, without: Tensor | None = None, most: in
     near = rows_within(cloud.means, points.min(axis=0) - extent, points.max(axis=0) + extent)
     own = torch.isin(near, thing)
     own = own if without is None else own | without[near]
-    near = near[~own & (cloud.opacities[near] > 0.1)]
+    near = near[~own & (cloud.opacities[near] > _SEEN_FROM)]
     if len(near) < 8:
         return None
     body = _body(cloud, thing, extent)
     for level, plane in _planes(scene.frame, points):
-        found = _on(cloud, near, plane, body, extent)
+        found = _on(cloud, near, plane, body, extent, layers)
         if found is not None:
             shade, rows = found
             return Carried(shade, rows if most is None else rows[:: max(1, len(rows) // most)], level)
@@ -106,7 +125,9 @@ def _planes(frame: Frame, points: F64) -> list[tuple[bool, Plane]]:
     return found
 
 
-def _on(cloud: GaussianCloud, near: Tensor, plane: Plane, body: F64, extent: float) -> tuple[Blocked, Tensor] | None:
+def _on(
+    cloud: GaussianCloud, near: Tensor, plane: Plane, body: F64, extent: float, layers: bool
+) -> tuple[Blocked, Tensor] | None:
     """The light that a thing takes from the surface at a plane, and the surface's rows; None if there is no surface."""
     local = plane.local(body)
     low, high = np.quantile(local[:, :2], [0.002, 0.998], axis=0)
@@ -114,21 +135,44 @@ def _on(cloud: GaussianCloud, near: Tensor, plane: Plane, body: F64, extent: flo
     beyond = reach_of(wide, float(np.quantile(local[:, 2], 0.98)))
     low, high = low - 1.3 * beyond, high + 1.3 * beyond
     points = plane.local(cloud.means[near].to(torch.float64).cpu().numpy())
-    inside = ((points[:, :2] > low) & (points[:, :2] < high)).all(axis=1)
-    inside &= np.abs(points[:, 2]) < _SLAB * extent
+    within = ((points[:, :2] > low) & (points[:, :2] < high)).all(axis=1)
+    solid = (cloud.opacities[near] > _SOLID).cpu().numpy()
+    inside = within & solid & (np.abs(points[:, 2]) < _SLAB * extent)
     if inside.sum() < 8:
         return None
     middle = float(np.median(points[inside, 2]))
     noise = float(np.median(np.abs(points[inside, 2] - middle)))
     thick = max(_NOISE * 1.48 * noise, 0.2 * _SLAB * extent)
-    inside &= (points[:, 2] - middle < thick) & (points[:, 2] - middle > -2 * thick)
+    flat = inside & (points[:, 2] - middle < thick) & (points[:, 2] - middle > -2 * thick)
     plane = Plane(plane.origin + plane.normal * middle, plane.axes, noise, plane.last, plane.carries)
-    rows = near[torch.from_numpy(inside)]
+    rows = near[torch.from_numpy(flat)]
     if not _is_seen(spread(cloud, rows[:: max(1, len(rows) // _FEW)], extent), plane, body, low, high):
         return None
     cell = float((high - low).max()) / _CELLS
     w, h = (max(4, int(np.ceil(s / cell))) for s in high - low)
-    return blocked(body, Chart(plane, low, cell, (h, w)), beyond), rows
+    chart = Chart(plane, low, cell, (h, w))
+    if layers and plane.carries:
+        seen = _layers(cloud[near], points[:, 2] - middle, within, chart, extent)
+        rows = near[torch.from_numpy(flat | seen)]
+    return blocked(body, chart, beyond), rows
+
+
+def _layers(near: GaussianCloud, height: F64, within: NDArray[np.bool_], chart: Chart, extent: float) -> Mask:
+    """`[M]` which Gaussians one sees who looks down on a surface: fitted ground is haze over layers at many depths,
+    and a shadow that falls on one of them alone hardly shows.
+
+    Args:
+        height: `[M]` above the surface, scene units.
+        within: `[M]` those over the chart.
+    """
+    clear = (near.opacities < _CLEAR).cpu().numpy()
+    use = within & (height > -_DEEP * extent) & (height < np.where(clear, _HAZE, _ROUGH) * extent)
+    rows = torch.from_numpy(np.flatnonzero(use))
+    found = np.zeros(len(near), bool)
+    if len(rows):
+        shown = contributions(near[rows], chart.camera()).cpu().numpy()
+        found[rows.numpy()[shown > _SHOWS]] = True
+    return found
 
 
 def _is_seen(points: F64, plane: Plane, body: F64, low: F64, high: F64) -> bool:
@@ -146,11 +190,11 @@ def _is_seen(points: F64, plane: Plane, body: F64, low: F64, high: F64) -> bool:
     return share >= (_SEEN if plane.carries else _FACES)
 
 
-def _averaged(shade: Blocked, table: F64, cloud: GaussianCloud, rows: Tensor) -> F64:
-    """`[M]` a chart's values at some Gaussians: at the middle of each, and around that of those wider than a cell."""
+def _averaged(shade: Blocked, table: F64, cloud: GaussianCloud) -> F64:
+    """`[M]` a chart's values at the Gaussians of a cloud, around the middle of those wider than a cell."""
     chart = shade.chart
-    centre = cloud.means[rows].to(torch.float64).cpu().numpy()
-    wide = cloud.scales[rows].amax(dim=1).to(torch.float64).cpu().numpy() / chart.cell
+    centre = cloud.means.to(torch.float64).cpu().numpy()
+    wide = cloud.scales.amax(dim=1).to(torch.float64).cpu().numpy() / chart.cell
     at = (chart.plane.local(centre)[:, :2] - chart.low) / chart.cell - 0.5
     found = np.asarray(ndimage.map_coordinates(table, at[:, ::-1].T, order=1, mode="nearest"))
     large = wide > 1

@@ -2,7 +2,9 @@
 
 Assets are painted as in good neutral light with one lamp above. What a scene's light is told by its white surfaces
 (exposure and white balance), by its darkest (contrast), and by how its things are shaded (`shading`). The colours of a
-new thing are multiplied by the scene's white, its shading is turned to the scene's, its black is raised to the scene's.
+new thing are multiplied by the scene's white, its black is raised to the scene's. Where its pigments are known they are
+lit anew (`form`), and wear a little, as nothing that stands in a real room is of one even colour; else its shading is
+turned to the scene's.
 """
 
 from __future__ import annotations
@@ -17,11 +19,14 @@ from torch import Tensor
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.harmonics import SH_C0, dc_to_color
 from ...gaussians.language.field.measure import sample
+from ...gaussians.rotations import to_matrix
 from ...gaussians.rows import rows_within
 from ...gaussians.scene import Scene
 from ..color_map import LUMA
 from ..coloring.quantiles import quantile
 from ..coloring.scene_light import WHITE, SceneLight, scene_light
+from ..finishing.noise import fractal
+from .form import Pigment, Surround, form_light
 from .shading import is_signed, lumas, normals_of, shading_of, solved
 
 F64 = NDArray[np.float64]
@@ -29,9 +34,14 @@ _SAMPLE = 1 << 14
 _AROUND = 2.5  # times the radius of a thing: its surroundings
 _FEWEST = 200  # Gaussians in them, or they are unknown
 _BRIGHT = 0.95  # quantile of their luma that white paint would have
+_BELOW, _FEW = 0.3, 20  # of its surroundings: up to which height the support shows, and the fewest Gaussians of it
 _BELIEVED, _DIMMEST = 0.6, 0.6  # exponent of what is missing there that is taken for a lack of light; the dimmest place
-_CAST, _CAST_AT_MOST = 0.4, (0.75, 1.25)  # exponent of the hue of what is around that its light has, and its bounds
+_CAST, _CAST_AT_MOST = 0.2, (0.85, 1.15)  # exponent of the hue of what is around that its light has, and its bounds
 _CAST_ON_ASKED, _DIMMEST_ASKED = 0.12, 0.75  # the same of a thing whose colour was asked for
+_PAINT, _PURER = 0.15, 0.45  # purity up to which a pigment nobody asked for is kept, and what counts of more
+_WORN, _WORN_FINE = 0.09, 0.07  # by how much pigments vary over a thing, and over its details
+_BESIDE = 6  # Gaussians over which a pigment is averaged
+_LARGE, _SMALL = 0.35, 0.04  # of a thing's extent: size of these
 _PURE, _PALEST = 0.95, 0.65  # quantile of purity that is compared, and the least that is kept of a thing's chroma
 _DARK = 0.005  # quantile of a scene's luma that its black has
 _RAISED = 0.05  # to which black is raised at most
@@ -70,27 +80,87 @@ class Fitted:
         return ", ".join(said)
 
 
-def matched(cloud: GaussianCloud, scene: Scene, free: bool = True) -> tuple[GaussianCloud, Fitted]:
+def matched(
+    cloud: GaussianCloud, scene: Scene, free: bool = True, pigment: Pigment | None = None
+) -> tuple[GaussianCloud, Fitted]:
     """A new thing, in place, with its colours fitted to a scene; only its harmonics change.
 
     Args:
         cloud: the thing, lit by one lamp as assets are, or photographed in good light.
         free: whether its colours are free to be less pure, as nobody asked for one.
+        pigment: its colours without light, if they are known.
     """
     light = _light_at(scene, cloud, free)
     gain = torch.tensor(light.white, dtype=torch.float64)
-    shade = _turned(cloud, scene)
     raised = _black(scene)
-    factor = gain[None] * torch.from_numpy(shade)[:, None]  # [N, 3]
-    base = dc_to_color(cloud.sh[:, 0]).clamp(min=0).to(torch.float64) * factor
+    if pigment is None or not is_signed(cloud):
+        shade = torch.from_numpy(_turned(cloud, scene))
+        base = dc_to_color(cloud.sh[:, 0]).clamp(min=0).to(torch.float64)
+        factor = gain[None] * shade[:, None]  # [N, 3]
+        told = float(shade.log().square().mean().sqrt()) if len(shade) else 0.0
+    else:
+        base = _worn(_paint(torch.from_numpy(pigment.rgb).to(torch.float64), free and pigment.drawn), cloud)
+        points, normals = _surface(cloud)
+        below = pigment.two_sided & (normals @ scene.frame.up_vector < 0)
+        normals = np.where(below[:, None], -normals, normals)
+        formed = torch.from_numpy(form_light(points, normals, _surround(scene, cloud, light)))
+        factor = gain[None] * formed
+        told = float(formed.log().square().mean().sqrt()) if len(formed) else 0.0
+    base = base * factor
     keep = _chroma_kept(base, scene) if free else 1.0
     grey = (base @ torch.tensor(LUMA, dtype=torch.float64))[:, None]
     base = grey + keep * (base - grey)
     base = raised + (1 - raised) * base if raised > 0 else base
     sh = cloud.sh * (factor * (1 - raised)).to(cloud.sh)[:, None, :]
     sh[:, 0] = ((base - 0.5) / SH_C0).to(cloud.sh)
-    told = Fitted(light.white, raised, float(np.sqrt(np.mean(np.log(shade) ** 2))) if len(shade) else 0.0)
-    return cloud.replace(sh=sh), told
+    return cloud.replace(sh=sh), Fitted(light.white, raised, told)
+
+
+def _surface(cloud: GaussianCloud) -> tuple[F64, F64]:
+    """`[N, 3]` positions and outward normals of a thing made from surfaces."""
+    return cloud.means.to(torch.float64).cpu().numpy(), to_matrix(cloud.quats)[:, :, 2].to(torch.float64).cpu().numpy()
+
+
+def _paint(rgb: Tensor, free: bool) -> Tensor:
+    """Pigments as they are in used rooms: what is pure without having been asked for is less so."""
+    if not free:
+        return rgb
+    purity = _purity(rgb)[:, None]
+    kept = torch.where(purity > _PAINT, (_PAINT + _PURER * (purity - _PAINT)) / purity.clamp(min=1e-6), 1.0)
+    grey = (rgb @ torch.tensor(LUMA, dtype=torch.float64))[:, None]
+    return grey + kept * (rgb - grey)
+
+
+def _worn(rgb: Tensor, cloud: GaussianCloud) -> Tensor:
+    """Pigments that vary a little over the surface, and whose borders are as soft as its Gaussians are wide."""
+    from scipy.spatial import cKDTree
+
+    points = cloud.means.to(torch.float32).cpu().numpy()
+    beside = cKDTree(points).query(points, k=min(_BESIDE, len(points)))[1].reshape(len(points), -1)
+    rgb = rgb[torch.from_numpy(beside)].mean(dim=1)
+    extent = float(np.ptp(points, axis=0).max())
+    blur = cloud.scales.amax(dim=1).to(torch.float32).cpu().numpy()
+    large = fractal(points, _LARGE * extent, blur, 5, 2)
+    small = fractal(points, _SMALL * extent, blur, 6, 2)
+    return rgb * torch.from_numpy(np.exp(_WORN * large + _WORN_FINE * small).astype(np.float64))[:, None]
+
+
+def _surround(scene: Scene, cloud: GaussianCloud, light: SceneLight) -> Surround:
+    """What lights a thing in a scene: the side from which its things are lit, and the colour of what is below."""
+    up = scene.frame.up_vector
+    points = cloud.means.to(torch.float64).cpu().numpy()
+    low, high = points.min(axis=0), points.max(axis=0)
+    reach = 0.5 * float((high - low).max())
+    foot = float((points @ up).min())
+    near = rows_within(scene.cloud.means, low - reach, high + reach)
+    near = near[scene.cloud.means[near].to(torch.float64).cpu().numpy() @ up < foot + _BELOW * reach]
+    bounce = np.full(3, 0.5)
+    if len(near) >= _FEW:
+        taken = sample(scene.cloud, near, _SAMPLE)
+        share = (taken.weight / taken.weight.sum().clamp(min=1e-12))[:, None]
+        seen = (taken.rgb.clamp(0, 1) * share).sum(dim=0) / torch.tensor(light.white, dtype=torch.float64)
+        bounce = seen.clamp(0.05, 0.9).cpu().numpy()
+    return Surround(up, shading_of(scene).slope, bounce, foot)
 
 
 def _light_at(scene: Scene, cloud: GaussianCloud, free: bool) -> SceneLight:

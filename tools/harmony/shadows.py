@@ -14,10 +14,12 @@ from torch import Tensor
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.language.field.group_index import index_groups
 from ...gaussians.scene import Scene
-from ..field_update import after_recolor
-from ..filling.occlusion import SIDES
+from ..cloud_diff import fresh_ids, joined
+from ..field_update import after_recolor, recount
+from ..filling.occlusion import SIDES, depth_of
 from ..filling.shadow import multiplied
 from .carrier import Carried, carried
+from .finer import finer
 from .shading import shading_of
 from .strength import FAINT, Strength, fitted, strength_of
 
@@ -33,13 +35,17 @@ _STRAIGHT = 0.1  # slope of light from above that is taken to be there
 
 @dataclass(frozen=True)
 class Told:
-    """What was cast: how many Gaussians are darker, under how many things, how many hang or stand on nothing seen, and
-    how dark the shadows are."""
+    """What was cast: how many Gaussians are darker, under how many things, how many hang or stand on nothing seen,
+    how dark the shadows are, and how many Gaussians were made by splitting, how many those replaced, and
+    how many others are darker."""
 
     darker: int
     things: int
     missing: int
     strength: Strength
+    made: int = 0
+    replaced: int = 0
+    changed: int = 0
 
 
 def shadows_under(
@@ -48,6 +54,7 @@ def shadows_under(
     strength: Strength | None = None,
     apart: bool = True,
     lit: Scene | None = None,
+    split: bool = False,
 ) -> tuple[Scene, Told]:
     """The scene with the contact shadows of things where they stand or hang; only colours of other Gaussians change.
 
@@ -56,6 +63,7 @@ def shadows_under(
         apart: whether none of them darkens another's Gaussians.
         lit: the scene whose light is taken, as it was before an edit; None: this one.
         strength: how dark; None: as those that the scene has.
+        split: whether Gaussians that are too coarse to show the shadows are split; their children are the last rows.
     """
     strength = strength_of(scene) if strength is None else strength
     if strength.value <= 0 or not things:
@@ -63,19 +71,30 @@ def shadows_under(
     own = torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
     for rows in things:
         own[rows] = True
+    places = [p for rows in things if (p := carried(scene, rows, own if apart else None, layers=split)) is not None]
+    lobes = [lobes_of(lit or scene, place) for place in places]
+    missing = len(things) - len(places)
+    parted = finer(scene.cloud, list(zip(places, lobes, strict=True)), strength.value) if split else None
     dark = torch.zeros(len(scene.cloud), dtype=torch.float64)
-    found = 0
-    for rows in things:
-        place = carried(scene, rows, own if apart else None)
-        if place is not None:
-            found += 1
-            dark[place.rows.cpu()] += torch.from_numpy(
-                strength.value * place.share(scene.cloud, lobes_of(lit or scene, place))
-            )
+    for place, lean in zip(places, lobes, strict=True):
+        dark[place.rows.cpu()] += strength.value * torch.from_numpy(depth_of(place.share(scene.cloud, lean)))
+    before, made, removed = scene, 0, 0
+    if parted is not None:
+        under = torch.zeros(len(parted.children), dtype=torch.float64)
+        for place, lean in zip(places, lobes, strict=True):
+            on = torch.isin(parted.parents, place.rows.cpu()).nonzero().squeeze(1)
+            under[on] += strength.value * torch.from_numpy(depth_of(place.share_of(parted.children[on], lean)))
+        stays = torch.ones(len(scene.cloud), dtype=torch.bool)
+        stays[parted.split] = False
+        made, removed = len(parted.children), len(parted.split)
+        children = parted.children.replace(ids=fresh_ids(scene.cloud, made))
+        cloud = joined(scene.cloud, ~stays, [children])
+        scene = scene.replace(cloud=cloud, language=recount(scene.language, cloud))
+        dark = torch.cat([dark[stays], under])
     rows = (dark > _LEAST).nonzero().squeeze(1).to(scene.cloud.device)
-    told = Told(len(rows), found, len(things) - found, strength)
+    told = Told(len(rows), len(places), missing, strength, made, removed, int((rows < len(scene.cloud) - made).sum()))
     if not len(rows):
-        return scene, told
+        return before, Told(0, len(places), missing, strength)
     sh = scene.cloud.sh.clone()
     sh[rows] = multiplied(sh[rows], torch.exp(-dark[rows.cpu()]).to(sh))
     scene = scene.replace(cloud=scene.cloud.replace(sh=sh))
@@ -133,7 +152,7 @@ def changed_shadow(
     usual = strength_of(scene).value or FAINT
     dark, found = torch.zeros(len(scene.cloud), dtype=torch.float64), 0
     for rows in things:
-        place = carried(scene, rows, own)
+        place = carried(scene, rows, own, layers=True)
         if place is None:
             continue
         found += 1
@@ -141,7 +160,7 @@ def changed_shadow(
         step = _step(change, now, usual)
         # What is there was measured under an even light; what is cast follows the light of the scene.
         lobes = lobes_of(scene, place) if change == "cast" else None
-        dark[place.rows.cpu()] += torch.from_numpy(step * place.share(scene.cloud, lobes))
+        dark[place.rows.cpu()] += torch.from_numpy(step * depth_of(place.share(scene.cloud, lobes)))
     rows = (dark.abs() > _LEAST).nonzero().squeeze(1).to(scene.cloud.device)
     if not len(rows):
         return scene.cloud, Changed(rows, found)

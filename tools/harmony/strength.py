@@ -21,11 +21,12 @@ from ...gaussians.language.field.group_index import index_groups
 from ...gaussians.language.field.language_field import LanguageField
 from ...gaussians.scene import Scene
 from ..color_map import LUMA
+from ..filling.occlusion import depth_of
 from .carrier import Carried, carried
 
 F64 = NDArray[np.float64]
-FAINT = 0.9  # strength where no shadow of the scene can be measured
-MOST = 1.6  # strength of the darkest shadows
+FAINT = 1.5  # strength where no shadow of the scene can be measured
+MOST = 2.4  # strength of the darkest shadows
 _ROWS = 8_000  # Gaussians of the surface around a thing that it is measured on
 _THINGS = 6  # that are measured, the largest that are no room
 _LEAST = 150  # Gaussians of a thing that is measured
@@ -44,7 +45,7 @@ class Strength:
     """How dark contact shadows are.
 
     Attributes:
-        value: factor of the light's share in the exponent: a surface's colours are multiplied by `exp(-value * share)`.
+        value: factor in the exponent: a surface's colours are multiplied by `exp(-value * depth_of(share))`.
         measured: on how many things it was measured; 0: it is the default.
         lit: whether anything in the scene is shaded, else it has no shadows either.
     """
@@ -110,7 +111,7 @@ def fitted(cloud: GaussianCloud, place: Carried) -> float | None:
     at = chart.plane.local(cloud.means[rows].to(torch.float64).cpu().numpy())[:, :2]
     at = (at - at.mean(axis=0)) / max(float(np.ptp(at, axis=0).max()), 1e-12)
     tint = rgb[:, ::2] / np.maximum(rgb.mean(axis=1, keepdims=True), 0.02) - 1
-    table = np.column_stack([share[use], np.ones(len(at)), at, tint])
+    table = np.column_stack([depth_of(share[use]), np.ones(len(at)), at, tint])
     return _slope(table, -np.log(np.maximum(luma, 0.02)))
 
 

@@ -20,7 +20,9 @@ from ..new_objects import (
     affine_of,
     find_spot,
     in_its_light,
+    laid,
     make_asset,
+    rested,
     scene_scale,
     set_down,
     viewed_point,
@@ -63,11 +65,13 @@ class Insert(EditOp):
         scale, start, notes = scene_scale(scene, named), viewed_point(around), dict[str, None]()
         for index in range(self.count):
             request = AssetRequest(self.asset, self.color, context.seed + index, scale, self.height, context.assets)
-            asset = make_asset(scene, request)
+            asset = laid(make_asset(scene, request), self.place)
             around.rests = asset.support not in ("wall", "ceiling")
-            spot = find_spot(around, asset, self.place, start)
+            spot = rested(around, find_spot(around, asset, self.place, start), asset)
             cloud = set_down(asset, spot.foot, spot.axes)
-            cloud, fitted = in_its_light(cloud, scene, self.harmony and context.harmony, self.color is None)
+            cloud, fitted = in_its_light(
+                cloud, scene, self.harmony and context.harmony, self.color is None, asset.pigment
+            )
             add_obstacle(cloud, scene, around)
             hangs = self.place is None and asset.support in ("wall", "ceiling")
             moved.append(

@@ -16,6 +16,7 @@ from ..new_objects import (
     fitted,
     in_its_light,
     make_asset,
+    rested,
     scene_scale,
     set_down,
     standing_axes,
@@ -55,9 +56,11 @@ class Replace(TargetedOp):
             request = AssetRequest(self.asset, self.color, context.seed + index, scale, own=context.assets)
             asset = make_asset(scene, request)
             around.rests = asset.support not in ("wall", "ceiling")
-            spot = spot_near(around, asset.size, standing_axes(around, [body]), body)
+            spot = rested(around, spot_near(around, asset.size, standing_axes(around, [body]), body), asset)
             cloud = set_down(asset, spot.foot, spot.axes)
-            cloud, told = in_its_light(cloud, scene, self.harmony and context.harmony, self.color is None)
+            cloud, told = in_its_light(
+                cloud, scene, self.harmony and context.harmony, self.color is None, asset.pigment
+            )
             add_obstacle(cloud, scene, around)
             moved.append(affine_of(objects.add(cloud, asset.label, spot.axes), spot.support, spot.touches))
             notes |= dict.fromkeys((*asset.notes, *spot.notes, *told))

@@ -36,6 +36,7 @@ _HAZE = 0.1  # of the points of as much floor of a capture: fewer over it are no
 _IN_BOX = 0.5  # of its size: what it costs a thing in a capture to stand in another's box
 _PLACES = 1_500  # on a floor that are looked at
 _FAR = 3.0  # of a room's extent: what a place on its floor costs that nobody sees
+_CORNER, _UNDER = 0.45, 0.3  # of a thing's sides: where its corners stand, and how far the floor may be from one
 _FLOOR_SEEN, _FLOOR_POINTS = 200, 8_000  # points of a floor that was seen, and most that are compared
 WALL_WORDS = frozenset({"wall", "walls"})
 
@@ -255,7 +256,9 @@ def _hidden_cost(
     hidden = around.sight.hidden(feet, around.up, size[2])
     if open_floor and len(floor := around.floor_points) >= _FLOOR_SEEN:
         tree = cKDTree(floor[:: max(1, len(floor) // _FLOOR_POINTS)] @ basis[:2].T.astype(np.float32))
-        hidden = hidden + (tree.query(places)[0] > 0.5 * max(size[:2]))
+        # All of its corners stand on the floor, and not beyond its edge.
+        for corner in np.array([[0, 0], [1, 1], [1, -1], [-1, 1], [-1, -1]]) * np.array(size[:2]) * _CORNER:
+            hidden = hidden + (tree.query(places + corner)[0] > _UNDER * max(size[:2]))
     cost[tuple(chosen.T)] = weight * hidden
     return cost
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
@@ -41,6 +41,7 @@ FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 class _Captured(Unlit):
     """A captured splat, which keeps the lighting of its capture."""
 
+    is_pigment: ClassVar[bool] = False
     lit: GaussianCloud
 
     def cloud(self, sun: Array) -> GaussianCloud:

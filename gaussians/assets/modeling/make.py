@@ -9,6 +9,7 @@ import math
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import torch
@@ -53,6 +54,7 @@ class Unlit:
     samples: sampling.Samples
     albedo: Array
     two_sided: NDArray[np.bool_]
+    is_pigment: ClassVar[bool] = True  # whether `albedo` is without light
 
     def cloud(self, sun: Array) -> GaussianCloud:
         """The Gaussians lit by a lamp in the direction `sun`, object frame."""
