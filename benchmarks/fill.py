@@ -16,6 +16,7 @@ import numpy as np
 from ..gaussians.cloud import GaussianCloud, concat
 from ..tools.filling.fill import merged, patches_behind, unshaded
 from ..tools.lifting.past import without_those_before
+from ._fill.cast import cast_metrics
 from ._fill.lifted import capture_metrics
 from ._fill.measure import Scores, biharmonic, drawn, scored, telea, views_of
 from ._fill.rooms import PLACES, Deletion, deletions
@@ -51,7 +52,7 @@ def run(quick: bool = False) -> Result:
         seed += 1
     result = _result(found, tuple(range(SEED, seed)))
     metrics, notes = capture_metrics(quick)
-    return replace(result, metrics=(*result.metrics, *metrics), notes=(*result.notes, *notes))
+    return replace(result, metrics=(*result.metrics, *cast_metrics(quick), *metrics), notes=(*result.notes, *notes))
 
 
 def measured(case: Deletion) -> _Measured | None:

@@ -69,7 +69,7 @@ def cast_metrics(quick: bool = False) -> list[Metric]:
     found = [c for kind in (KINDS[:3] if quick else KINDS) if (c := measured(kind)) is not None]
     levels = [abs(c.level) for c in found]
     return [
-        Metric("cast.level", float(np.mean(levels)), "dB", "lower", 0.3, GOAL),
+        Metric("cast.level", float(np.median(levels)), "dB", "lower", 0.3, GOAL),
         Metric("cast.level.worst", max(levels), "dB", "lower", 0.3),
         Metric("cast.residual", float(np.mean([c.residual for c in found])), "x", "lower", 0.1),
         Metric("cast.within_goal", float(np.mean([x <= GOAL for x in levels])), "1", "higher", 0.1),

@@ -16,6 +16,7 @@ from .bodies import Array
 _PIXELS = 28  # along a side of the picture from above
 _FAR = 30.0  # times the footprint's longer side: distance of the eye, so that the view is nearly parallel
 _BAND = 0.2  # of a thing's height: how far from the height that points tell the surface may be seen
+_RISES = 0.03  # of its height: how much higher it may be seen
 _HALF_OPAQUE, _FILLED = 0.5, 0.4  # alpha of a pixel that shows the surface, and share of the footprint that must
 _FAINT = 0.02  # opacity below which a Gaussian does not count
 
@@ -45,4 +46,5 @@ def seen_height(cloud: GaussianCloud, without: Tensor | None, foot: Array, axes:
     shown = picture.alpha.cpu().numpy() > _HALF_OPAQUE
     if shown.mean() < _FILLED:
         return None
-    return float(np.median(_FAR * wide - picture.depth.cpu().numpy()[shown]))
+    # Remains of other things are higher; what carries a thing is hardly above where its points were found.
+    return min(float(np.median(_FAR * wide - picture.depth.cpu().numpy()[shown])), _RISES * size[2])

@@ -22,11 +22,13 @@ from scenewright.tools.filling.charts import Chart
 from scenewright.tools.filling.occlusion import blocked
 from scenewright.tools.filling.planes import Plane
 from scenewright.tools.harmony.carrier import carried
+from scenewright.tools.harmony.form import Surround, form_light
 from scenewright.tools.harmony.matched import matched
 from scenewright.tools.harmony.shading import shading_of
 from scenewright.tools.harmony.shadows import shadows_under, shadows_under_everything
 from scenewright.tools.harmony.strength import FAINT, Strength, fitted, strength_of
 from scenewright.tools.operation import Context
+from scenewright.tools.placement.seen_surface import seen_height
 from scenewright.tools.registry import parse
 
 STEP = 0.04
@@ -152,6 +154,53 @@ def test_only_colours_of_the_ground_near_the_thing_change() -> None:
     assert set(scene.cloud.group[changed].tolist()) == {0}
     assert float(scene.cloud.means[changed, :2].abs().max()) < 1.0
     assert bool((dc_to_color(dark.cloud.sh[changed, 0]) <= dc_to_color(scene.cloud.sh[changed, 0])).all())
+
+
+def test_only_ground_too_coarse_for_a_shadow_is_split() -> None:
+    """Gaussians of the floor at a thing's foot that are wider than its shadow are split; others stay bit for bit."""
+    wide = _floor()
+    near = (wide.means[:, :2].abs() < 0.5).all(dim=1) & (torch.arange(len(wide)) % 9 == 0)
+    scales = wide.scales.clone()
+    scales[near, :2] = 0.15
+    scene = _scene(wide.replace(scales=scales), _box((0.0, 0.0), size=0.3))
+    dark, told = shadows_under(scene, [_rows(scene)], Strength(1.5, 1), split=True)
+    assert told.made > told.replaced > 0 and len(dark.cloud) == len(scene.cloud) + told.made - told.replaced
+    gone = ~torch.isin(scene.cloud.ids, dark.cloud.ids)
+    assert int(gone.sum()) == told.replaced and bool((scene.cloud.scales[gone, 0] > 0.1).all())
+    kept = scene.cloud[~gone]
+    old = dark.cloud[: len(kept)]
+    for name, column in kept.columns():
+        if name != "sh":
+            assert torch.equal(getattr(old, name), column), name
+    assert int((old.sh != kept.sh).any(dim=2).any(dim=1).sum()) == told.changed
+    assert int(dark.cloud.ids[len(kept) :].min()) > int(scene.cloud.ids.max())
+
+
+def test_a_thing_is_bright_above_and_dark_below_and_in_its_own_shade() -> None:
+    ball = assets.make("ball", 0).cloud
+    points = ball.means.double().numpy()
+    normals = points - points.mean(axis=0)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    around = Surround(np.array([0.0, 0, 1]), np.array([1.0, 0, 1]), np.array([0.5, 0.3, 0.2]), 0.0)
+    light = form_light(points, normals, around).mean(axis=1)
+    rise = normals[:, 2]
+    assert light[rise > 0.9].mean() > 1.8 * light[rise < -0.9].mean()
+    level = np.abs(rise) < 0.3
+    toward, away = level & (normals[:, 0] > 0.8), level & (normals[:, 0] < -0.8)
+    assert light[toward].mean() > 1.1 * light[away].mean()  # the lamp stands there
+    assert light.max() < 1.25 and light.min() > 0.1
+
+
+def test_haze_over_a_floor_does_not_raise_what_stands_on_it() -> None:
+    """A surface is seen between its haze and its opaque layer, in the share of the light that each shows."""
+    floor = _floor()
+    haze = floor.replace(means=floor.means + torch.tensor([0, 0, 0.05]), opacities=torch.full((len(floor),), 0.05))
+    axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    foot, size = np.array([0.0, 0.0, 0.05]), (0.4, 0.4, 0.6)
+    cloud = concat(_numbered([floor, haze]))
+    height = seen_height(cloud, None, foot, axes, size)
+    assert height is not None and -0.05 <= height < -0.02
+    assert seen_height(cloud, None, foot + np.array([0, 0, 1.0]), axes, size) is None
 
 
 def test_what_hangs_in_the_air_casts_none_and_it_is_told() -> None:
