@@ -25,6 +25,7 @@ _CELLS = 1.3  # of a chart: standard deviation of children
 _COARSE = 1.8  # times that: from which a Gaussian is split
 _VARIES = 0.1  # ratio of colours by which a shadow varies over it, likewise
 _MOST = 8_000  # children of the surface of one thing
+_EACH = 6  # children along an axis at most: the opacities of more take long to find
 _AT = 1.2  # standard deviations from its middle at which the shadow is compared
 _FAINT = 0.05  # opacity below which none is split
 _STEPS = 14  # of the search for their size
@@ -76,7 +77,7 @@ def _wanted(cloud: GaussianCloud, place: Carried, lobes: F64, strength: float) -
     counts = torch.ones(len(rows), 2, dtype=torch.int64)
     for step in range(_STEPS):
         size = least * _LARGER**step
-        counts = torch.stack([counts_for(sides[:, k], opacities, size) for k in (0, 1)], dim=1)
+        counts = torch.stack([counts_for(sides[:, k], opacities, size).clamp(max=_EACH) for k in (0, 1)], dim=1)
         if int(counts.prod(dim=1).sum()) <= _MOST:
             break
     return rows, counts
