@@ -52,6 +52,8 @@ _ROUGH = 0.02  # of the thing's extent: noise of a surface on which no shadow ca
 _CLOSED = 0.5  # of the cells around a thing that its support must cover for its shadow to be told
 _NEAR = 6  # cells from a hole within which a group must be that is continued into it
 _GROUP = 0.1  # of a surface's cells from which a group is part of it
+_LOWEST, _SUNK = 0.01, 0.03  # share of a thing's Gaussians that tells its bottom, and how far, of its extent, that may
+# lie under what it stands on
 _SAMPLE = 60_000  # points of the surroundings
 _WIDE = 8_000  # large Gaussians of which further points are taken
 _BESIDE = 0.05  # of the thing's extent: how far from where it touches a surface other than floors and walls it hid it
@@ -438,7 +440,9 @@ def _hidden_cells(
     touched = _touched(thing, chart, size / HIDING)
     if not plane.last:  # a surface among others is known to go on only where the thing lay on it
         # Nobody saw the underside of what stands on it: all that lies below the thing may have been touched.
-        lay = seen(chart, thing).alpha > COVERED if plane.carries else touched
+        lowest = float(np.quantile(plane.height(points_of(thing, torch.arange(len(thing)))), _LOWEST))
+        stands = plane.carries and lowest > -_SUNK * size
+        lay = seen(chart, thing).alpha > COVERED if stands else touched
         empty = empty & ndimage.binary_dilation(lay, iterations=max(1, round(_BESIDE * size / chart.cell)))
         if not empty.any():
             return empty, empty

@@ -39,7 +39,7 @@ _FAINTEST = 0.03  # logarithm of a shadow that is not worth taking off
 _APART = 9.0  # cells of a pattern that vary together
 _SEEN_MODEL, _DARKEST_LOG = 0.99, 2.0  # ratio above which nothing is changed, and logarithm of the darkest
 _RIDGE, _ROUNDS, _CELLS = 0.004, 5, 4_000  # of the fit, and most cells that it takes
-_CORRECTED, _BRIGHT = 1.4, 0.98  # by which a ratio is corrected at most, and quantile of the brightness around
+_CORRECTED, _BRIGHT = 1.2, 0.98  # by which a ratio is corrected at most, and quantile of the brightness around
 _OUTSIDE = 0.2  # how far from one the ratio may be where the shadow ends, which then counts as one
 
 
