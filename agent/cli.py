@@ -15,6 +15,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from ..gaussians.errors import ScenewrightError
+from . import startup
 from .options import with_values
 from .terminal.output import error_json, terminal
 
@@ -22,6 +23,8 @@ VERBS = (
     "demo", "info", "embed", "name-all", "select", "ask", "describe", "plan", "schema", "check", "compose", "edit",
     "chat", "render", "find-view", "convert", "slim", "mcp", "fit", "bench", "doctor",
 )  # fmt: skip
+
+_ON_A_SESSION = ("select", "ask", "edit", "describe")  # which first load all that a session needs
 
 app = typer.Typer(
     name="scenewright",
@@ -65,6 +68,8 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     terminal.as_json = terminal.debug = False
     given = sys.argv[1:] if arguments is None else arguments
     code: object = 0
+    if given[:1] and given[0] in _ON_A_SESSION:
+        startup.begin()
     try:
         code = app(with_values(given), standalone_mode=False)
     except ScenewrightError as error:
@@ -76,6 +81,7 @@ def main(arguments: list[str] | None = None) -> NoReturn:
         terminal.say("interrupted")
         sys.exit(130)
     except BrokenPipeError:
+        terminal.debug = False
         sys.stderr.close()  # the reader of our output has gone; this keeps Python from reporting it at exit
         sys.exit(0)
     except Exception as error:
@@ -87,6 +93,11 @@ def main(arguments: list[str] | None = None) -> NoReturn:
         note = f"internal error ({type(error).__name__}: {error}); run again with --debug and report it"
         _report({"verdict": "internal", "reason": note, "exit_code": 4})
         sys.exit(4)
+    finally:
+        startup.end()
+        if terminal.debug:
+            for line in startup.told():
+                terminal.say(line)
     if code == 130:  # an interrupt, as typer reports it
         terminal.say("interrupted")
     sys.exit(code if isinstance(code, int) else 0)

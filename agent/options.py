@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from . import startup
 from .terminal.output import terminal
 
 
@@ -19,6 +20,8 @@ def _json(value: bool) -> bool:
 
 def _debug(value: bool) -> bool:
     terminal.debug = value
+    if value:
+        startup.watch_imports()
     return value
 
 
@@ -39,7 +42,10 @@ Output = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", callback=_json, is_eager=True, help="Print the result as JSON.")]
 Debug = Annotated[
-    bool, typer.Option("--debug", callback=_debug, is_eager=True, help="Show errors with their traceback.")
+    bool,
+    typer.Option(
+        "--debug", callback=_debug, is_eager=True, help="Show errors with their traceback, and what starting took."
+    ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
 Yes = Annotated[

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -85,21 +86,51 @@ def workers() -> int:
 def run(kernel: Any, count: int, *arguments: Any) -> None:
     """Call `kernel(worker, count, *arguments)` for every worker number below `count` at once; wait for all."""
     start = time.perf_counter()
-    if not kernel.overloads:
+    new = not kernel.overloads
+    if new:
         _announce(kernel)
     others = [_pool(os.getpid(), count).submit(kernel, worker, count, *arguments) for worker in range(1, count)]
     kernel(0, count, *arguments)
     for other in others:
         other.result()
+    if new:
+        _note_first_call(kernel, start)
     _record_time(kernel, start)
 
 
 def run_alone(kernel: Any, *arguments: Any) -> Any:
     """Call `kernel(*arguments)` on this thread, for work that cannot be divided; returns its result."""
     start = time.perf_counter()
+    new = not kernel.overloads
     value = kernel(*arguments)
+    if new:
+        _note_first_call(kernel, start)
     _record_time(kernel, start)
     return value
+
+
+@dataclass(frozen=True)
+class FirstCall:
+    """The first call of a kernel in this process.
+
+    Attributes:
+        kernel: its name.
+        compiled: whether it was compiled; else its machine code was read from the cache.
+        seconds: of compiling or reading, and of the call itself.
+    """
+
+    kernel: str
+    compiled: bool
+    seconds: float
+
+
+first_calls: list[FirstCall] = []
+
+
+def _note_first_call(kernel: Any, start: float) -> None:
+    """Add a kernel's first call, which began at `start`."""
+    compiled = bool(kernel.stats.cache_misses) or not kernel.stats.cache_hits
+    first_calls.append(FirstCall(kernel.__name__, compiled, time.perf_counter() - start))
 
 
 _times: ContextVar[dict[str, float] | None] = ContextVar("times", default=None)

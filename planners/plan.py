@@ -39,7 +39,7 @@ class PromptSize(BaseModel):
         examples, of_examples: of the prompt's examples, those that fitted, and all.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     tokens: Count
     window: Count
@@ -73,7 +73,7 @@ class Usage(BaseModel):
         prompt: how much of the scene the model was shown, in the last instruction; None if the prompt is no plan's.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     model: Annotated[str, Field(max_length=200)]
     requests: Annotated[int, Field(ge=0, le=1000)] = 0
@@ -124,6 +124,7 @@ class EditPlan(BaseModel):
     model_config = ConfigDict(
         frozen=True,
         extra="forbid",
+        defer_build=True,
         json_schema_extra=either(
             {"verdict": {"enum": ["ok"]}, "ops": given(minItems=1)},
             {"verdict": given(enum=[v for v in get_args(Verdict) if v != "ok"]), "ops": {"maxItems": 0}},

@@ -180,3 +180,25 @@ def test_help_loads_nothing_heavy() -> None:
         "try: main()\nexcept SystemExit: pass\nTrue"
     )
     assert not _loaded_by(code) & (HEAVY | {"pydantic"})
+
+
+@pytest.mark.slow
+def test_select_on_a_saved_field_loads_no_compiler(tmp_path: Path) -> None:
+    room = tmp_path / "room.ply"
+    made = f"""
+from pathlib import Path
+import scenewright as sw
+from scenewright.gaussians.language.field.store import save_field
+path = Path({str(room)!r})
+sw.save(sw.furnish(3, objects=3, detail=0.25).scene, path)
+from scenewright.gaussians.language import encoders
+save_field(sw.embed(sw.load(path), encoders.load()), path)
+"""
+    subprocess.run([sys.executable, "-c", made], check=True, capture_output=True)
+    code = (
+        "from scenewright.agent.cli import main\n"
+        f"try: main(['select', {str(room)!r}, 'everything'])\nexcept SystemExit as end: assert not end.code\nTrue"
+    )
+    loaded = _loaded_by(code)
+    assert "torch" in loaded  # the command has run
+    assert not loaded & {"numba", "llvmlite", "trimesh", "matplotlib", "prompt_toolkit"}

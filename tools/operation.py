@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol, S
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 from torch import Tensor
 
 from ..gaussians.camera import Camera
@@ -23,6 +25,7 @@ from ..gaussians.scene import Frame, Scene
 from ..gaussians.world import relations
 from ..gaussians.world.lengths import Unit, in_metres
 from .alternatives import NOT_GIVEN, either, given
+from .docstrings import described
 from .receipt import Check, Pixels, Receipt, SelectionSummary
 
 if TYPE_CHECKING:
@@ -53,7 +56,7 @@ _OFFSET = ("on", "against")
 class Length(BaseModel):
     """A length with its unit. "units" are the scene's own units; the others are converted by the scene's scale."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     value: Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]
     unit: Unit = "m"
@@ -91,6 +94,7 @@ class Placement(BaseModel):
     model_config = ConfigDict(
         frozen=True,
         extra="forbid",
+        defer_build=True,
         json_schema_extra=either(
             {"relation": given(enum=_RELATIVE), "anchors": given(minItems=1, maxItems=1), "offset": NOT_GIVEN},
             {"relation": given(enum=_PAIRED), "anchors": given(minItems=1), "offset": NOT_GIVEN},
@@ -269,7 +273,7 @@ class EditOp(BaseModel):
     model, gives an `example` (words and the JSON they mean) and implements `apply` and `check`.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     op: str
     example: ClassVar[tuple[str, dict[str, Any]]]
@@ -302,6 +306,12 @@ class EditOp(BaseModel):
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
         """`[N]` bool: the Gaussians that may change or be removed; the others must stay the same bit for bit."""
         return mask_of(scene.cloud, selection.ids)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        found = handler(core)
+        described(cls, handler.resolve_ref_schema(found).get("properties", {}))
+        return found
 
     @abstractmethod
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:

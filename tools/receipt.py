@@ -22,7 +22,7 @@ class Check(BaseModel):
         sentence: the check in words, for a person.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     name: str
     passed: bool
@@ -53,7 +53,7 @@ def report(name: str, value: float, unit: str, sentence: str) -> Check:
 class SelectionSummary(BaseModel):
     """The selection that an operation worked on, without its Gaussians' ids."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     asked: str
     verdict: str
@@ -74,7 +74,7 @@ class Pixels(BaseModel):
         threshold: in display space, 0..1.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     width: int
     height: int
@@ -92,7 +92,7 @@ class Repair(BaseModel):
         tried: what was done instead, in words: "selected 312 more Gaussians that were left behind".
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     failed: tuple[Check, ...]
     tried: str
@@ -108,7 +108,7 @@ class Judgement(BaseModel):
         seconds: that judging and repairing took.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     judge: str
     checks: tuple[Check, ...]
@@ -135,7 +135,7 @@ class Filled(BaseModel):
         place: lowest and highest corner of the box around a hole that was left, world; None without one.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     surface: str
     gaussians: int
@@ -164,7 +164,7 @@ class Lifted(BaseModel):
         reason: why the fill stays as it was; "" if it was optimised.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     source: str
     looked: int = 0
@@ -201,7 +201,7 @@ class Receipt(BaseModel):
         lifted: how the fill was optimised against pictures, one entry for each source of them.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     op: dict[str, Any]
     selection: SelectionSummary

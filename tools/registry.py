@@ -8,7 +8,7 @@ from functools import reduce
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, get_args
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from ..gaussians.errors import UserError
 from . import ops as _package
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 else:
     AnyOp = Annotated[reduce(or_, OPS.values()), Field(discriminator="op")]
 
-_ONE: TypeAdapter[EditOp] = TypeAdapter(AnyOp)
+_ONE: TypeAdapter[EditOp] = TypeAdapter(AnyOp, config=ConfigDict(defer_build=True))
 
 
 def schema() -> dict[str, Any]:

@@ -56,6 +56,7 @@ def command(
     debug: Debug = False,
 ) -> None:
     """Edit and question a scene interactively, in words; /help lists commands. --json: one JSON object per line."""
+    from ...planners.grammar.planner import make_tables
     from ..session.opening import SessionOptions, open_session
     from ..terminal.chat import Chat
 
@@ -67,6 +68,7 @@ def command(
             harmony=harmony,
         )
     )  # fmt: skip
+    make_tables()
     try:
         Chat(session, terminal).run()
     finally:

@@ -63,6 +63,7 @@ def command(
     By default over stdin and stdout, as most clients start a server. --json: with --http, print the address as JSON.
     """
     from ...gaussians.errors import BackendError
+    from ...planners.grammar.planner import make_tables
     from ..session.opening import SessionOptions, open_session
     from ..toolbox.progress import Progress
     from ..toolbox.toolbox import Toolbox
@@ -85,6 +86,7 @@ def command(
         progress,
     )  # fmt: skip
     folder = scene if scene.is_dir() else scene.absolute().parent
+    make_tables()
     server = SceneServer(Toolbox(session, folder, keep_field=embedded, progress=progress))
     try:
         serve_stdio(server) if http is None else serve_http(server, http)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .. import startup
 from ..terminal.output import terminal
 from .embedding import embedded_by, told_anew
 
@@ -85,6 +86,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
     from .own_references import own_references
     from .session import Session
 
+    startup.end()
     photographs = own_references(options.references, options.reference_width)  # a bad file is told first
     loaded, report = load_with_report(options.path)
     for note in report.notes:

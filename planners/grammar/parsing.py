@@ -11,6 +11,7 @@ from lark.exceptions import UnexpectedInput, UnexpectedToken
 from lark.lexer import Lexer
 
 from ...gaussians.world.spelling import did_you_mean
+from .parser_tables import load_parser
 from .tagging.lookahead import color_at
 from .tagging.tags import Clause, Tag
 from .vocabulary import lexicon, nouns
@@ -68,7 +69,7 @@ class _TagLexer(Lexer):
 @cache
 def _parser() -> Lark:
     grammar = Path(__file__).with_name("grammar.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", lexer=_TagLexer)
+    return load_parser(grammar, _TagLexer)
 
 
 def parse(clause: Clause) -> Node:

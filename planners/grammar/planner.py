@@ -75,9 +75,6 @@ class GrammarPlanner:
 
     name = NAME
 
-    def __init__(self) -> None:
-        _make_tables()
-
     def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         """The plan for an instruction; see `Planner.plan`. The scene (`observation`) is ignored.
 
@@ -126,8 +123,11 @@ def _is_known_name(name: str) -> bool:
 
 
 @cache
-def _make_tables() -> None:
-    """Build the parser and the word tables once per process, so that the first instruction is as fast as the others."""
+def make_tables() -> None:
+    """Build the parser and the word tables once per process, so that the first instruction is as fast as the others.
+
+    A program that answers many instructions calls it at its start; a command that answers one does not.
+    """
     _understand("paint it red and add a small mug", None)
 
 

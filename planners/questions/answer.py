@@ -22,7 +22,7 @@ class Line(BaseModel):
         label: what it measures, "1.24 m".
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     start: Point
     end: Point
@@ -38,7 +38,7 @@ class Evidence(BaseModel):
         lines: distances and routes that were measured.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     ids: tuple[NodeId, ...] = ()
     views: tuple[Annotated[str, Field(max_length=200)], ...] = ()
@@ -63,7 +63,7 @@ class Answer(BaseModel):
         usage: use of language models, None if none was asked.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     answer: float | Text | tuple[Text, ...] | None
     answer_type: AnswerType

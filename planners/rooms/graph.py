@@ -33,7 +33,7 @@ class SceneGraph(BaseModel):
     two sides, or of no height, is outdoors.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     room: RoomShape
     nodes: Annotated[tuple[Node, ...], Field(max_length=4096)] = ()

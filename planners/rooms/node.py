@@ -35,7 +35,7 @@ class Node(BaseModel):
         material: its surface in words ("oak", "red and white stripes"), "" for that of its design.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     id: NodeId
     label: Annotated[str, Field(max_length=80)]
@@ -82,7 +82,7 @@ class RoomShape(BaseModel):
     `light`: a mood that `relight` knows ("evening", "sunny"), "" for the light that it is built with.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     size: Size
     up: Point = (0.0, 0.0, 1.0)
@@ -102,7 +102,7 @@ class RoomShape(BaseModel):
 class Viewpoint(BaseModel):
     """Whose left, right, in front and behind are meant: an eye and a point that it looks at."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     position: Point
     target: Point

@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import BaseModel, ConfigDict
 
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.scene import Frame
 from scenewright.tools import ops
+from scenewright.tools.docstrings import field_texts
 from scenewright.tools.operation import Length
 from scenewright.tools.registry import OPS, describe, parse, schema
 
@@ -90,3 +92,20 @@ def test_lengths_are_converted_by_the_scale_and_say_what_they_assume() -> None:
     assert Length(value=10, unit="in").in_units(Frame()) == pytest.approx(0.254)
     assert not Length(value=1, unit="m").assumption(frame) and not Length(value=1, unit="units").assumption(Frame())
     assert "scale is unknown" in Length(value=1, unit="cm").assumption(Frame())[0]
+
+
+def test_texts_behind_fields_are_those_that_pydantic_reads() -> None:
+    class Read(BaseModel):
+        """A model."""
+
+        model_config = ConfigDict(use_attribute_docstrings=True)
+
+        first: int
+        """One line."""
+        silent: str = ""
+        second: float = 1.0
+        """Two
+        lines."""
+
+    assert field_texts(Read) == {n: f.description for n, f in Read.model_fields.items() if f.description is not None}
+    assert set(field_texts(Read)) == {"first", "second"}

@@ -15,11 +15,9 @@ import torch
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
-from ...gaussians.compiled import run, workers
 from ...gaussians.harmonics import color_to_dc, dc_to_color
 from ...gaussians.language.field.measure import Sample, sample
 from ...gaussians.rows import copied, empty
-from .kernels import relight
 from .whites import F64, LUMINANCE, luminance, to_linear
 
 KNEE = 0.9  # display value from which what becomes brighter is rolled off
@@ -146,6 +144,9 @@ def relit(
 
 
 def _run(sh: Tensor, rows: Tensor, matrix: F64, tone: Tensor, received: Tensor | None, out: Tensor) -> Tensor:
+    from ...gaussians.compiled import run, workers
+    from .kernels import relight
+
     light = _NONE if received is None else received.contiguous().numpy()
     if len(rows):
         arguments = (rows.numpy(), sh.numpy(), light, matrix.astype(np.float32), tone.numpy(), out.numpy())

@@ -15,11 +15,9 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from ...gaussians.compiled import run, workers
 from ...gaussians.rotations import to_matrix
 from ...gaussians.scene import Scene
 from ..coloring.grid import Grid
-from .kernels import receive, visible
 from .whites import F64, LUMINANCE, NEUTRAL, white
 
 _CELLS = 64  # along the longest axis
@@ -117,6 +115,9 @@ class Space:
         Args:
             kelvin: white point of the light that is there.
         """
+        from ...gaussians.compiled import run, workers
+        from .kernels import receive
+
         cloud = scene.cloud
         table = self._table(sources, kelvin)
         grid = np.array([*self.grid.low.tolist(), self.grid.step], dtype=np.float32)
@@ -145,6 +146,9 @@ class Space:
         self, table: NDArray[np.float32], grid: NDArray[np.float32], shape: NDArray[np.int64]
     ) -> NDArray[np.float32]:
         """`[S, cells]` share of the light of each source that arrives, smoothed over neighbouring cells."""
+        from ...gaussians.compiled import run, workers
+        from .kernels import visible
+
         seen = np.zeros((len(table), self.grid.size), dtype=np.float32)
         if not len(table):
             return seen

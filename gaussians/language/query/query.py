@@ -34,7 +34,7 @@ class Relation(BaseModel):
     own axes, its front being the side it faces.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     name: QueryName
     anchors: Annotated[tuple[Query, ...], Field(min_length=1, max_length=2)]
@@ -51,7 +51,7 @@ class Region(BaseModel):
     # Sides are the viewer's, and begin at the side of the things' box; without things, in the middle of the scene. A
     # `distance` makes an exact border, which cuts things; without one they are in or out as a whole.
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     name: Literal["above", "below", "left_of", "right_of", "in_front_of", "behind", "within", "around"]
     of: Annotated[tuple[Query, ...], Field(max_length=4)] = ()
@@ -97,7 +97,7 @@ class Query(BaseModel):
         groups: ids of groups that are shown; they override `text` and `pick`.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     text: Name = ""
     colors: Annotated[tuple[Name, ...], Field(max_length=4)] = ()
