@@ -72,7 +72,7 @@ class Template:
 
     def may_match(self, words: frozenset[str]) -> bool:
         """Whether a question of these words has the words that the template cannot do without."""
-        return not any(need.isdisjoint(words) for need in self.needs)
+        return not any(map(words.isdisjoint, self.needs))
 
     def match(self, words: Words, readers: Mapping[str, HoleReader]) -> Iterator[Slots]:
         """Every way in which the words fill the template; earlier holes take as few words as they can.
