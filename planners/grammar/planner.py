@@ -29,6 +29,7 @@ from .restating.changes.filling import Heard, heard
 from .restating.changes.likenesses import with_likenesses, with_photo
 from .restating.changes.shadows import ShadowsHeard, shadows_heard
 from .restating.order.sequence import in_order
+from .restating.speech.frames import asks_nothing
 from .restating.speech.remarks import is_remark
 from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
@@ -235,6 +236,8 @@ def _with_light(parts: Sequence[Part], previous: str | None) -> _Outcome:
             except Refusal as refusal:
                 if refusal.verdict == "not_an_edit" and str(refusal) == STATEMENT:
                     continue  # "We have guests. Make it cosy in here."
+                if refusal.verdict in ("not_understood", "not_an_edit") and asks_nothing(part.text):
+                    continue
                 raise
             ops += found.ops
             outcome = replace(found, remarks=(*outcome.remarks, *found.remarks), plainly=outcome.plainly)

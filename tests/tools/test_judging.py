@@ -35,6 +35,7 @@ CLEAN: list[Json] = [
     {"op": "restyle", "target": A_CHAIR, "material": "marble"},
     {"op": "relight", "target": A_CHAIR, "exposure": 1.3},
     {"op": "relight", "target": A_CHAIR, "mood": "evening"},
+    {"op": "relight", "target": A_CHAIR, "color": "blue"},
     {"op": "opacity", "target": A_CHAIR, "value": 0.4},
     {"op": "move", "target": A_CHAIR, "direction": "left", "distance": {"value": 30, "unit": "cm"}},
     {"op": "move", "target": A_CHAIR, "toward": {"text": "table"}, "distance": {"value": 20, "unit": "cm"}},

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from typing import Literal
@@ -12,12 +13,14 @@ import numpy as np
 
 from ..color_map import LUMA
 from .light import Light
-from .whites import F64, NEUTRAL, balance, warmer_by
+from .whites import F64, NEUTRAL, balance, luminance, warmer_by
 
 MoodName = Literal[
     "daylight", "sunny", "overcast", "sunrise", "golden hour", "dusk", "evening", "cosy", "candle light", "night",
     "moonlight",
 ]  # fmt: skip
+
+_PASSED = 0.25  # share of a display channel that light of a pure colour keeps where the colour has none
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,21 @@ def light_of(exposure: float, old: float, new: float, contrast: float = 1.0, sat
     if saturation != 1.0:
         matrix = matrix @ _saturation(saturation)
     return Light(exposure, matrix, contrast)
+
+
+def tinted(light: Light, rgb: Sequence[float], amount: float = 1.0) -> Light:
+    """A light of a colour: every display channel keeps `_PASSED` and the rest in proportion to the colour's.
+
+    A saturated colour is dimmer than white, as a filter before a lamp is, by the root of what it passes of luminance.
+
+    Args:
+        rgb: `[3]` display colour, 0 to 1; only its hue and saturation count.
+        amount: exponent of the factors; 0 changes nothing.
+    """
+    hue = np.asarray(rgb, dtype=np.float64)
+    factors = (_PASSED + (1 - _PASSED) * hue / max(float(hue.max()), 1e-3)) ** amount
+    passed = float(np.asarray(luminance(factors)))
+    return replace(light, exposure=light.exposure * passed**0.5, matrix=np.diag(factors) @ light.matrix)
 
 
 def _saturation(factor: float) -> F64:

@@ -13,6 +13,7 @@ import torch
 from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
+from ...gaussians.color import parse
 from ...gaussians.errors import AbsentError
 from ...gaussians.language.query.query import ALL
 from ...gaussians.language.query.selection import Selection, mask_of
@@ -24,12 +25,12 @@ from ..coloring.scene_light import scene_light
 from ..field_update import after_recolor
 from ..lighting.lamps import Lamp, lamp_kind, lamp_of, lamps_in, windows_in
 from ..lighting.light import colors_of, mean_luminance
-from ..lighting.moods import Mood, MoodName, light_of, moods
+from ..lighting.moods import Mood, MoodName, light_of, moods, tinted
 from ..lighting.relighting import Measured, Relighting, relighted
 from ..lighting.space import Sky, direction_of
 from ..lighting.whites import COLDEST, NEUTRAL, WARMEST, kelvin_of, warmer_by
 from ..new_objects import scene_scale
-from ..operation import Context, Outcome, TargetedOp, compounded
+from ..operation import ColorName, Context, Outcome, TargetedOp, compounded
 from ..placement.bodies import Array, bodies_of, heading
 from ..receipt import Check, at_most, report
 
@@ -46,7 +47,7 @@ _TRUST = 0.5  # share of the tint of a scene's white surfaces that is taken for 
 _SAME = 2.0  # mireds by which a white point counts as neutral
 _BRIGHTER = 4.0  # times, at most, that a lamp is brighter against what is left of the other light
 _LEAST = 1e-4  # mean luminance below which there is nothing to measure
-_WAYS = ("mood", "exposure", "kelvin", "warmth", "contrast", "side", "lamps")
+_WAYS = ("mood", "exposure", "kelvin", "warmth", "color", "contrast", "side", "lamps")
 _ONE_WAY: list[dict[str, Given | Keywords]] = [{name: given()} for name in _WAYS]
 
 
@@ -69,13 +70,15 @@ class Relight(TargetedOp):
     """White point: 2700 a warm bulb, 6500 daylight."""
     warmth: Annotated[float, Field(ge=-1, le=1, allow_inf_nan=False)] | None = None
     """Warmer than now, or cooler (negative)."""
+    color: ColorName | None = None
+    """Coloured light: "blue". White and the tones of lamps and daylight are `kelvin` and `warmth`."""
     contrast: Annotated[float, Field(gt=0, le=2, allow_inf_nan=False)] | None = None
     """Above 1 harder, below 1 softer light."""
     side: Side | None = None
     """Where the light comes from, as the viewer sees it."""
     lamps: Literal["on", "off"] | None = None
     amount: Annotated[float, Field(gt=0, le=2, allow_inf_nan=False)] = 1.0
-    """How much of `mood` or `side`."""
+    """How much of `mood`, `color` or `side`."""
 
     @model_validator(mode="after")
     def _something(self) -> Self:
@@ -103,7 +106,7 @@ class Relight(TargetedOp):
             changed["kelvin"] = warmer_by(NEUTRAL, times * (1e6 / self.kelvin - 1e6 / NEUTRAL))
         if self.contrast is not None:
             changed["contrast"] = min(max(self.contrast**times, 0.3), 2.0)
-        if self.mood is not None or self.side is not None or self.lamps == "on":
+        if self.mood is not None or self.side is not None or self.color is not None or self.lamps == "on":
             changed["amount"] = min(self.amount * times, 2.0)
         return self.model_copy(update=changed) if changed else None
 
@@ -155,6 +158,8 @@ class Relight(TargetedOp):
             new = _NIGHT if self.lamps == "off" and new is None else new
         contrast = mood.contrast * (self.contrast or 1.0)
         light = light_of(exposure, old, new or old, contrast, mood.saturation)
+        if self.color is not None:
+            light = tinted(light, parse(self.color), self.amount)
         windows = windows_in(scene, unit, mood.windows, new or NEUTRAL) if mood.windows and self.everywhere else []
         sky = self._sky(scene, mood, context, unit)
         out = tuple(lamp.times(self.amount) for lamp in lamps) if self.lamps == "off" else ()
@@ -199,6 +204,8 @@ class Relight(TargetedOp):
         old = _kelvin(scene)
         if old != asked.kelvin:
             told.append(f"white point {round(old, -2):.0f} -> {round(asked.kelvin, -2):.0f} K")
+        if self.color is not None:
+            told.append(f"{self.color} light")
         for name, things in (("lamp", asked.lit), ("window", asked.windows)):
             if things:
                 told.append(f"light of {len(things)} {name}{'s' if len(things) > 1 else ''}")

@@ -13,7 +13,8 @@ from ..tagging.words import bag
 from ..vocabulary import quantities
 
 _SWITCH = (
-    r"(?:turn|switch|put|flick|flip|click|power|toggle|leave|keep|have|get|set|make|bring|want|need|snap|pop|stick)"
+    r"(?:turn|switch|put|flick|flip|click|power|toggle|leave|keep|have|get|set|make|bring|want|need|snap|pop|"
+    r"stick|with)"
 )
 _POLITE = (
     r"(?:(?:please|now|then|ok|okay|hey|so|and|also|can you|could you|would you|will you|can we|could we|can i|could i|"
@@ -31,6 +32,12 @@ _FORMS: tuple[tuple[str, str], ...] = (
     (rf"{_SWITCH}(?:ing)? (?:off|out) (?P<what>.+?)", _OFF),
     (rf"{_SWITCH}(?:ing)? (?P<what>.+?) (?:back )?on", _ON),
     (rf"{_SWITCH}(?:ing)? (?P<what>.+?) (?:off|out)", _OFF),
+    (rf"(?:can|could|should|must|may|shall) (?P<what>.+?) be (?:{_SWITCH}(?:ed|ped|n)? |lit |switched |turned "
+    rf")?on", _ON),
+    (rf"(?:can|could|should|must|may|shall) (?P<what>.+?) be (?:{_SWITCH}(?:ed|ped|n)? |switched |turned )?(?:off|"
+    rf"out)", _OFF),
+    (r"(?:i|we) do not (?:want|need|like) (?P<what>(?:the|that|this|my|any|those) .+?) (?:to be )?(?:turned |"
+    r"switched )?on", _OFF),
     (r"(?:light up|light|ignite|activate|start|enable|fire up|power up) (?P<what>.+?)", _ON),
     (
         r"(?:kill|hit|extinguish|blow out|snuff out|snuff|deactivate|disable|douse|cut|shut off|shut down|put out|"

@@ -7,6 +7,7 @@ a time of day is not about light ("make it darker" is about a thing).
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -30,8 +31,16 @@ _ASKS = bag(
 )
 _NEVER = bag("never nothing without undo again")
 _QUESTIONS = bag("is are was were does did what where which who why when whose has am")
+_FORBIDDEN = re.compile(r"\b(?:do|does|should|must|would|shall) not (?:be |get |go )?(?!want|like|need|have|enough)")
 _LIKING = phrases("i like, i love, i hate, we like, we love, i enjoy, you like")
 _LINKS = bag("is are was looks feels seems look feel")
+
+
+_HUES = bag("blue red reddish redder")  # colours of light as well as tones of daylight
+_LIGHTS = bag("lights lighting illumination leds neon glow")
+_TINTS = bag("tint cast tinge hue undertone undertones tinges cast tints")
+_PUTTING = bag("put add insert place stand hang move set bring install")
+_NEUTRAL = 6500.0
 
 
 @dataclass
@@ -91,7 +100,7 @@ def read(words: Sequence[str], loose: bool = False) -> Heard | None:
 
 
 def _may_ask(words: Sequence[str]) -> bool:
-    if _NEVER & set(words) or tuple(words[:2]) in _LIKING:
+    if _NEVER & set(words) or _FORBIDDEN.search(" ".join(words)) or tuple(words[:2]) in _LIKING:
         return False
     about = len(words) > 1 and words[1] == "about"
     return about or (words[0] not in _QUESTIONS and words[0] != "how")
@@ -172,12 +181,14 @@ class _Reading:
             wait.sign = slots["more"]
         elif "stop" in slots:
             return self._stops()
-        elif "brighter" in slots:
+        elif "brighter" in slots and not ("level" in slots and self._linked()):
             self._expose(slots["brighter"] * (wait.sign or 1) * (-1 if wait.too or wait.denied else 1))
         elif "warmer" in slots:
             self._warm(slots["warmer"], judged)
         elif "color" in slots:
             return self._color(i, said, slots["color"])
+        elif "hue" in slots:
+            return self._hue(i, slots["hue"])
         elif "raise" in slots and (self._noun or {"contrast"} & self._slots()):
             wait.raised = slots["raise"]
         elif "contrast" in slots or "shadow" in slots or "harder" in slots or "hard" in slots:
@@ -199,7 +210,9 @@ class _Reading:
         """ "down" behind a word for light is its change: "the brightness down like 30 percent and warmer"."""
         named = any("noun" in slots for _, slots in self._tokens[:i])
         fresh = "exposure" not in self._heard.fields and not (self._next.sign or self._next.raised)
-        if fresh and ((named and self._last is None) or (by and (named or self._loose))):
+        if fresh and self._next.share is not None and self._next.share.kind == "TIMES":
+            self._expose(self._weak)  # "two stops up"
+        elif fresh and ((named and self._last is None) or (by and (named or self._loose))):
             self._expose(self._weak)
 
     def _belongs_before(self, i: int, following: dict[str, Any]) -> bool:
@@ -222,7 +235,13 @@ class _Reading:
     def _mood(self, said: tuple[str, ...], mood: str) -> bool:
         feels = any(w[-1] in ("feel", "feeling") for w, _ in self._tokens)
         named = (
-            self._noun or self._air or "shadow" in self._slots() or (feels and (self._place or "it" in self._slots()))
+            self._noun
+            or self._air
+            or "shadow" in self._slots()
+            or (feels and (self._place or "it" in self._slots()))
+            or (
+                self._loose and (self._next.sign > 0 or mood in _CONTRASTS or self._here())
+            )  # "something more romantic"
         )
         if needs_light(mood, said) and not named:
             return False
@@ -241,6 +260,10 @@ class _Reading:
         self._last = None
         return True
 
+    def _here(self) -> bool:
+        """Whether the clause is about where the speaker is: "make it cosy in here", not about furniture."""
+        return any(said[-1] in ("here", "there") for said, slots in self._tokens if "place" in slots)
+
     def _expose(self, sign: int) -> None:
         wait = self._next
         self._heard.fields["exposure"] = _factor(sign, wait.degree, wait.share, wait.to)
@@ -249,8 +272,11 @@ class _Reading:
 
     def _warm(self, sign: int, judged: bool) -> None:
         wait = self._next
-        sign *= -1 if wait.sign < 0 or wait.too or (wait.denied and not wait.lack) else 1
-        if judged:
+        disliked = self._linked() and (self._looks() or bool(wait.degree))  # "it looks a bit yellow"
+        sign *= -1 if wait.sign < 0 or wait.too or disliked or (wait.denied and not wait.lack) else 1
+        if disliked:
+            wait.degree = ""
+        if judged or disliked:
             self._heard.remark = True
         share = wait.share.value if wait.share is not None and wait.share.value <= 1 else None
         self._heard.fields["warmth"] = sign * (WARMTH[wait.degree] if share is None else share)
@@ -261,15 +287,55 @@ class _Reading:
         """A colour of light: "less yellow", "too blue", "a golden glow"; a thing's colour otherwise."""
         wait = self._next
         compared = said[-1].endswith("er") and said[-1] not in ("amber",)
-        if not (wait.sign or wait.too or compared):
+        disliked = self._linked() and (self._looks() or bool(wait.degree))
+        if not (wait.sign or wait.too or compared or disliked):
             following = self._tokens[i + 1][1] if i + 1 < len(self._tokens) else {}
             before = self._tokens[i - 1][0][-1] if i else ""
-            plain = said[-1] not in ("red", "reddish", "redder") and before in ("a", "an", "some", "with", "of", "in")
+            if said[-1] in _HUES and not self._heard.fields.get("color"):
+                return self._hue(i, " ".join(said))
+            plain = before in ("a", "an", "some", "with", "of", "in")
             if not (plain and "noun" in following):
                 return False
         if not (self._noun or self._air or self._place or self._loose):
             return False
+        if wait.sign > 0 and not (self._noun or self._air or self._place or compared):
+            return False  # "a bit more blue" is said of a thing
         self._warm(sign, wait.too)
+        return True
+
+    def _hue(self, i: int, hue: str) -> bool:
+        """Coloured light: "a blue light", "turn the lights purple"; what tints the light too much is taken out."""
+        wait, tokens = self._next, self._tokens
+        following = tokens[i + 1][1] if i + 1 < len(tokens) else {}
+        before = tokens[i - 1][0][-1] if i else ""
+        if wait.too or wait.sign or "air" in following:  # "too green", "a greenish tint"
+            if not (self._noun or self._air or self._place or self._loose):
+                return False
+            if not (wait.too or wait.sign < 0 or any(said[-1] in _TINTS for said, _ in tokens)):
+                return "air" in following and self._colored(hue)
+            if hue in _HUES:
+                wait.too = True
+                self._warm(1 if hue.startswith("red") else -1, True)
+                return True
+            self._heard.remark = wait.sign >= 0
+            self._heard.anchored = True
+            self._heard.fields.setdefault("kelvin", _NEUTRAL)
+            wait.clear()
+            return True
+        lights = any(said[-1] in _LIGHTS for said, _ in tokens[:i])
+        placed = before in ("the", "that", "this", "my") or (before in ("a", "an") and self._puts())
+        if "noun" in following and not placed:
+            return self._colored(hue)
+        return lights and (not following or "place" in following) and self._colored(hue)
+
+    def _puts(self) -> bool:
+        return any(said[0] in _PUTTING for said, _ in self._tokens)
+
+    def _colored(self, hue: str) -> bool:
+        self._heard.fields["color"] = hue
+        self._heard.anchored = True
+        self._last = None
+        self._next.clear()
         return True
 
     def _contrast(self, slots: dict[str, Any]) -> bool:
@@ -352,8 +418,11 @@ class _Reading:
         wait = self._next
         count = wait.share.value if wait.share is not None else 1.0
         way = self._last[1] if self._last is not None else wait.sign or wait.raised or self._weak
-        if not way or count > 4:
+        if count > 4:
             return False
+        if not way:  # "a stop brighter"
+            wait.share, self._heard.anchored = quantities.Quantity("TIMES", _STOP**count, "", 1), True
+            return True
         self._heard.fields["exposure"] = _STOP ** (way * count)
         self._heard.anchored = True
         wait.clear()

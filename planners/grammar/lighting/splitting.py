@@ -3,42 +3,49 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Any
 
 from ....gaussians.language.query.query import Query
+from ..restating.speech.frames import is_reported, unframed, without_asides
 from ..tagging.words import Word, bag, split
 from .lamps import switched
-from .reading import Heard, read
+from .places import somewhere
+from .reading import read
+from .tokens import tokens_of
 from .vocabulary import meanings
-from .wording import is_comparison, plainly
+from .wording import is_comparison, is_kept, is_mended, misspelled, plainly
 
 EVERYTHING = Query(text="everything", pick="all")
 _MARKS = (",", ".", ";", "!", "?", ":", "\n")
-_JOINING = ("and", "then", "but", "so", "because", "or")
-_IT_IS = (("it", "is"), ("it", "looks"), ("it", "feels"), ("it", "seems"))
-_HAVING = (("have", "it"), ("want", "it"), ("like", "it"), ("need", "it"), ("can", "it"), ("could", "it"))
-_MOST = 12  # pieces of an instruction that are looked at
-_PREPOSITIONS = (
-    "on", "over", "above", "around", "onto", "at", "in", "near", "by", "under", "for", "behind", "of",
-    "from", "beside", "next", "below", "beneath",
-)  # fmt: skip
-_TWO = (("next", "to"),)
-_AREAS = bag("corner area spot space part bit side end nook zone section place region light")
-_NEAR = ("over", "around", "near", "by", "under", "behind", "above", "at", "beside", "next", "below", "beneath")
-_COMPARED = bag("brighter darker dimmer brighten darken twice half double less more warmer cooler softer as")
-_TRIED = 8  # readings of a place that are tried
-_SHINE = re.compile(
-    r"(?:(?:please|can you|could you|now|just|i want you to) )*(?:light up|illuminate|"
-    r"shine (?:a |some |more )?light on|"
-    r"spotlight|put (?:a |the )?spotlight on|put (?:some |more )?light on|throw (?:some |more )?light on|"
-    r"shed (?:some |more )?light on|cast (?:some |more )?light on) (?P<what>.+?)(?: please| up| a bit)?"
+_JOINING = ("and", "then", "but", "or")
+_IT_IS = (
+    ("it", "is"),
+    ("it", "looks"),
+    ("it", "feels"),
+    ("it", "seems"),
+    ("this", "is"),
+    ("that", "is"),
+    ("this", "looks"),
 )
-_SHONE = 1.6
-_SWITCHING, _LAMPS = bag("switch turn flick"), bag("lamp lamps light lights lantern chandelier bulb")
-_POINTED = bag("the that this my our your")  # "turn the lights on the left down"
+_HAVING = (("have", "it"), ("want", "it"), ("like", "it"), ("need", "it"), ("can", "it"), ("could", "it"))
+_DENIED = bag("not never no without nothing")
+_BEFORE_SO = bag("not is are ever")  # "not so bright"
+_FRONTED = re.compile(
+    r"^(?:for|since|because|when|while|as|now that|after|before|during) (?!(?:the|a) (?:light|lamp))[^,.;]{3,60}, "
+    r"(?=\w)",
+    re.IGNORECASE,
+)  # "for the evening, dim the lights"
+_CHANGES = bag(
+    "brighter darker dimmer warmer cooler colder softer harsher cosy cozy romantic spooky dim dimmed brighten "
+    "darken down "
+    "up lower raise red blue green purple pink violet teal magenta turquoise"
+)
+_LOOKING = bag("look looks looking feel feels be is something more seem would not")
+_CUTS = 3  # asides that are left out
+_MOST = 12  # pieces of an instruction that are looked at
 
 
 @dataclass(frozen=True)
@@ -59,6 +66,10 @@ class Part:
 def parts_of(cleaned: str, lit: bool, alone: bool, thing: Callable[[str], Query | None]) -> list[Part] | None:
     """The parts of an instruction, read in plain words if more of it is understood; see `_parts`."""
     plain = plainly(cleaned)
+    bare = _FRONTED.sub("", plain)
+    asked = _parts(bare, lit, alone, thing) if bare != plain else None
+    if asked is not None and all(part.fields is not None for part in asked):
+        return asked
     if plain == cleaned:
         return _parts(cleaned, lit, alone, thing)
     found = _parts(plain, lit, alone, thing)
@@ -87,11 +98,16 @@ def _parts(cleaned: str, lit: bool, alone: bool, thing: Callable[[str], Query | 
     found: list[tuple[int, int, _Said | None]] = []
     at, said = 0, lit
     while at < len(pieces):
-        for end in range(len(pieces), at, -1):
+        if found and found[-1][2] is not None and _is_aside(pieces[at]):
+            at += 1
+            continue
+        apart = _is_remark(pieces[at]) or _is_likened(pieces[at : at + 2])
+        longest = at + 1 if apart else len(pieces)
+        for end in range(longest, at, -1):
             words = [w.text for piece in pieces[at:end] for w in piece if w.text not in _MARKS]
             if end - at > 1 and _switched_apart(pieces[at:end], thing):
                 continue
-            understood = _clause(words, said or (alone and at == 0 and _bare(words)), thing)
+            understood = _clause(words, said or (alone and at == 0 and _bare(words)), thing, end - at == 1)
             if understood is not None:
                 before = found[-1][2] if found else None
                 understood = _there(understood, before, words)
@@ -106,8 +122,8 @@ def _parts(cleaned: str, lit: bool, alone: bool, thing: Callable[[str], Query | 
                 at, said = end, True
                 break
         else:
-            explained = found and found[-1][2] is not None and is_comparison([w.text for w in pieces[at]])
-            if not explained:  # "hard light, like the middle of July"
+            before = found[-1][2] if found else None
+            if before is None or not _says_no_more(pieces[at], before.remark):
                 found.append((at, at + 1, None))
             at += 1
     if all(one is None for _, _, one in found):
@@ -129,7 +145,8 @@ _HINTS = re.compile(
     r"\bstops?\b|\bev\b|cosi|cozi|\beyes\b|pitch|dinner|movie|romantic|date night|see (?:a|much)|rain|snow|storm|fog|"
     r"winter|novem|decem|cast\b|tint|tinge|bedtime|dinner|cinema|pendant|\d ?[ap]\.?m\b|"
     r"(?:less|more|too) (?:blue|yellow|orange|red|white)|exposed|"
-    r"winter|nocturnal|tungsten|cinematic|bleach|washed|hygge|temperature",
+    r"hour\b|sunny|thunder|spooky|eerie|halloween|neon|\bleds?\b|visible|to see\b|mediterranean|\bzen\b|cabin|"
+    r"festive|\bsoft|harsh|winter|nocturnal|tungsten|cinematic|bleach|washed|hygge|temperature",
     re.IGNORECASE,
 )
 
@@ -141,19 +158,51 @@ _GREETING = re.compile(
 
 def may_be_light(cleaned: str) -> bool:
     """Whether any word could be about light; most instructions have none, and take no more time."""
-    return _HINTS.search(cleaned) is not None and _GREETING.fullmatch(cleaned.strip()) is None
+    named = _HINTS.search(cleaned) is not None or misspelled(cleaned)
+    return named and _GREETING.fullmatch(cleaned.strip()) is None
 
 
 def _pieces(words: Sequence[Word]) -> list[list[Word]]:
     """The words between marks and conjunctions, without them."""
     found: list[list[Word]] = [[]]
     for word in words:
-        degree = word.text == "so" and bool(found[-1]) and found[-1][-1].text in ("not", "is", "are", "ever")
-        if word.text in _MARKS or (word.text in _JOINING and not degree):
+        aim = word.text in ("so", "because", "since") and bool(found[-1]) and found[-1][-1].text not in _BEFORE_SO
+        if word.text in _MARKS or word.text in _JOINING:
             found.append([])
+        elif aim:
+            found.append([word])
         else:
             found[-1].append(word)
     return [piece for piece in found if piece]
+
+
+def _is_remark(piece: Sequence[Word]) -> bool:
+    """Whether a clause only tells what is wrong with the light: "the whole place looks dingy"."""
+    words = [w.text for w in piece]
+    heard = read(words, True) if not _asked(words) else None
+    return heard is not None and heard.remark
+
+
+def _is_aside(piece: Sequence[Word]) -> bool:
+    """Whether a clause behind one about light only compares it: "like the middle of July", not "like 4000 K"."""
+    words = [w.text for w in piece]
+    return is_comparison(words) and not any(w[0].isdigit() for w in words)
+
+
+def _is_likened(pieces: Sequence[Sequence[Word]]) -> bool:
+    """Whether the first of two clauses is about light, and the second says what that is like: "cosy, like a pub"."""
+    if len(pieces) < 2 or not is_comparison([w.text for w in pieces[1]]):
+        return False
+    return read([w.text for w in pieces[0]], True) is not None
+
+
+def _says_no_more(piece: Sequence[Word], remarked: bool) -> bool:
+    """Whether a clause behind one about light asks for nothing more: "like the middle of July", "the rest is fine",
+    "so that buyers can see it", and "fix that" behind a remark."""
+    words = [w.text for w in piece]
+    if is_comparison(words) or is_kept(words):
+        return True
+    return remarked and (is_mended(words) or tokens_of(words) is not None)  # "it is cold and sterile"
 
 
 def _switched_apart(pieces: Sequence[Sequence[Word]], thing: Callable[[str], Query | None]) -> bool:
@@ -171,19 +220,45 @@ def _bare(words: Sequence[str]) -> bool:
     """Whether words name nothing that they are about: "a bit brighter please", "it is too dark"."""
     if tuple(words[:2]) in _IT_IS or any(pair in _HAVING for pair in pairwise(words)):
         return True
-    return len(words) > 1 and not {"it", "this", "that", "them", "these", "those"} & set(words)
+    return len(words) > 1 and not {"that", "them", "these", "those"} & set(words)
 
 
-def _clause(words: Sequence[str], loose: bool, thing: Callable[[str], Query | None]) -> _Said | None:
-    """What one clause says of light."""
+def _clause(
+    words: Sequence[str], loose: bool, thing: Callable[[str], Query | None], alone: bool = True
+) -> _Said | None:
+    """What one clause says of light; asides are left out where it stands `alone` between marks."""
     said = " ".join(words)
     if (lamps := switched(said, thing)) is not None:
         return _Said(lamps.fields, lamps.target or EVERYTHING)
-    if (heard := read(words, loose)) is not None:
-        return _Said(heard.fields, EVERYTHING, heard.remark and not _asked(words))
-    if (shone := _SHINE.fullmatch(said)) is not None and (query := thing(shone["what"])) is not None:
-        return _Said({"exposure": _SHONE}, query)
-    return _somewhere(words, loose, thing)
+    for shorter in (*_before_likeness(words), list(words), *_reduced(words, alone)):
+        heard = read(shorter, loose)
+        if heard is not None and (
+            len(shorter) == len(words) or heard.anchored or heard.remark or _CHANGES & set(shorter)
+        ):
+            return _Said(heard.fields, EVERYTHING, heard.remark and not _asked(shorter))
+        if (there := somewhere(shorter, loose, thing)) is not None:
+            return _Said(there.heard.fields, there.target, there.heard.remark and not _asked(shorter))
+    return None
+
+
+def _before_likeness(words: Sequence[str]) -> Iterator[list[str]]:
+    """The words before what they are compared to or meant for: "cooler light like in a hospital"."""
+    at = next((i for i, w in enumerate(words) if i > 1 and w in ("like", "for")), None)
+    changing = at is not None and bool(_CHANGES & set(words[:at])) and words[at - 1] not in _LOOKING
+    if at is not None and changing and not _DENIED & set(words):
+        yield list(words[:at])
+
+
+def _reduced(words: Sequence[str], alone: bool) -> Iterator[list[str]]:
+    """The words without the frame of the wish, and without asides behind it; none where they ask for nothing."""
+    said = " ".join(words)
+    if is_reported(said) or _DENIED & set(words):
+        return
+    plain = unframed(said).split()
+    if plain and plain != list(words):
+        yield plain
+    if alone:
+        yield from islice(without_asides(plain), _CUTS)
 
 
 def _there(said: _Said, before: _Said | None, words: Sequence[str]) -> _Said:
@@ -199,49 +274,6 @@ def _there(said: _Said, before: _Said | None, words: Sequence[str]) -> _Said:
 
 def _asked(words: Sequence[str]) -> bool:
     return bool({"make", "can", "could", "please", "want", "would"} & set(words))
-
-
-def _somewhere(words: Sequence[str], loose: bool, thing: Callable[[str], Query | None]) -> _Said | None:
-    """Light at a thing: "more light on the desk", "the corner by the plant is too dark"."""
-    tried = 0
-    for at in range(1, len(words) - 1):
-        if words[at] not in _PREPOSITIONS:
-            continue
-        if words[at] == "on" and words[0] in _SWITCHING and words[at - 1] in _LAMPS and words[at + 1] not in _POINTED:
-            continue  # "switch the lamp on, and an evening light"
-        two = tuple(words[at : at + 2]) in _TWO
-        start = at + 2 if two else at + 1
-        before = _without_area(words[:at])
-        for end in range(len(words), start, -1):
-            left = [*before, *words[end:]]
-            lit = _names_light(left) or before != list(words[:at])
-            heard: Heard | None = read(left, lit or loose)
-            near = loose and words[at] in _NEAR and bool(_COMPARED & set(left))
-            if heard is None or "mood" in heard.fields or not (lit or near or (loose and heard.remark)):
-                continue
-            behind = _trimmed(words[start:end])
-            tried += 1
-            if behind and tried <= _TRIED and (query := thing(" ".join(behind))) is not None:
-                return _Said(heard.fields, query, heard.remark and not _asked(words))
-    return None
-
-
-def _without_area(words: Sequence[str]) -> list[str]:
-    """Words before a place without what stands for it: "the corner (by the plant)"; "the light" takes its part."""
-    if len(words) > 1 and words[-1] in _AREAS and words[-2] in ("the", "that", "this", "my"):
-        return [*words[:-2], "the", "light"]
-    return list(words)
-
-
-def _trimmed(words: Sequence[str]) -> list[str]:
-    behind = list(words)
-    while behind and behind[-1] in ("please", "thanks", "now"):
-        behind.pop()
-    return behind
-
-
-def _names_light(words: Sequence[str]) -> bool:
-    return bool({"light", "lights", "lighting", "illumination", "brightness", "exposure", "glow"} & set(words))
 
 
 def _joined(cleaned: str, pieces: list[list[Word]], found: list[tuple[int, int, _Said | None]]) -> list[Part]:

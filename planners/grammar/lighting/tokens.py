@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ..tagging.lookahead import color_at
 from ..vocabulary import quantities
 from .vocabulary import longest, meanings
 
@@ -31,11 +32,18 @@ def tokens_of(words: Sequence[str]) -> list[Token] | None:
         for size in range(min(longest(), len(words) - at), 0, -1):
             phrase = tuple(words[at : at + size])
             if (known := meanings().get(phrase)) is not None:
-                found.append((phrase, {m.slot: m.value for m in reversed(known)}))
+                slots = {m.slot: m.value for m in reversed(known)}
+                if "thing" in slots:
+                    return None
+                found.append((phrase, slots))
                 at += size
                 break
         else:
-            return None
+            hue = color_at(words, at)
+            if hue is None:
+                return None
+            found.append((tuple(words[at : at + hue[1]]), {"hue": hue[0]}))
+            at += hue[1]
     return found
 
 

@@ -4,7 +4,8 @@ A meaning is a slot and a value. Slots: "noun" (what names light), "air" (what h
 room), "it", "brighter" and "warmer" (a change, 1 or -1), "raise" and "weak" (a change of what is named), "level" (how
 bright something is), "flaw" (what is wrong with it, by the change that mends it), "color" (of light, 1 for warm),
 "mood", "kelvin", "side", "contrast", "shadow", "hard", "harder", "more" (1 or -1), "too", "lack", "enough", "not",
-"degree", "stop", "is", and "filler", which says nothing.
+"degree", "stop", "is", "thing" (a thing with a word
+for light in its name), and "filler", which says nothing.
 """
 
 from __future__ import annotations

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 
-from ....gaussians.world.spelling import nearest
-from ..tagging.words import split
+from ....gaussians.world.spelling import best_slip, nearest
+from ..tagging.spelling import is_word
+from ..tagging.words import bag, split
 from ..vocabulary.nouns import is_known
 from .vocabulary import meanings
 
@@ -35,6 +36,15 @@ _FORMS: tuple[tuple[str, str], ...] = (
     (r"\b(\w{3,})-?ish light\b", r"\1 light"),
     (r"\b(?:is|looks|feels|seems) to (?=(?:bright|dark|dim|cold|warm|harsh|yellow|blue|cool|hot)\b)", "is too "),
     (r"\b(?:horribly|awfully|horrendously|dreadfully|unbearably|ridiculously|insanely|hideously)\b", "too"),
+    (r"\bits (?=(?:too|so|way|really|very|a bit|quite|rather|as|far|much|pretty) )", "it is "),
+    (r"(?<=is )(?:as|so) (dark|dim|gloomy|bright|cold) as (?:a |an |the |in )*[\w' ]+?(?= in here| here|$|"
+    r"[.,;!?])", r"too \1"),
+    (r"\bi (?:find|think|feel|reckon) (?:it|this|that|(?=the |it'?s |it is |this ))(?: is|'s)?(?= |$)", "it is"),
+    (r"\b(dark|dim|gloomy|light|bright|cold) (?:for me |for us )?to (?:read|work|see|write|cook|eat|sew|draw|study|"
+     r"sleep|relax|concentrate)(?: (?:anything|much|properly|a thing))?\b", r"\1"),
+    (rf"\b(?:take|get|pull|suck|draw|keep) (?:(?:some of|the|that|this|all|a bit of|any) )*({_TINTS})(?:ness)?"
+     r"(?: (?:cast|tint|tinge|hue|tone)s?)? (?:out|down|away|off)(?: (?:of|from) (?:it|here|everything|the \w+))?\b",
+     r"less \1 light"),
     # What it would look like.
     (r"\bthe sun (?:was|is|were|has|had) (?:setting|going down|just set|about to set|low)\b", "sunset"),
     (r"\bthe sun (?:was|is|were|has|had) (?:rising|coming up|just risen|about to rise)\b", "sunrise"),
@@ -152,11 +162,33 @@ _FORMS: tuple[tuple[str, str], ...] = (
 _READ = tuple((re.compile(form, re.IGNORECASE), plain) for form, plain in _FORMS)
 _LIKE = re.compile(
     r"^(?:just |more |a bit |kind of |sort of |pretty much )*(?:like|as if|as though|as in|think|the way|"
-    r"so that|so i can|"
-    r"so we can)\b"
+    r"so|because|since|as in)\b(?!.* (?:make|put|turn|switch|set|paint|delete|remove|want|need|please)\b)"
+)
+_KEPT = re.compile(
+    r"^(?:(?:please|just|and|but) )*(?:(?:the|all the) (?:rest|others?|remainder|light|lamps?)|everything else|"
+    r"nothing else|"
+    r"all else|(?:the )?other \w+)(?: of (?:it|the room|the scene))? (?:is|are|stays?|remains?|looks?|can stay|can "
+    r"remain|"
+    r"should stay)\b[\w ]*$|"
+    r"^(?:(?:please|just|and|but) )*(?:leave|keep|do not (?:touch|change)) (?:the rest|everything else|the others|"
+    r"all else)\b"
+    r"[\w ]*$"
+)
+_MENDED = re.compile(
+    r"^(?:(?:please|can|could|would|will|you|we|just|so|then|i|want|need|to|like|it|maybe) )*"
+    r"(?:fix|sort|correct|improve|adjust|solve|mend|repair|change|balance|neutrali[sz]e|even|cure|remedy|counter|"
+    r"compensate|help|do something|clean|handle|tweak|make it (?:a bit )?(?:better|nicer|right|neutral|"
+    r"normal|friendlier|pleasanter|prettier|more (?:pleasant|natural|friendly|inviting|welcoming|neutral|normal))|"
+    r"freshen(?: up)?|refresh|lift|"
+    r""
+    r"get rid of (?:it|that)|remove (?:it|that)|take (?:it|that) (?:out|away)|(?:it|that) (?:fixed|corrected|gone))"
+    r"(?: (?:it|that|this|out|up|please|for|about|me|us|a|bit|with|the|light|lighting|colou?rs?|somehow|now|you|"
+    r"can|could))*$"
 )
 _LONG = 6  # letters of a word whose spelling is mended
-_ALIKE = 0.86
+_COMMON = bag("brighter brighten darken lighting lights brightness")
+_ALIKE, _SLIP = 0.86, 0.75
+_CORE = bag("room light dark darker warm warmer cool cooler lamp lamps lights night dusk noon")  # shorter words
 
 
 def plainly(cleaned: str) -> str:
@@ -172,12 +204,35 @@ def is_comparison(words: list[str]) -> bool:
     return _LIKE.match(" ".join(words)) is not None
 
 
+def is_kept(words: list[str]) -> bool:
+    """Whether a clause only says that the rest stays as it is."""
+    return _KEPT.match(" ".join(words)) is not None
+
+
+def is_mended(words: list[str]) -> bool:
+    """Whether a clause only asks to mend what was said before it: "fix that"."""
+    return _MENDED.match(" ".join(words)) is not None
+
+
+def misspelled(cleaned: str) -> bool:
+    """Whether an instruction holds an unknown word that is one slip away from a common word for light."""
+    return any(
+        len(w) > _LONG and w.isalpha() and not is_word(w) and best_slip(w, _COMMON) for w in cleaned.lower().split()
+    )
+
+
 def _spelled(said: str) -> str:
     known = {w for phrase in meanings() for w in phrase}
     long = sorted(w for w in known if len(w) >= _LONG)
     for word in {w.text for w in split(said)}:
-        if len(word) < _LONG or not word.isalpha() or word in known or is_known(word):
+        if len(word) < 4 or not word.isalpha() or word in known or is_known(word) or is_word(word):
             continue
-        if close := nearest(word, long, most=1, likeness=_ALIKE):
+        if len(word) < _LONG:
+            close = tuple(
+                w for w in nearest(word, _CORE, most=1, likeness=_SLIP) if w[0] == word[0] and len(w) == len(word)
+            )
+        else:
+            close = nearest(word, long, most=1, likeness=_ALIKE)
+        if close and close[0]:
             said = re.sub(rf"\b{word}\b", close[0], said, flags=re.IGNORECASE)
     return said

@@ -110,6 +110,11 @@ def misspelled_name(text: str, there: frozenset[str]) -> str:
     return min(near) if len(near) == 1 else ""
 
 
+def is_word(text: str) -> bool:
+    """Whether a word is taken to be spelt correctly."""
+    return text in _known_words()
+
+
 @cache
 def _verbs() -> frozenset[str]:
     return frozenset(v[0] for v in lexicon.VERB_PHRASES if len(v[0]) >= SHORTEST)

@@ -17,17 +17,24 @@ from ....gaussians.world.lengths import UNITS
 from ..tagging.words import bag
 
 _HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6})")
-_MARK = re.compile(r"#[a-z][a-z-]+(?:~[a-z-]+){0,2}(?:@[\d.]+-[a-z]+)?")
+_MARK = re.compile(r"#[a-z][a-z-]+(?:~(?:[a-z-]+|#[0-9a-f]{6})){0,2}(?:@[\d.]+-[a-z]+)?")
 LIKE, PHOTO, STYLE = "like~", "photo", "style"
 ANYTHING = "material"  # what a surface is called that is not said to be wood, brick, ...
 # Words that name colours at least as often as materials: they are materials only where that is said.
 COLORS_TOO = bag(
-    "gold copper bronze brass terracotta clay sand slate stone grass denim chrome iron tin rock ebony "
+    "gold silver rust rusty copper bronze brass terracotta clay sand slate stone grass denim chrome iron tin rock "
+    "ebony "
     "cherry straw mahogany walnut chestnut bamboo metallic wool cotton linen silk canvas"
 )
+# Of these, the ones that are a colour on everything; the others are a material where a surface is asked for.
+COLORS_FIRST = bag("sand grass clay stone slate straw cherry chestnut terracotta rock")
+METALS_TOO = bag("gold silver")  # a colour of cloth, and a metal of what is hard
 
 # Words that name things at least as often as materials.
-THINGS_TOO = bag("plank slat cord paper flags flowers roses rubble patterned geometric knit oriental onyx metro")
+THINGS_TOO = bag(
+    "beams jeans lace battens plank slat cord paper flags flowers roses rubble patterned geometric knit oriental "
+    "onyx metro"
+)
 
 
 def mark(name: str, *colors: str, size: tuple[str, str] | None = None) -> str:

@@ -43,6 +43,7 @@ def test_light_of_the_whole_scene(text: str, light: dict[str, Any]) -> None:
         ("reduce the glare from the window", "window", {"exposure": 0.62}),
         ("dim the floor lamp by 20%", "floor lamp", {"exposure": 0.8}),
         ("turn the left lamp off", "lamp", {"lamps": "off"}),
+        ("purple light behind the tv", "tv", {"color": "purple"}),
     ],
 )
 def test_light_at_a_thing(text: str, thing: str, light: dict[str, Any]) -> None:
@@ -69,7 +70,7 @@ def test_one_lamp_on_and_the_others_off(text: str) -> None:
     [
         "what would it look like with a red sofa?", "how would the room look without the table", "put a candle here",
         "make the table under the window darker", "delete everything but the lamp", "put the pendant on the table",
-        "purple light behind the tv", "make the sofa darker, like the rug", "make the corner sofa brighter",
+        "make the sofa darker, like the rug", "make the corner sofa brighter",
         "remove the yellow light", "a bit lighter on the walls", "let's go with black on the chandelier",
     ],
 )  # fmt: skip

@@ -16,12 +16,17 @@ from .....gaussians.world import kinds
 from .....gaussians.world.finishes import described, single_words
 from .....gaussians.world.finishes import said as finish_said
 from .....gaussians.world.lengths import UNITS
+from .....gaussians.world.spelling import best_slip
 from ...tagging.lookahead import color_at
+from ...tagging.spelling import is_word
 from ...tagging.words import bag
-from ...vocabulary.materials import COLORS_TOO, mark
+from ...vocabulary.materials import COLORS_FIRST, COLORS_TOO, METALS_TOO, mark
 from ..chunks import is_thing
+from ..speech.frames import is_reported
+from .surfaces import is_fixed, is_soft, plainer, retold, style_words, subject
 
 _MOST_WORDS = 26
+_SHORT = 5  # letters; shorter words are not corrected
 _POLITE = bag("please now then also next finally and ok okay just maybe well so hey hi yes but")
 _OPENING = re.compile(
     r"^(?:(?:can|could|would) (?:you|we) |i (?:would|'d) (?:like|love|prefer) |i (?:want|need) |we (?:want|need) |"
@@ -46,15 +51,30 @@ _ADJECTIVES = bag(
     "thin thick raw plain patterned modern classic some a an the of in with sort kind maybe something really very "
     "quite more like style effect finish look texture pattern ones one type and , - chunky soft fine coarse "
     "brushed hammered wavy beautiful proper good worn weathered distressed aged vintage antique natural pure "
+    "exposed bare brushed tumbled split rough-cut painted stained lacquered varnished sanded charred whitewashed "
+    "reclaimed recycled crushed ribbed ridged woven quilted tufted padded buttoned silky shaggy thick-pile grained "
+    "knotty gnarled cracked chipped rusted patinated oxidised oxidized mirrored reflective sparkly sparkling "
+    "honed frosted iridescent crumpled grainy porous handmade hand artisan genuine authentic traditional rustic "
+    "elegant luxurious luxury expensive cheap fancy posh fake faux imitation artificial industrial retro sleek "
+    "untreated unpainted unfinished heavy lightweight crisp dirty used second-hand aged-looking "
     "light-coloured by x n tone toned coloured colored colour color please tinted horizontal vertical diagonal "
     "narrow broad subtle bold tiny little huge long short high satin-finish glazed unglazed sealed oiled waxed "
     "lacquer-finish new fresh warm cold cool veins veining grout joints cladding covering panels flooring "
     "wallpaper upholstery print design material fabric surface boards stuff square round hexagonal thing too not "
     "busy everywhere only"
 )
+_SHADES = bag("dark light pale deep bleached blond blonde")
+_OUGHT = bag("should must needs be is wants")
+_LOOKS = bag("texture look finish effect pattern material surface veneer cladding covering wallpaper design print")
+_AS_VERBS = {
+    "plaster": "plaster", "carpet": "carpet", "tile": "tiles", "turf": "turf", "gild": "gold", "brick": "brick",
+    "pebble": "pebbles", "board": "boards", "panel": "panelling", "concrete": "concrete", "pave": "stone",
+    "whitewash": "whitewash", "thatch": "thatch", "grass": "grass", "chrome": "chrome",
+}  # fmt: skip
+_DETERMINED = bag("the that this my our both all every")
 _SECOND = bag("veins veining grout joints mortar lines dots stripes spots")
 _KEPT = re.compile(
-    r",? ?(?:and |but )?(?:(?:the|its) [^,]+? (?:stays?|remains?|can stay|should stay) "
+    r"(?: ,|,)? (?:and |but )?(?:(?:the|its) [^,]+? (?:stays?|remains?|can stay|should stay) "
     r"(?:as (?:it |they )?(?:is|are|it is)|the same|like that|unchanged)|keep (?:the|its) [^,]+|"
     r"leave (?:the|its) [^,]+|do not (?:touch|change) [^,]+|nothing (?:too )?\w+|not too \w+|"
     r"if you can|if possible|thanks|thank you|please)$"
@@ -85,6 +105,18 @@ def names_material(said: str) -> bool:
     return not single_words().isdisjoint(said.split())
 
 
+def spelled(said: str) -> str:
+    """A sentence with the names of materials spelt right."""
+    return " ".join(map(_spelled, said.split()))
+
+
+def _spelled(word: str) -> str:
+    if len(word) < _SHORT or is_word(word) or word in single_words():
+        return word
+    meant = best_slip(word, single_words())
+    return meant if meant and meant[-1] == word[-1] else word  # "upholster" is not "upholstery"
+
+
 def covered(said: str) -> str | None:
     """A command for a material in other words; None if it is none, or if other rules know better."""
     texts = said.split()
@@ -92,57 +124,80 @@ def covered(said: str) -> str | None:
         return None
     bare = _KEPT.sub("", _KEPT.sub("", said)).strip(" ,")
     if (asked := _REMARKED.match(bare)) is not None and (told := _one(asked["ask"])) is not None:
-        return f"{asked['lead']} , {told}"
-    whole = _one(bare)
-    if whole is not None:
-        return whole
-    parts = [p.strip(" ,") for p in re.split(r" , and | and | , but | , ", bare)]
+        about = subject(asked["lead"].split())
+        return told.replace("paint it ", f"paint {about} ") if about is not None else f"{asked['lead']} , {told}"
+    if is_reported(bare):
+        return None
+    plain = plainer(bare)
+    for reading in dict.fromkeys((bare, plain, *retold(plain), *retold(bare))):
+        if (whole := _one(reading, bare != plain)) is not None:
+            return whole
+    parts = [p.strip(" ,") for p in re.split(r" , and | and | , but | , ", plain)]
     if not 2 <= len(parts) <= 4:
         return None
-    found = [_one(part) or _colored(part) for part in parts]
-    return " and ".join(f for f in found if f) if all(found) and any(map(_one, parts)) else None
+    verb = parts[0].split()[0]
+    gapped = [parts[0], *(p if verb not in _DO or _one(p) else f"{verb} {p}" for p in parts[1:])]
+    found = [_one(part) or _colored(part) for part in gapped]
+    return " and ".join(f for f in found if f) if all(found) and any(map(_one, gapped)) else None
 
 
-def _one(said: str) -> str | None:
-    """One command with one material."""
+def _one(said: str, framed: bool = False) -> str | None:
+    """One command with one material; `framed`: the words that ask for it were taken off."""
     if (tried := _TRIED.match(said)) is not None:
         return next(
             (f"paint {t} {s.mark}" for t, s in _split(f"{tried['thing']} {tried['rest']}".split(), {"", *_LINK})), None
         )
-    opened = _OPENING.match(said) is not None
+    opened = framed or _OPENING.match(said) is not None
     texts = _OPENING.sub("", said).split()
     while texts and texts[0] in _POLITE:
         texts = texts[1:]
     if not texts:
         return None
-    readings: Iterator[tuple[str, _Surface]] = iter(())
+    readings: Iterator[tuple[str, _Surface]] = _verbed(texts)
+    if (found := next(readings, None)) is not None:
+        return f"paint {found[0]} {found[1].mark}"
     if texts[0] in _DO and texts[0] != "put":
         readings = _split(texts[1:], {"", *_LINK})
     if texts[0] == "put" and "in" in texts:
         readings = _split(texts[1:], {"in", "into"})
     found = next(readings, None) or next(_laid(texts), None)
     if found is None and texts[0] not in _DO:
-        found = next(
-            _split(texts, {"", *_LINK} if opened else {"in", "of", "from", "out", "made", ":", "with", "to"}), None
-        )
+        found = next(_split(texts, {"", ",", *_LINK} if opened else {*_PLAIN_LINKS, ","}), None)
         found = found or next(_before(texts), None)
     return f"paint {found[0]} {found[1].mark}" if found is not None else None
+
+
+def _verbed(texts: Sequence[str]) -> Iterator[tuple[str, _Surface]]:
+    """A material as the verb: "carpet the floor in beige", "plaster the right wall"."""
+    noun = _AS_VERBS.get(texts[0])
+    if noun is None or len(texts) < 3 or texts[1] not in _DETERMINED:
+        return
+    for end in range(len(texts), 2, -1):
+        at = end + (end < len(texts) and texts[end] in ("in", "with"))
+        surface = _surface([noun, *texts[at:]], True) if _is_target(texts[1:end]) else None
+        if surface is not None:
+            yield " ".join(texts[1:end]), surface
 
 
 def _split(texts: Sequence[str], links: set[str]) -> Iterator[tuple[str, _Surface]]:
     """A thing, words that link, and a surface that ends the command."""
     for end in range(1, len(texts)):
         at = end
-        while at < len(texts) and texts[at] in (_LINK | {":", "should", "must", "needs", "wants"}):
+        while at < len(texts) and texts[at] in (_LINK | {":", ",", "should", "must", "needs", "wants", "is", "if"}):
             at += 1
         linked = texts[end:at]
         if (linked[0] if linked else "") not in links and not {"should", "must", "needs"} & set(linked):
+            continue
+        if linked[-1:] == [","] and (len(linked) > 1 or "," not in links):
             continue
         if linked[:1] == ["with"] and texts[end - 1] not in _FIXED and "" not in links:
             continue
         if not _is_target(texts[:end]):
             continue
-        surface = _surface(texts[at:], bool(_CUED & set(linked)))
+        named = " ".join(texts[:end])
+        surface = _surface(texts[at:], bool(_CUED & set(linked)), named)
+        if surface is not None and _OUGHT & set(linked) and set(surface.names) <= METALS_TOO:
+            continue  # "the car should be silver"
         if surface is None or surface.plain or _is_new_thing(texts[at - 1 : at], texts[at:]):
             continue
         yield " ".join(texts[:end]), surface
@@ -152,9 +207,12 @@ def _laid(texts: Sequence[str]) -> Iterator[tuple[str, _Surface]]:
     """A surface, "on", and a thing, perhaps with more of the surface behind a comma."""
     start = int(texts[0] in _LAY)
     if texts[start : start + 1] in (["a"], ["an"], ["the"]):
-        return
+        at = next((i for i, t in enumerate(texts) if t in _ONTO), 0)
+        if not at or texts[at - 1] not in _LOOKS or texts[start] == "the":
+            return
+        start += 1
     for at in range(start + 1, len(texts) - 1):
-        if texts[at] not in _ONTO:
+        if texts[at] not in _ONTO or "the" in texts[start:at]:
             continue
         for end in range(len(texts), at + 1, -1):
             if end < len(texts) and texts[end] != ",":
@@ -176,12 +234,17 @@ def _before(texts: Sequence[str]) -> Iterator[tuple[str, _Surface]]:
             if len(thing) > 3 or (kinds.find(" ".join(thing)) is None and thing[-1] not in _FIXED):
                 continue
             surface = _surface([*texts[:at], *texts[end:]], True)
-            if surface is not None and not surface.plain and texts[0] not in ("a", "an", "the", "some"):
+            article = texts[0] in ("a", "an", "the", "some")
+            if surface is not None and not surface.plain and (not article or thing[-1] in _FIXED):
                 yield f"the {' '.join(thing)}", surface
 
 
 def _colored(said: str) -> str | None:
-    """ "the right wall just plain white" beside a command for a material."""
+    """ "the right wall just plain white", "a grey rug" beside a command for a material."""
+    alone = said.split()
+    hue = color_at(alone, 1) if alone[0] in ("a", "an") else None
+    if hue is not None and kinds.find(" ".join(alone[1 + hue[1] :])) is not None:
+        return f"paint the {' '.join(alone[1 + hue[1] :])} {hue[0]}"
     texts = [t for t in said.split() if t not in ("just", "plain", "only", "then")]
     for end in range(1, len(texts)):
         if _is_target(texts[:end]):
@@ -209,11 +272,12 @@ def _is_new_thing(before: Sequence[str], texts: Sequence[str]) -> bool:
     return article and len(plain) == 1 and kinds.find(plain[0]) is not None
 
 
-def _surface(texts: Sequence[str], cued: bool) -> _Surface | None:
+def _surface(texts: Sequence[str], cued: bool, thing: str = "") -> _Surface | None:
     """What words say of a surface, None if any of them says something else.
 
     Args:
-        cued: whether the words before say that it is made of something; "gold" is a colour otherwise.
+        cued: whether the words before say that it is made of something; "sand" is a colour otherwise.
+        thing: what gets it; "gold" is a colour of cloth, and a metal of a vase.
     """
     names: list[str] = []
     hues: list[str] = []
@@ -223,21 +287,23 @@ def _surface(texts: Sequence[str], cued: bool) -> _Surface | None:
     while i < len(texts):
         if length := _length_at(texts, i):
             size, taken = (length[0], length[1]), length[2]
-        elif name := _finish_at(texts, i):
+        elif name := _finish_at(texts, i, bool(thing) and not is_soft(thing)):
             names.append(name)
             taken = len(name.split())
+        elif texts[i] in _SHADES and _finish_at(texts, i + 1):
+            taken = 1  # "dark walnut"
         elif (hue := color_at(texts, i)) is not None:
             taken = hue[1]
             if texts[i + taken : i + taken + 1] and texts[i + taken] in _SECOND and names:
                 second = hue[0]
             else:
                 hues.append(hue[0])
-        elif texts[i] in _ADJECTIVES or texts[i] in QUALIFIERS or texts[i] in _SECOND:
+        elif texts[i] in _ADJECTIVES or texts[i] in style_words() or texts[i] in QUALIFIERS or texts[i] in _SECOND:
             taken = 1
         else:
             return None
         i += taken
-    return _told(_Read(tuple(texts), tuple(names), tuple(hues), second, size), cued)
+    return _told(_Read(tuple(texts), tuple(names), tuple(hues), second, size), cued, thing)
 
 
 class _Read(NamedTuple):
@@ -250,12 +316,12 @@ class _Read(NamedTuple):
     size: tuple[str, str] | None
 
 
-def _told(read: _Read, cued: bool) -> _Surface | None:
+def _told(read: _Read, cued: bool, thing: str) -> _Surface | None:
     texts, names, second, size = read.texts, read.names, read.second, read.size
     hues = list(read.hues)
     if not names:
         return _Surface("", (), " ".join(hues)) if len(hues) == 1 else None
-    if not cued and all(name in COLORS_TOO for name in names) and len(names) == 1:
+    if len(names) == 1 and _is_color(names[0], cued, thing):
         return None
     said = described(" ".join(names))
     if said is None or said.finish is None:
@@ -271,8 +337,19 @@ def _told(read: _Read, cued: bool) -> _Surface | None:
     return _Surface(mark(chosen, *colors, size=size), tuple(names))
 
 
-def _finish_at(texts: Sequence[str], i: int) -> str:
-    """The longest name of a material at a position, "" if there is none."""
+def _is_color(name: str, cued: bool, thing: str) -> bool:
+    """Whether a name that is a colour as well means one: "make the walls sand", "a gold sofa"."""
+    if name in METALS_TOO:
+        return not thing or is_soft(thing)
+    if cued or name not in COLORS_TOO:
+        return False
+    return not thing or (name in COLORS_FIRST and not is_fixed(thing))
+
+
+def _finish_at(texts: Sequence[str], i: int, metal: bool = False) -> str:
+    """The longest name of a material at a position, "" if there is none; `metal`: "silver" is one."""
+    if metal and texts[i : i + 1] == ["silver"]:
+        return "silver"
     for taken in (4, 3, 2, 1):
         name = " ".join(texts[i : i + taken])
         if i + taken <= len(texts) and finish_said(name) is not None:

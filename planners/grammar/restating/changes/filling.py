@@ -170,7 +170,7 @@ class Heard(NamedTuple):
 
 def heard(text: str) -> Heard:
     """The instruction split into what it says of holes and the rest; all of it is the rest if it says nothing."""
-    if (request := _told(text.strip(" ,;"))) is not None:
+    if (request := _told(text.strip(" ,;"))) is not None and not request.what.startswith("where "):
         return Heard("", (request,))
     rest = _LEAVE_FIRST.sub(r"\g<polite>", _LEAVE.sub("", text)).strip(" ,;")
     leave = rest != text.strip(" ,;")
@@ -186,9 +186,101 @@ def heard(text: str) -> Heard:
         else:
             break
         parts.pop()
+    unread = not leave and (not requests or requests[0].what.startswith("where "))
+    if unread and (loose := _loosely(text)):
+        return Heard("", loose)
     if len(parts) > 1:  # something between the requests is no request: nothing is taken out
         return Heard(rest, (), leave)
-    return Heard(parts[0] if parts else "", tuple(requests), leave, anyway)
+    return Heard(parts[0] if parts else "", tuple(requests), leave, anyway and bool(parts))
+
+
+_PART = (
+    r"(?:things?|blobs?|stuff|marks?|bits?|spots?|areas?|patch(?:es)?|parts?|pieces?|sections?|chunks?|"
+    r"corners?|strips?|places?)"
+)
+_FLAWED = re.compile(
+    rf"\b(?:{_KIND}|(?:black|blank|empty|missing|bare|dark|see-through|transparent|white|grey|gray|void) {_PART}|"
+    rf"{_PART} (?:of [a-z ]+? )?(?:that is |that are |which is |is |are )?(?:missing|gone|not there|empty|black|blank)|"
+    r"(?:is|are|looks?|seems?) (?:still |partly |partially |half |a bit |completely )*(?:missing|gone|incomplete|empty|"
+    r"see-through|transparent|full of holes|holey|torn|not there)|has gone missing|something (?:is )?missing|"
+    r"(?:see|look) (?:right |straight )?through|nothing (?:is )?there|(?:left|still) (?:open|empty|black|blank|"
+    r"missing))\b",
+    re.I,
+)
+_OF_FLAW = re.compile(
+    r"(?:\b(?:in|on|of|from|inside|into|within|across|through|at)) (?P<what>(?:(?:the|this|that|my|our) )"
+    r"(?:[a-z-]+ ){0,2}?[a-z-]+?)(?= (?:that|which|where|when|near|next|by|beside|under|behind|below|after|left|is|"
+    r"are|was|"
+    r"has|it|please|there|now|above|over|opposite|between|in|on|from|of|and|so)\b|[,.;!?]|$)",
+    re.I,
+)
+_SUBJECT = re.compile(
+    r"^(?:(?:and|but|so|now|then|oh|look|hey|the scan has|it seems) )*(?P<what>(?:(?:the|this|that|my|our) "
+    r")?(?:[a-z-]+ ){0,2}?"
+    r"[a-z-]+?) (?:(?:under|behind|below|next to|near|where|beneath)\b[^,.;]*? )?"
+    r"(?:has|have|is|are|looks?|seems?|got|shows?|there is)\b",
+    re.I,
+)
+_ONLY_WHERE = re.compile(r"^(?:right )?(?:in|on|of|at) (?P<what>(?:the|this|that|my|our) (?:[a-z-]+ )?[a-z-]+)$", re.I)
+_BIT_OF = re.compile(rf"\b{_PART} of (?:the |this |that )?(?P<what>[a-z-]+)(?= (?:that|which|is|are)\b)", re.I)
+_MEND = re.compile(rf"\b(?:{_FILL}|restore|reconstruct|rebuild|cover(?: up)?|finish|heal|stitch|retouch|cure)\b", re.I)
+_MENDING = re.compile(
+    rf"^{_POLITE}(?:(?:i|we) (?:want|need|would like) )?(?:to )?(?:{_FILL}|restore|reconstruct|rebuild|cover(?: "
+    rf"up)?|heal|retouch|sort|correct|do something about|get "
+    r"rid of)(?: (?:it|that|them|this|those|these|the (?:hole|gap|spot|patch)s?|up|in|over|out|nicely|neatly|"
+    r"properly|please|for me|"
+    r"again|now|cleanly|well|too|with the same|seamlessly|as well|completely))*$",
+    re.I,
+)
+_PAST = re.compile(
+    r"^(?:(?:and|so|but|after|when|since|because|now that) )*(?:i|we|you|it|they|someone|somebody)(?: (?:have|just|"
+    r"has|already))* "
+    r"(?:moved|removed|deleted|took|taken|dragged|pushed|shifted|put|got rid|threw|lifted|replaced|edited|scanned|"
+    r"cleared)\b[^,.;]*$",
+    re.I,
+)
+_CLAUSES = re.compile(r"\s*(?:[,.;:!?]+|\b(?:and|but|so|then)\b)\s*", re.I)
+_ASKED = re.compile(
+    r"^(?:why|what|who|how|where|which|when|is|are|was|were|does|do|did|has|have|should|if|never|don't)\b", re.I
+)
+_PEOPLE = ("i", "we", "you", "there", "something", "nothing", "it", "that", "this", "they", "what", "he", "she")
+
+
+def _loosely(text: str) -> tuple[Request, ...]:
+    """Holes that are told of in any words, each with the surface that it is in; nothing if a clause says anything else.
+
+    Every clause must name a flaw and a surface ("the ceiling has a missing bit"), ask to mend it ("close it up"), or
+    tell what was done before ("I moved the vase").
+    """
+    plain = " ".join(text.lower().split()).rstrip(".!? ")
+    if not _FLAWED.search(plain) or _ASKED.match(plain) or (text.rstrip().endswith("?") and not _MEND.search(plain)):
+        return ()
+    requests = list[Request]()
+    for clause in filter(None, _CLAUSES.split(plain)):
+        clause = clause.strip()
+        if _MENDING.match(clause) or _PAST.match(clause) or clause in ("please", "now", "thanks", "thank you"):
+            continue
+        if (only := _ONLY_WHERE.match(clause)) is not None and requests:
+            requests[-1] = Request(only["what"], "in")
+            continue
+        if (flaw := _FLAWED.search(clause)) is None:
+            return ()
+        where = _surface_of(clause, flaw) or ""
+        requests.append(Request(where, "in"))
+    return tuple(requests[:1]) if len({r.what for r in requests}) == 1 and requests[0].what else ()
+
+
+def _surface_of(clause: str, flaw: re.Match[str]) -> str | None:
+    """The surface of which a clause says that a bit of it is missing."""
+    if (found := _BIT_OF.search(clause)) is not None:
+        return f"the {found['what']}"
+    if (found := _OF_FLAW.search(clause, max(flaw.start() - 1, 0))) is not None:
+        return found["what"]
+    subject = _SUBJECT.match(clause)
+    if subject is None or subject["what"].split()[0] in _PEOPLE:
+        return None
+    named = subject["what"]
+    return named if named.split()[0] in ("the", "this", "that", "my", "our") else f"the {named}"
 
 
 def _told(text: str) -> Request | None:
@@ -204,6 +296,8 @@ def _request(clause: str) -> Request | None:
     for pattern in (_SURFACE, _REQUEST, _LACK, _SURFACE_ONCE):
         if found := pattern.match(clause):
             return _of(found)
+    if loose := _loosely(clause):
+        return loose[0]
     if found := _WITH_SURFACE.match(clause):
         named = re.search(_SURFACES, found["with"] or "", re.I)
         return Request(named[0] if named else "", "in") if not found["with"] or _MORE.search(found["with"]) else None

@@ -18,7 +18,8 @@ from ...tagging.lookahead import color_at
 from ...tagging.words import Word, bag
 from ...vocabulary.materials import ANYTHING, LIKE, PHOTO, mark
 from ..chunks import is_thing
-from .covering import covered, names_material
+from ..speech.frames import unframed
+from .covering import covered, names_material, spelled
 from .styles import names_style, styled
 
 Size = tuple[str, str]  # a number and its unit, as they are said
@@ -83,8 +84,10 @@ _SENT = (
     r"(?: before| earlier)?"
 )
 _SAME = re.compile(
-    rf"^(?P<thing>(?:the |my |our )?[a-z]+(?: [a-z]+)?) (?:in )?"
-    rf"(?:(?:the )?same (?:as|like)|(?P<color>the colou?r of)) (?P<src>{_DET} [^,;]+)$"
+    rf"^(?:(?:make|turn|do|have|get|finish|render) )?(?P<thing>(?:the |my |our )?[a-z]+(?: [a-z]+)??) (?:in |be |"
+    rf"look |: )*"
+    rf"(?:(?:exactly |just )?(?:the )?same (?:material |fabric |wood |finish |look )?(?:as|like)|(?P<color>the "
+    rf"colou?r of)) (?P<src>{_DET} [^,;]+)$"
 )
 _LATE = re.compile(r" ,? ?but in (?P<hue>[a-z ]+)$")
 _KEPT = re.compile(
@@ -211,6 +214,7 @@ def with_likenesses(words: Sequence[Word]) -> tuple[Word, ...]:
 def likened(said: str) -> str | None:
     """A sentence with each of its commands for the surface of another thing or of a photograph in other words; None if
     it has none."""
+    said = spelled(said)
     shown = _SHOWN.search(said) is not None
     if not (
         shown
@@ -265,9 +269,10 @@ def _clause(said: str, size: Size | None, shown: bool) -> str | None:
         for found in _matches(pattern, said):
             named = mark(PHOTO, *filter(None, (_material(found),)), size=_length(found) or size)
             return f"{found['polite']}paint {_wall(found['thing'])} {named}{found['tail']}"
-    for pattern in _of_things():
-        for found in _matches(pattern, said):
-            carried = _CARRIED.match(said) is not None and found.groupdict().get("w") in _LOOSE
+    plain = unframed(said)
+    for pattern, words in ((p, w) for w in dict.fromkeys((said, plain)) for p in _of_things()):
+        for found in _matches(pattern, words):
+            carried = _CARRIED.match(words) is not None and found.groupdict().get("w") in _LOOSE
             bare = found["src"].removeprefix("the ")
             if "(?!(?:same|that) )" in pattern.pattern and kinds.find(bare) is None:
                 continue  # "a flower pattern on the sofa" is no flower's
@@ -275,7 +280,7 @@ def _clause(said: str, size: Size | None, shown: bool) -> str | None:
                 continue
             name = _material(found) or ANYTHING
             return f"{found['polite']}paint {found['thing']} {LIKE}{name} {found['src']}{found['tail']}{hue}"
-    return _same(said) or covered(spoken)
+    return _same(plain) or covered(spoken)
 
 
 def _same(said: str) -> str | None:

@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from typing import Literal, NamedTuple
 
+from ..speech.frames import is_reported, unframed
+
 Change = Literal["remove", "cast", "darker", "lighter"]
 
 _POLITE = r"(?:(?:please|now|then|also|and|but|ok|okay|just|can you|could you|would you|will you|i want you to) )*"
@@ -99,8 +101,9 @@ _ON = re.compile(
 )
 _JOIN = re.compile(r"\s*(?:,\s*(?:and |then )*|;\s*|\.\s+|\band then\b |\bthen\b |\band\b )\s*", re.IGNORECASE)
 _ALONG = re.compile(
-    rf"(?:,? (?:and|with|together with|along with|including|plus) (?:also )?(?:its|their|the|his|her) {_SHADE})"
-    r"(?: (?:too|as well|with it))?(?=\s*(?:[,.;!]|$))",
+    rf"(?:,? (?:and|with|together with|along with|including|plus|and take|and bring) (?:also )?(?:its|their|the|"
+    rf"his|her) {_SHADE})"
+    r"(?: (?:too|as well|with it|along|along with it))?(?=\s*(?:[,.;!]|$))",
     re.IGNORECASE,
 )
 _GOES = re.compile(rf"^{_POLITE}(?:{_AWAY}|move|shift|push|pull|drag|slide|put|bring|throw out|bin)\b", re.IGNORECASE)
@@ -156,6 +159,8 @@ def shadows_heard(text: str) -> ShadowsHeard | None:
         return ShadowsHeard((rest,))
     if "shadow" not in text.lower() and not re.search(_PATCH, text, re.IGNORECASE):
         return None
+    if (loose := _loosely(text)) is not None:
+        return ShadowsHeard((loose,))
     for join in _JOIN.finditer(text):
         first, second = text[: join.start()], text[join.end() :]
         if (one := _request(first)) is not None and second:
@@ -166,6 +171,94 @@ def shadows_heard(text: str) -> ShadowsHeard | None:
     return None
 
 
+_ASKING = re.compile(r"^(?:why|what|who|how|where|which|when|is|are|was|were|does|do|did|has|have|am)\b", re.I)
+_DENIED = re.compile(
+    r"\b(?:never mind|do not (?:touch|remove|change|delete|move)|don't (?:touch|remove|change|delete|move)|"
+    r"leave|keep|ignore|if)\b",
+    re.I,
+)
+_NAMED = r"(?:(?:the|that|this|my|our|both|all|every|each) )?(?:[a-z-]+ ){0,3}?[a-z-]+"
+
+
+def _word(form: str) -> re.Pattern[str]:
+    return re.compile(rf"\b(?:{form})\b", re.IGNORECASE)
+
+
+_OWNERS = tuple(
+    re.compile(form, re.IGNORECASE)
+    for form in (
+        rf"\b(?P<what>(?:the|that|this|my|our|its|their) (?:[a-z-]+ ){{0,2}}[a-z-]+)(?:'s|s') (?:[a-z]+ )?{_SHADE}",
+        rf"\b{_SHADE} (?:that is |that's )?(?:right |directly )?{_OF} (?P<what>{_NAMED})"
+        r"(?= (?:is|are|was|looks?|seems?|should|must|needs?|stayed|stays|remained|has|have|please|now|too|a bit|a "
+        r"little|much|lighter|darker|softer|stronger|weaker|gone)\b|[,.;!?]|$)",
+        rf"\b{_SHADE} (?:that |which )?(?P<what>(?:the|that|this|my) (?:[a-z-]+ ){{0,2}}?[a-z-]+) {_LEAVES}\b",
+        rf"^{_POLITE}(?:i (?:would like|want|need) )?(?P<what>{_NAMED}) (?:still |also )?(?:needs?|wants?|lacks?|"
+        rf"misses|is missing|without|"
+        rf"with|could use|could do with|should (?:have|get|cast)|has no|casts no|casts?|has|gets?) (?:a |an |its |"
+        rf"some |any |two |double |"
+        rf"more |the |no )*(?:[a-z]+er )?(?:of a )?{_SHADE}",
+        rf"^{_POLITE}(?:give|lend) (?P<what>{_NAMED}) (?:a|an|its|some|more)(?: of a)? (?:[a-z]+ )?{_SHADE}",
+    )
+)
+_CHANGES: tuple[tuple[Change, re.Pattern[str]], ...] = (
+    (
+        "lighter",
+        _word("(?:too|so|very|rather|quite) (?:dark|strong|heavy|harsh|hard|black|deep|intense|pronounced|big)"),
+    ),
+    ("darker", _word("(?:too|so|very|rather|quite) (?:faint|weak|light|soft|pale|subtle|thin)")),
+    ("lighter", _word(f"{_LIGHTER}|{_PALER}")),
+    ("darker", _word(f"{_DARKER}|{_DEEPER}|more of a|more")),
+    (
+        "cast",
+        _word(
+            "forgot|forgotten|needs?|lacks?|misses|missing|wants?|give|lend|add|should (?:have|get|cast)|could use|"
+            "could do with|has no|casts no|gets?|(?:make|let) .* (?:cast|throw)"
+        ),
+    ),
+    (
+        "remove",
+        _word(
+            f"{_AWAY}|take (?:it|that|them) (?:away|out|off)|bothers?|annoys?|without|no|gone|disappear|vanish|"
+            "stayed(?: behind)?|stays|left ?over|left behind|remains|remained|still (?:there|here|visible)|"
+            "should not be|get rid"
+        ),
+    ),
+)
+_SUBJECT = re.compile(
+    r"^(?:(?:hey|well|so|now|but|hmm) )*(?P<what>(?:the|that|this|my|our) (?:[a-z-]+ ){0,2}?[a-z-]+) "
+    r"(?:is|are|looks?|seems?|appears?|feels?|floats?|hovers?|has|have|lacks?)\b",
+    re.I,
+)
+_FLOATING = re.compile(
+    r"\b(?:float|hover|levitat|flying|flies|in the air|mid ?air|not (?:touch|ground)|unground)", re.I
+)
+_OTHERS = re.compile(
+    r"\b(?:move|paint|put|place|turn|rotate|scale|make it|make the (?!shadow)|replace|duplicate|copy|insert|brighter|"
+    r"and then|the light|lights|lighting)\b",
+    re.I,
+)
+
+
+def _loosely(text: str) -> ShadowRequest | None:
+    """A shadow that is named with its owner and one change: "the shadow under the bed is too dark", "lamp without
+    shadow", "the plant is hovering, add a shadow"; None if either is missing, or more is asked for."""
+    plain = unframed(" ".join(text.lower().replace(",", " ,").split()))
+    text = plain.replace(" ,", ",").rstrip(".!? ")
+    if _ASKING.match(text) or _DENIED.search(text) or "shadow" not in text or is_reported(text):
+        return None
+    first, comma, rest = text.partition(",")
+    subject = _SUBJECT.match(first) if comma else None
+    floating = subject is not None and _FLOATING.search(first) is not None and "shadow" in rest
+    owner = next((m["what"] for p in _OWNERS if (m := p.search(text)) is not None), None)
+    if (owner is None or owner in ("it", "them")) and floating and subject is not None:
+        owner = subject["what"]
+    change = next((c for c, p in _CHANGES if p.search(rest if floating else text)), None)
+    if owner is None or change is None or _OTHERS.search(text.replace("make the shadow", "")):
+        return None
+    owner = re.sub(r"^(?:no|any|a|an|some|its|their) ", "", owner)
+    return ShadowRequest(owner, change) if owner not in ("there", "i", "we", "you", "nothing", "light") else None
+
+
 def _request(clause: str) -> ShadowRequest | None:
     clause = _ON.sub("", _AFTER.sub("", clause)).strip(" ,;")
     for change, pattern in _FORMS:
@@ -173,6 +266,8 @@ def _request(clause: str) -> ShadowRequest | None:
             words = found.groupdict().get("what")
             if words is None:
                 return ShadowRequest("them" if found["own"].lower() == "their" else "it", change)
-            if not re.search(r"\b(?:and|then|but)\b .*\b(?:make|put|move|delete|remove|paint|add)\b", words):
+            if "," not in words and not re.search(
+                r"\b(?:and|then|but)\b .*\b(?:make|put|move|delete|remove|paint|add)\b", words
+            ):
                 return ShadowRequest(words, change)
     return None
