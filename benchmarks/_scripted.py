@@ -24,7 +24,7 @@ from . import _written
 
 NAME = "scripted stand-in, not a real model"
 MEDIAN, SPREAD = 1.5, 0.4  # seconds, and sigma of its logarithm: a hosted model that answers with some hundred tokens
-_PLAIN = ("color", "adjust", "degrees", "axis", "direction", "count", "asset", "value")
+_PLAIN = ("color", "adjust", "degrees", "axis", "direction", "count", "asset", "value", "lamps")
 _MORE, _LESS = 1.25, 0.8  # factors for "bigger than one" and "smaller", where the set asks for no more
 _SOME = 0.5  # metres for "any amount"
 _GREY, _RED = {"color": "gray"}, {"color": "red"}

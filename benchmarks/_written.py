@@ -26,7 +26,7 @@ from . import _data
 FOLDER = Path(__file__).resolve().parent.parent / "tests" / "planners" / "written"
 Outcome = Literal["right", "wrong_edit", "wrong_answer", "unanswered"]
 # Fields of a step that are compared; `amount` is not, as nobody says how much "a bit" is.
-_FIELDS = ("color", "adjust", "degrees", "axis", "direction", "factor", "count", "asset", "value")
+_FIELDS = ("color", "adjust", "degrees", "axis", "direction", "factor", "count", "asset", "value", "lamps")
 _DEFAULTS = {"count": 1, "axis": {"rotate": "up", "scale": "all"}}
 
 

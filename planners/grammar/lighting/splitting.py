@@ -44,6 +44,7 @@ _CHANGES = bag(
     "up lower raise red blue green purple pink violet teal magenta turquoise"
 )
 _LOOKING = bag("look looks looking feel feels be is something more seem would not")
+_PAINTED = bag("darker lighter")
 _CUTS = 3  # asides that are left out
 _MOST = 12  # pieces of an instruction that are looked at
 
@@ -220,6 +221,8 @@ def _bare(words: Sequence[str]) -> bool:
     """Whether words name nothing that they are about: "a bit brighter please", "it is too dark"."""
     if tuple(words[:2]) in _IT_IS or any(pair in _HAVING for pair in pairwise(words)):
         return True
+    if "it" in words and _PAINTED & set(words):
+        return False  # "make it darker" is said of a thing that was spoken of
     return len(words) > 1 and not {"that", "them", "these", "those"} & set(words)
 
 
