@@ -20,7 +20,7 @@ MoodName = Literal[
     "moonlight",
 ]  # fmt: skip
 
-_PASSED = 0.25  # share of a display channel that light of a pure colour keeps where the colour has none
+_PASSED = 0.35  # share of a display channel that light of a pure colour keeps where the colour has none
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def light_of(exposure: float, old: float, new: float, contrast: float = 1.0, sat
 def tinted(light: Light, rgb: Sequence[float], amount: float = 1.0) -> Light:
     """A light of a colour: every display channel keeps `_PASSED` and the rest in proportion to the colour's.
 
-    A saturated colour is dimmer than white, as a filter before a lamp is, by the root of what it passes of luminance.
+    A saturated colour is dimmer than white, as a filter before a lamp is, by what it passes of luminance.
 
     Args:
         rgb: `[3]` display colour, 0 to 1; only its hue and saturation count.
@@ -85,7 +85,7 @@ def tinted(light: Light, rgb: Sequence[float], amount: float = 1.0) -> Light:
     hue = np.asarray(rgb, dtype=np.float64)
     factors = (_PASSED + (1 - _PASSED) * hue / max(float(hue.max()), 1e-3)) ** amount
     passed = float(np.asarray(luminance(factors)))
-    return replace(light, exposure=light.exposure * passed**0.5, matrix=np.diag(factors) @ light.matrix)
+    return replace(light, exposure=light.exposure * passed, matrix=np.diag(factors) @ light.matrix)
 
 
 def _saturation(factor: float) -> F64:

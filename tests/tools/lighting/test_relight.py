@@ -158,6 +158,24 @@ def test_the_white_point_is_met_and_told(corner: Scene, context: Context) -> Non
     assert "6500 -> 3200 K" in done.receipt.notes[0]
 
 
+@pytest.mark.parametrize(("color", "most", "least"), [("blue", 2, 0), ("red", 0, 1), ("purple", 2, 1)])
+def test_coloured_light_keeps_its_own_channel_best(
+    corner: Scene, context: Context, color: str, most: int, least: int
+) -> None:
+    done = relight(corner, context, color=color)
+    before, after = (dc_to_color(s.cloud.sh[:, 0]).clamp(0.01, 1) for s in (corner, done.scene))
+    kept = (after / before).median(dim=0).values
+    assert kept[most] == kept.max() and kept[most] > 2 * kept[least]
+    assert mean_luminance(*_of(done.scene)) <= mean_luminance(*_of(corner)) * 1.01
+    assert f"{color} light" in done.receipt.notes[0]
+
+
+def _of(scene: Scene) -> tuple[torch.Tensor, torch.Tensor]:
+    """Colours and weights of the sampled surfaces."""
+    found = colors_of(scene.cloud)
+    return found.rgb, found.weight
+
+
 def test_things_outside_a_selection_stay_bit_for_bit(corner: Scene, context: Context) -> None:
     done = relight(corner, context, {"text": "chair"}, exposure=1.4, warmth=0.3)
     other = corner.cloud.group != CHAIR
