@@ -9,7 +9,13 @@ Sources: Zwicker et al. 2001 (EWA splatting); Kerbl et al. 2023 and its CUDA ras
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+from torch import Tensor
+
 NEAR = 0.01  # scene units; a centre nearer than this, or behind the eye, is not drawn
+NEAR_SHARE, NEAREST = 0.01, 1e-6  # of a small scene's extent: there the near plane is this far, see `near_plane`
+_SAMPLE = 4096
 FAR = 1e10  # scene units; beyond it float32 depth has too little precision
 DILATION = 0.3  # px^2 added to both variances: no footprint is narrower than about a pixel
 ALPHA_MIN = 1 / 255  # one step of an 8-bit image; lower alphas are not drawn
@@ -19,3 +25,18 @@ T_MIN = 1e-4  # transmittance at which a pixel counts as finished
 # approximation breaks down at grazing angles.
 EDGE = 0.15
 MAX_DETERMINANT = 1e37  # px^4; a covariance near float32's range (a footprint of billions of pixels) is not drawn
+
+
+def near_plane(means: NDArray[np.float32] | Tensor) -> float:
+    """Distance of the near plane for centres `[N, 3]`, scene units.
+
+    `NEAR`, or less where the whole scene is smaller than a unit: in a room of which a metre is a hundredth of a unit,
+    0.01 units are a metre. The extent is that of an even sample of the finite centres; a scene without one has `NEAR`.
+    """
+    part = means[:: max(1, len(means) // _SAMPLE)]
+    found = np.asarray(part.detach().cpu() if isinstance(part, Tensor) else part, np.float64)
+    found = found[np.isfinite(found).all(axis=1)]
+    if len(found) < 2:
+        return NEAR
+    extent = float(np.linalg.norm(found.max(axis=0) - found.min(axis=0)))
+    return min(NEAR, max(NEAR_SHARE * extent, NEAREST)) if extent > 0 else NEAR

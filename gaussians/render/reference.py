@@ -143,7 +143,7 @@ def project(cloud: GaussianCloud, camera: Camera, dtype: torch.dtype = torch.flo
     toward = cloud.means - eye  # [N, 3]; subtracting the eye first keeps precision far from the origin
     local = toward @ rotation.T
     z = local[:, 2]
-    keep = (z > c.NEAR) & (z < c.FAR) & (cloud.opacities > c.ALPHA_MIN) & _finite_rows(cloud)
+    keep = (z > c.near_plane(cloud.means)) & (z < c.FAR) & (cloud.opacities > c.ALPHA_MIN) & _finite_rows(cloud)
     row = keep.nonzero().squeeze(1)
     row = row[torch.argsort(z[row], stable=True)]
     cloud, toward, local, z = cloud[row], toward[row], local[row], z[row]

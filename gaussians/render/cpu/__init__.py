@@ -136,7 +136,7 @@ def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, botto
     chunks = -(-n // project.CHUNK)
     records, corner, mask = np.empty((n, project.RECORD), np.float32), np.empty(n, np.uint32), np.empty(n, np.uint64)
     depth, visible, found = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(chunks, np.int32)
-    view = project.make_view(camera, top, bottom)
+    view = project.make_view(camera, convention.near_plane(columns[0]), top, bottom)
     compiled.run(project.project, count, *columns, view, (records, corner, mask, depth, visible, found), _counter())
 
     keys, sorted_rows = np.empty((2, n), np.int32), np.empty((2, n), np.int32)

@@ -94,15 +94,15 @@ class Ellipse(NamedTuple):
     extreme: Any
 
 
-def make_view(camera: Camera, top: int, bottom: int) -> View:
-    """The kernel's view of a camera for the image rows `top` to `bottom`."""
+def make_view(camera: Camera, near: float, top: int, bottom: int) -> View:
+    """The kernel's view of a camera with a near plane for the image rows `top` to `bottom`."""
     margin_x, margin_y = convention.EDGE * camera.width, convention.EDGE * camera.height
     numbers = [
         *camera.world_to_camera[:3, :3].ravel(), *camera.position,
         camera.fx, camera.fy, camera.cx, camera.cy - top, camera.width, bottom - top,
         (-camera.cx - margin_x) / camera.fx, (camera.width - camera.cx + margin_x) / camera.fx,
         (-camera.cy - margin_y) / camera.fy, (camera.height - camera.cy + margin_y) / camera.fy,
-        convention.NEAR, convention.FAR, convention.DILATION, convention.ALPHA_MIN, Q_MAX, convention.MAX_DETERMINANT,
+        near, convention.FAR, convention.DILATION, convention.ALPHA_MIN, Q_MAX, convention.MAX_DETERMINANT,
     ]  # fmt: skip
     return View(*(np.float32(number) for number in numbers))
 

@@ -138,7 +138,7 @@ def rasterize(
         Ks=pinhole[None],
         width=camera.width,
         height=camera.height,
-        near_plane=c.NEAR,
+        near_plane=c.near_plane(means),
         far_plane=c.FAR,
         radius_clip=0.0,
         eps2d=c.DILATION,

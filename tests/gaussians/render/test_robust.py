@@ -269,3 +269,17 @@ def test_a_crop_is_a_piece_of_the_picture(data_dir: Path, name: str) -> None:
     error = (crop.rgb - whole.rgb[y : y + height, x : x + width]).square().mean()
     # The Jacobian's clamp follows the image, so large Gaussians beyond the crop's border look different inside it.
     assert float(error) < 1e-5
+
+
+@every_backend
+def test_a_world_in_other_units_gives_the_same_picture(backend: str) -> None:
+    """Its near plane too: a hundredth of a unit is a metre where a metre is a hundredth of a unit."""
+    g = torch.Generator().manual_seed(5)
+    rows = [blob((x, y, z), 0.03) for x, y, z in torch.rand(200, 3, generator=g).mul(4).sub(2).tolist()]
+    rows += [blob((0.0, -2.7, 0.5), 0.02), blob((0.05, -2.6, 0.48), 0.01)]  # 30 and 40 cm from the eye
+    cloud, step = cloud_of(rows), 2.0**-7
+    small = cloud.replace(means=cloud.means * step, scales=cloud.scales * step)
+    camera = replace(CAMERA, world_to_camera=CAMERA.world_to_camera * np.array([[1, 1, 1, step]] * 3 + [[1, 1, 1, 1]]))
+    one, other = render(cloud, CAMERA, backend=backend), render(small, camera, backend=backend)
+    assert float((one.alpha - other.alpha).abs().max()) < 1e-5
+    assert float((one.rgb - other.rgb).abs().max()) < 1e-5
