@@ -48,6 +48,7 @@ MOST_THINGS = 400  # each of some thousand Gaussians
 WALLS = ("north", "west", "east")  # the south is left open, for looking in
 _GROUND = ("tiles", "planks", "plain")  # outdoors
 _GREEN = ("tree", "bush", "rock", "tent")  # shapes of what stands on grass
+_LET_IN = ("door", "window")  # into walls, on which they cast no shadow
 _SPARE = 256  # ids up to this much above the number of nodes are kept as they are, with empty rows between them
 _LEVEL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 # Composed rooms are made for viewing: this cover of Gaussians lets no light from behind the walls through.
@@ -137,6 +138,8 @@ def construct(
         cameras = (*_given(graph), overview(layout, closed), *eye_views(layout))
     with timed(seconds, "materials"):
         scene, more = with_materials(scene, graph, rows)
+    with timed(seconds, "shadows"):
+        scene = _with_shadows(scene)
     with timed(seconds, "light"):
         scene, dim = _with_light(scene, graph, cameras[0])
     notes = tuple(dict.fromkeys((*notes, *more, *dim)))
@@ -187,6 +190,13 @@ def _walls(graph: Drawn) -> tuple[str, ...]:
             gaps = {"north": depth / 2 - y, "west": width / 2 + x, "east": width / 2 - x}
             found.add(min(gaps, key=lambda wall: gaps[wall]))
     return tuple(wall for wall in WALLS if wall in found)
+
+
+def _with_shadows(scene: Scene) -> Scene:
+    """The scene with a shadow under each thing that stands, lies or hangs."""
+    from ...tools.harmony.shadows import shadows_under_everything
+
+    return shadows_under_everything(scene, but=_LET_IN)[0]
 
 
 def _with_light(scene: Scene, graph: Drawn, viewer: Camera) -> tuple[Scene, tuple[str, ...]]:

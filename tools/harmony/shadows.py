@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -181,7 +181,9 @@ def _step(change: str, now: float | None, usual: float) -> float:
     return max(0.0, usual - there) if there < _PART * usual else 0.0
 
 
-def shadows_under_everything(scene: Scene, strength: Strength | None = None) -> tuple[Scene, Told]:
+def shadows_under_everything(
+    scene: Scene, strength: Strength | None = None, but: Collection[str] = ()
+) -> tuple[Scene, Told]:
     """The scene with a contact shadow under each of its things, in one pass; only colours change.
 
     For scenes whose things were put together from parts that cast none on each other. What a capture shows has its
@@ -189,9 +191,10 @@ def shadows_under_everything(scene: Scene, strength: Strength | None = None) -> 
 
     Args:
         strength: how dark; None: the usual one.
+        but: labels of things that cast none: what is let into a wall.
     """
     field = scene.language
     index = index_groups(scene.cloud)
-    objects = () if field is None else [g for g in field.objects() if g.count]
+    objects = () if field is None else [g for g in field.objects() if g.count and g.label not in but]
     things = [torch.from_numpy(index.rows(field.leaves(g.id))) for g in objects] if field is not None else []
     return shadows_under(scene, things, strength or Strength(FAINT, 0), apart=False)
