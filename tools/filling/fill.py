@@ -165,6 +165,7 @@ def _behind(
     witnesses: Sequence[View],
 ) -> list[Patch]:  # fmt: skip
     """What lies behind a thing and is of no plane that was continued."""
+    from .behind.dark import without_dark
     from .behind.glass import glass_of
     from .behind.lifted import holes_filled
     from .behind.views import place_of, without_gloss
@@ -176,6 +177,7 @@ def _behind(
     looking = [c for c in scene.cameras if c.contains(*c.project(((corners[0] + corners[1]) / 2)[None]))[0]]
     bands, cloud = cloud.degree, without_gloss(cloud, looking)
     place = place_of(cloud, thing, corners, scene.cameras, scene.frame.up_vector, witnesses)
+    place = without_dark(place, cloud, thing, scene.cameras)
     return [
         Patch(
             None,

@@ -97,7 +97,7 @@ def holes_filled(cloud: GaussianCloud, place: Place, glass: frozenset[int] = fro
             break
         view = place.views[k] if now is cloud else seen_again(place.views[k], now)
         started[k] = now
-        open_ = view.open_pixels()
+        open_ = view.open_pixels
         if not open_.any():
             continue
         made = _filled(view, k, open_, place, told)
@@ -201,21 +201,13 @@ def _depths(view: View, colours: F64, hole: Mask, known: Mask) -> F64:
     return np.where(out > 1e-9, 1 / np.maximum(out, 1e-9), 0.0)
 
 
-def _rays(view: View, pixels: Mask) -> F64:
-    """`[M, 3]` world directions through the middles of some pixels, of length one along the view."""
-    y, x = np.nonzero(pixels)
-    camera = view.camera
-    local = np.stack([(x + 0.5 - camera.cx) / camera.fx, (y + 0.5 - camera.cy) / camera.fy, np.ones(len(x))], axis=1)
-    return np.asarray(local @ camera.world_to_camera[:3, :3])
-
-
 def _unseen(view: View, hole: Mask, depth: F64, place: Place) -> tuple[F64, Mask]:
     """`[H, W]` depths of a hole moved backward along its rays until no other view saw the point there, and it hides
     nothing that another view shows; and which pixels have such a depth. What another view saw is there already, or is
     known to be empty, and what is known behind the thing from one side is not hidden by a guess from another, but for
     what the thing stood on.
     """
-    rays, eye = _rays(view, hole), view.camera.position
+    rays, eye = view.rays(hole), view.camera.position
     start = depth[hole]
     far = max(float(np.quantile(start, 0.98)) * _FARTHER, 1e-9)
     others = [w for w in place.witnesses if w.camera is not view.camera]
@@ -265,7 +257,7 @@ def _lifted(view: View, index: int, hole: Mask, colours: F64, depth: F64, known:
     """A Gaussian for each pixel of a hole."""
     height, width = hole.shape
     grown = np.where(hole, depth, np.where(view.depth > 0, view.depth, np.inf))
-    every = _rays(view, np.ones_like(hole)).reshape(height, width, 3)
+    every = view.rays(np.ones_like(hole)).reshape(height, width, 3)
     unit = depth / view.camera.fx
     steps = []
     for axis in (0, 1):
@@ -310,7 +302,7 @@ def _hole(view: View, index: int, hole: Mask, bands: int, told: tuple[float, str
     """A hole that stays."""
     front = view.front[hole & (view.front > 0)]
     away = float(np.median(front)) if len(front) else 0.0
-    points = view.camera.position + _rays(view, hole) * away
+    points = view.camera.position + view.rays(hole) * away
     empty = GaussianCloud.empty(int(np.sqrt(bands)) - 1)
     area = float(hole.sum()) * (away / view.camera.fx) ** 2
     return Hole(index, hole, empty, told[0], 0.0, area, np.stack([points.min(axis=0), points.max(axis=0)]), told[1])

@@ -51,6 +51,7 @@ class View:
         covers: `[H, W]` share of each pixel that the thing filled.
         front: `[H, W]` depth of the thing, 0 where it is not.
         taken: whether a photograph was taken from here.
+        dark: `[H, W]`, open pixels that are dark surfaces of the scene and no holes; None if that was not asked.
     """
 
     camera: Camera
@@ -61,6 +62,18 @@ class View:
     covers: F64
     front: F64
     taken: bool
+    dark: Mask | None = None
+
+    def points(self, pixels: Mask) -> F64:
+        """`[M, 3]` world points that some pixels show."""
+        return np.asarray(self.camera.position + self.rays(pixels) * self.depth[pixels][:, None])
+
+    def rays(self, pixels: Mask) -> F64:
+        """`[M, 3]` world directions through the middles of some pixels, of length one along the view."""
+        y, x = np.nonzero(pixels)
+        c = self.camera
+        local = np.stack([(x + 0.5 - c.cx) / c.fx, (y + 0.5 - c.cy) / c.fy, np.ones(len(x))], axis=1)
+        return np.asarray(local @ c.world_to_camera[:3, :3])
 
     @cached_property
     def before(self) -> Mask:
@@ -84,6 +97,7 @@ class View:
         """`[H, W]` where something is; a dark gap between leaves is."""
         return np.asarray(ndimage.gaussian_filter(self.alpha, 1.5) > VOID)
 
+    @cached_property
     def open_pixels(self) -> Mask:
         """`[H, W]` where the thing was and nothing is now, without specks."""
         hid = self.covers > _COVERS
@@ -93,6 +107,7 @@ class View:
         around = harmonic(ndimage.median_filter(self.alpha, 3)[..., None], sure, ~sure)[..., 0]
         gone = hid & (self.alpha < _GONE * np.maximum(around, VOID))
         gone = ndimage.binary_closing(gone) & (self.covers > _CLEAR)
+        gone = gone if self.dark is None else gone & ~self.dark
         area, count = ndimage.label(gone)
         size = np.bincount(area.ravel(), minlength=count + 1)
         keep = size >= SPECK
@@ -144,16 +159,16 @@ def place_of(
     middle = (low + high) / 2
     there = [c for c in cameras if _looks_at(c, middle, size)]
     chosen = _apart([c for c in (_cut(c, box) for c in there) if c is not None], middle)
-    labelled = _labelled(cloud, thing)
-    views = [_seen(cloud, thing, labelled, c, True) for c in chosen]
+    both = labelled(cloud, thing)
+    views = [_seen(cloud, thing, both, c, True) for c in chosen]
     if len(views) < _FEW:
         for camera in _around(middle, size, up):
             cut = _cut(camera, box)
-            view = None if cut is None else _seen(cloud, thing, labelled, cut, False)
+            view = None if cut is None else _seen(cloud, thing, both, cut, False)
             if view is not None and view.covers.sum() > _SHOWS * float((view.front > 0).sum()):
                 views.append(view)
     views = views[: 2 * MOST_VIEWS]
-    if not any(v.open_pixels().any() for v in views):
+    if not any(v.open_pixels.any() for v in views):
         views = []
     bottom = float((box @ up).min()) + _FOOT * size
     return Place(tuple(views), tuple(witnesses) or tuple(views), up, bottom)
@@ -165,8 +180,8 @@ def witnesses_of(cloud: GaussianCloud, thing: GaussianCloud, cameras: Sequence[C
     Args:
         cloud: the scene without the thing.
     """
-    labelled = _labelled(cloud, thing)
-    return [_witness(labelled, c) for c in _spread(cameras)]
+    both = labelled(cloud, thing)
+    return [_witness(both, c) for c in _spread(cameras)]
 
 
 def seen_past(points: F64, witnesses: Sequence[View]) -> Mask:
@@ -207,11 +222,11 @@ def _spread(cameras: Sequence[Camera]) -> list[Camera]:
     return [cameras[k] for k in chosen]
 
 
-def _witness(labelled: GaussianCloud, camera: Camera) -> View:
+def _witness(both: GaussianCloud, camera: Camera) -> View:
     """What a photograph of the scene with the thing shows, small."""
     scale = _SMALL / max(camera.width, camera.height)
     small = camera.resized(max(8, round(camera.width * scale)), max(8, round(camera.height * scale)))
-    shot = render(labelled, small)
+    shot = render(both, small)
     covers, alpha, depth = (x.cpu().numpy().astype(np.float64) for x in (shot.rgb[..., 0], shot.alpha, shot.depth))
     return View(small, shot.rgb.cpu().numpy(), alpha, depth, shot.group.cpu().numpy(), covers, 0 * depth, True)
 
@@ -223,15 +238,15 @@ def seen_again(view: View, cloud: GaussianCloud) -> View:
     return replace(view, rgb=rgb, alpha=alpha, depth=depth, group=shot.group.cpu().numpy())
 
 
-def _seen(cloud: GaussianCloud, thing: GaussianCloud, labelled: GaussianCloud, camera: Camera, taken: bool) -> View:
-    alone, share = render(thing, camera), render(labelled, camera)
+def _seen(cloud: GaussianCloud, thing: GaussianCloud, both: GaussianCloud, camera: Camera, taken: bool) -> View:
+    alone, share = render(thing, camera), render(both, camera)
     front = np.where(alone.alpha.cpu().numpy() > 0.5, alone.depth.cpu().numpy(), 0.0).astype(np.float64)
     covers = share.rgb[..., 0].clamp(0, 1).cpu().numpy().astype(np.float64)
     none = np.zeros(covers.shape)
     return seen_again(View(camera, none[..., None], none, none, none.astype(np.int32), covers, front, taken), cloud)
 
 
-def _labelled(cloud: GaussianCloud, thing: GaussianCloud) -> GaussianCloud:
+def labelled(cloud: GaussianCloud, thing: GaussianCloud) -> GaussianCloud:
     """The scene with the thing, it in red and all else black."""
 
     def plain(part: GaussianCloud, color: tuple[float, float, float]) -> GaussianCloud:
