@@ -50,7 +50,7 @@ class _Watch(MetaPathFinder):
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         for finder in sys.meta_path:
-            if finder is self or not hasattr(finder, "find_spec"):
+            if isinstance(finder, _Watch) or not hasattr(finder, "find_spec"):
                 continue
             found = finder.find_spec(fullname, path, target)
             if found is not None:

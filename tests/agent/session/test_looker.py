@@ -146,7 +146,7 @@ def _degenerate() -> dict[str, Scene]:
 def test_odd_scenes_give_pictures_or_none(name: str) -> None:
     looker = SceneLooker(_degenerate()[name], size=(64, 48))
     views = looker.overview([], 2)
-    assert bool(views) == (name in ("one box", "huge", "tilted", "one Gaussian"))
+    assert bool(views) == (name in ("one box", "huge", "tiny", "tilted", "one Gaussian"))
     for request in ("plan", "overview", "close:0", "from:0", "behind:0", "above:0"):
         shown = looker.look(request)
         assert shown is None or shown.size == (64, 48)
