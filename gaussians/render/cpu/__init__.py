@@ -134,24 +134,23 @@ def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, botto
     be divided."""
     n, size = len(columns[0]), (camera.width, bottom - top)
     chunks = -(-n // project.CHUNK)
-    records, corner, mask = np.empty((n, project.RECORD), np.float32), np.empty(n, np.uint32), np.empty(n, np.uint64)
-    depth, visible, found = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(chunks, np.int32)
+    records, spots = project.make_records(n), np.empty((n, 2), np.uint64)
+    visible, found = np.empty(n, np.uint64), np.empty(chunks, np.int32)
     view = project.make_view(camera, convention.near_plane(columns[0]), top, bottom)
-    compiled.run(project.project, count, *columns, view, (records, corner, mask, depth, visible, found), _counter())
+    compiled.run(project.project, count, *columns, view, (records, spots, visible, found), _counter())
 
-    keys, sorted_rows = np.empty((2, n), np.int32), np.empty((2, n), np.int32)
+    buffer, rows = np.empty(n, np.uint64), np.empty(n, np.int32)
     tally = np.zeros((order.DIGITS, order.BUCKETS), np.int64)
-    half, seen = compiled.run_alone(order.depth_order, depth, visible, found, project.CHUNK, keys, sorted_rows, tally)
-    rows = sorted_rows[half, :seen]
+    rows = rows[: compiled.run_alone(order.depth_order, visible, found, project.CHUNK, buffer, rows, tally)]
     wide, high = (-(-side // project.TILE) for side in size)
     places = np.zeros((count, wide * high), np.int64)
-    compiled.run(order.count_tiles, count, rows, records, corner, mask, view, wide, places)
+    compiled.run(order.count_tiles, count, rows, records, spots, view, wide, places)
     first = np.empty(wide * high + 1, np.int64)
     total = compiled.run_alone(order.starts, places, first)
     if total > MAX_ENTRIES and high > 1:
         return None
     entries = np.empty(total, np.int32)
-    compiled.run(order.fill_tiles, count, rows, records, corner, mask, view, wide, places, entries)
+    compiled.run(order.fill_tiles, count, rows, records, spots, view, wide, places, entries)
     return Bins(view, records, first, entries)
 
 

@@ -16,7 +16,7 @@ from .project import RECORD, TILE, Array
 from .simd import REST, STATE, WINNER, blend_block, store_block, weigh_block
 from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, copy_record, prefetch, slots_touching
 
-PREFETCH = 16  # entries between the prefetch of a record and its use
+PREFETCH = CHUNK  # entries between the prefetch of a record and its use: records arrive while a chunk is blended
 
 f4 = np.float32
 ZERO, ONE = f4(0), f4(1)
@@ -49,7 +49,7 @@ def draw(worker, workers, first, entries, records, size, limits, background, out
         start, stop = first[tile], first[tile + 1]
         while start < stop:
             count = min(CHUNK, stop - start)
-            _gather(entries, start, count, stop, records, chunk, touched, f4(x), f4(y))
+            _gather(entries, start, count, records, chunk, touched, f4(x), f4(y))
             start = stop if _draw_chunk(chunk, touched, state, alive, limits) else start + count
         _finish(state, x, y, size, background, out)
 
@@ -79,10 +79,10 @@ def _begin(state, alive, stride, width, height):  # type: ignore[no-untyped-def]
 
 
 @helper
-def _gather(entries, start, count, stop, records, chunk, touched, x, y):  # type: ignore[no-untyped-def]
+def _gather(entries, start, count, records, chunk, touched, x, y):  # type: ignore[no-untyped-def]
     """Copy `count` records into the chunk and compute the blocks each touches."""
     for slot in range(count):
-        prefetch(records, entries[min(start + slot + PREFETCH, stop - 1)])
+        prefetch(records, entries[min(start + slot + PREFETCH, entries.shape[0] - 1)])
         touched[slot] = copy_record(records, entries[start + slot], chunk, slot, x, y)
     for slot in range(count, CHUNK):
         touched[slot] = 0
@@ -148,7 +148,7 @@ def weigh(worker, workers, first, entries, records, size, limits, share, scratch
         start, stop, finished = first[tile], first[tile + 1], False
         while start < stop and not finished:
             count = min(CHUNK, stop - start)
-            _gather(entries, start, count, stop, records, chunk, touched, f4(x), f4(y))
+            _gather(entries, start, count, records, chunk, touched, f4(x), f4(y))
             weights[:] = ZERO
             finished = _weigh_chunk(chunk, touched, state, alive, weights, limits)
             for slot in range(count):

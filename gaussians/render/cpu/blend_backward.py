@@ -59,7 +59,7 @@ def draw_backward(worker, workers, first, entries, records, size, limits, pictur
         while start < stop:
             count = min(CHUNK, stop - start)
             if alive != 0:
-                _gather(entries, start, count, stop, records, chunk, touched, f4(x), f4(y))
+                _gather(entries, start, count, records, chunk, touched, f4(x), f4(y))
             for slot in range(count):
                 reached = touched[slot] & alive
                 if reached != 0:

@@ -8,39 +8,64 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import helper, kernel
-from .project import EXTREME, L3, LIMIT, MASK_SIDE, REACH_Y, SLOPE, WIDTH, Ellipse, X, Y, tile_rows, tile_span
-from .touch import lowest_bit
+from .project import (
+    CORNER_Y,
+    EXTREME,
+    KEY,
+    L3,
+    LIMIT,
+    MASK_SIDE,
+    REACH_Y,
+    SLOPE,
+    WIDTH,
+    Ellipse,
+    X,
+    Y,
+    tile_rows,
+    tile_span,
+)
+from .touch import lowest_bit, prefetch
 
 DIGIT = 11  # bits of a radix-sort digit: 2048 counters stay in the first-level cache
 BUCKETS = 1 << DIGIT
+AHEAD = 32  # rows between the prefetch of a footprint's tiles and their use
 DIGITS = 3  # 3 x 11 bits hold the 31 of a positive float
 
 
 @kernel
-def depth_order(depth, visible, found, chunk, keys, rows, tally):  # type: ignore[no-untyped-def]
-    """Sort rows by depth (LSD radix sort); returns which half of `rows` holds the result and how many rows there are.
+def depth_order(visible, found, chunk, buffer, rows, tally):  # type: ignore[no-untyped-def]
+    """Sort the visible rows by depth into `rows` (LSD radix sort); returns how many there are.
 
-    `visible` `[N]` holds rows packed to the front of chunks of `chunk`, `found[c]` of them in chunk c. `keys` and
-    `rows` are `[2, N]` int32, `tally` `[DIGITS, BUCKETS]` int64 holding zeros.
+    `visible` `[N]` holds depth and row, packed to the front of chunks of `chunk`, `found[c]` of them in chunk c; it is
+    overwritten. `buffer` is `[N]` uint64, `rows` `[N]` int32, `tally` `[DIGITS, BUCKETS]` int64 holding zeros.
     """
     count = 0
     for c in range(found.shape[0]):
         for i in range(c * chunk, c * chunk + found[c]):
-            key = depth[visible[i]]
-            keys[0, count], rows[0, count] = key, visible[i]
+            value = visible[i]
+            buffer[count] = value
             count += 1
             for digit in range(DIGITS):
-                tally[digit, (key >> (DIGIT * digit)) & (BUCKETS - 1)] += 1
-    source = 0
+                tally[digit, _digit(value, digit)] += 1
+    source, target = buffer, visible
     for digit in range(DIGITS):
-        if _scatter(tally[digit], DIGIT * digit, count, keys, rows, source):
-            source = 1 - source
-    return source, count
+        if _offsets(tally[digit], count):
+            _scatter(tally[digit], digit, count, source, target)
+            source, target = target, source
+    for i in range(count):
+        rows[i] = np.int32(source[i])
+    return count
 
 
 @helper
-def _scatter(tally, shift, count, keys, rows, source):  # type: ignore[no-untyped-def]
-    """One stable pass by the digit at `shift`; returns False and moves nothing if all keys share that digit."""
+def _digit(value, digit):  # type: ignore[no-untyped-def]
+    """A digit of the depth, the lowest first."""
+    return np.int64(value >> (KEY + np.uint64(DIGIT * digit))) & (BUCKETS - 1)
+
+
+@helper
+def _offsets(tally, count):  # type: ignore[no-untyped-def]
+    """Turn the counts of a digit into where each bucket begins; False if all of `count` values share that digit."""
     total = 0
     for bucket in range(BUCKETS):
         size = tally[bucket]
@@ -48,15 +73,18 @@ def _scatter(tally, shift, count, keys, rows, source):  # type: ignore[no-untype
             return False
         tally[bucket] = total
         total += size
-    target = 1 - source
-    for i in range(count):
-        key = keys[source, i]
-        bucket = (key >> shift) & (BUCKETS - 1)
-        place = tally[bucket]
-        tally[bucket] = place + 1
-        keys[target, place] = key
-        rows[target, place] = rows[source, i]
     return True
+
+
+@helper
+def _scatter(places, digit, count, source, target):  # type: ignore[no-untyped-def]
+    """One stable pass from `source` to `target` by a digit whose buckets begin at `places`."""
+    for i in range(count):
+        value = source[i]
+        bucket = _digit(value, digit)
+        place = places[bucket]
+        places[bucket] = place + 1
+        target[place] = value
 
 
 @helper
@@ -68,13 +96,20 @@ def _ellipse(records, n):  # type: ignore[no-untyped-def]
     )  # fmt: skip
 
 
+@helper
+def _first_tile(corner, tiles_wide):  # type: ignore[no-untyped-def]
+    """Index of the tile at a footprint's corner."""
+    return np.int64(corner >> CORNER_Y) * tiles_wide + np.int64(corner & np.uint64(0xFFFF))
+
+
 @kernel
-def count_tiles(worker, workers, order, records, corner, mask, view, tiles_wide, tally):  # type: ignore[no-untyped-def]
+def count_tiles(worker, workers, order, records, spots, view, tiles_wide, tally):  # type: ignore[no-untyped-def]
     """Add this worker's share of `order` to `tally[worker]` `[tiles]` int32, which holds zeros."""
     mine = tally[worker]
     for k in range(order.shape[0] * worker // workers, order.shape[0] * (worker + 1) // workers):
+        prefetch(spots, order[min(k + AHEAD, order.shape[0] - 1)])
         n = order[k]
-        touched = mask[n]
+        touched = spots[n, 0]
         if touched == 0:
             ellipse = _ellipse(records, n)
             top, bottom = tile_rows(ellipse, view.height)
@@ -82,7 +117,7 @@ def count_tiles(worker, workers, order, records, corner, mask, view, tiles_wide,
                 first, last = tile_span(ellipse, row, view.width)
                 for column in range(first, last):
                     mine[row * tiles_wide + column] += 1
-        base = np.int64(corner[n] >> 16) * tiles_wide + np.int64(corner[n] & 0xFFFF)
+        base = _first_tile(spots[n, 1], tiles_wide)
         while touched != 0:
             bit = lowest_bit(touched)
             touched &= touched - np.uint64(1)
@@ -104,12 +139,13 @@ def starts(tally, first):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def fill_tiles(worker, workers, order, records, corner, mask, view, tiles_wide, places, entries):  # type: ignore[no-untyped-def]
+def fill_tiles(worker, workers, order, records, spots, view, tiles_wide, places, entries):  # type: ignore[no-untyped-def]
     """Write rows into `entries`, tile by tile and nearest first; visits tiles in the same order as `count_tiles`."""
     mine = places[worker]
     for k in range(order.shape[0] * worker // workers, order.shape[0] * (worker + 1) // workers):
+        prefetch(spots, order[min(k + AHEAD, order.shape[0] - 1)])
         n = order[k]
-        touched = mask[n]
+        touched = spots[n, 0]
         if touched == 0:
             ellipse = _ellipse(records, n)
             top, bottom = tile_rows(ellipse, view.height)
@@ -119,7 +155,7 @@ def fill_tiles(worker, workers, order, records, corner, mask, view, tiles_wide, 
                     tile = row * tiles_wide + column
                     entries[mine[tile]] = n
                     mine[tile] += 1
-        base = np.int64(corner[n] >> 16) * tiles_wide + np.int64(corner[n] & 0xFFFF)
+        base = _first_tile(spots[n, 1], tiles_wide)
         while touched != 0:
             bit = lowest_bit(touched)
             touched &= touched - np.uint64(1)

@@ -43,6 +43,8 @@ QUARTER, EIGHTH, PER_TILE = f4(0.25), f4(0.125), f4(1 / TILE)
 HUGE, TINY = f4(3e38), f4(1e-30)
 SLACK = f4(1.01)  # safety factor, larger than any rounding error
 BIT = np.uint64(1)
+CORNER_Y = np.uint64(16)  # where a corner's row begins; its column is below
+KEY = np.uint64(32)  # where the bits of the depth begin; the row is below
 
 
 class View(NamedTuple):
@@ -107,16 +109,24 @@ def make_view(camera: Camera, near: float, top: int, bottom: int) -> View:
     return View(*(np.float32(number) for number in numbers))
 
 
+def make_records(count: int) -> Array:
+    """Allocate records `[count, 16]` float32, each on one cache line: numpy aligns large arrays to 16 bytes."""
+    line = RECORD * np.dtype(np.float32).itemsize
+    room = np.empty(count * RECORD + RECORD, np.float32)
+    start = -room.ctypes.data % line // room.itemsize
+    return room[start : start + count * RECORD].reshape(count, RECORD)
+
+
 @kernel
 def project(worker, workers, means, quats, scales, opacities, sh, group, view, out, counter):  # type: ignore[no-untyped-def]
-    """Project every row; all of `out` is written at the row's index.
+    """Project every row; the records and spots of visible rows are written at the row's index.
 
-    `out` is: records `[N, 16]` float32; corner `[N]` uint32, the first tile (x | y << 16); mask `[N]` uint64, the tiles
-    touched counted from the corner, 0 if they are too many for a mask; depth `[N]` int32, bits of the positive float;
-    visible `[N]` int32, the visible rows, packed to the front of each chunk; found `[chunks]` int32, their number.
+    `out` is: records `[N, 16]` float32; spots `[N, 2]` uint64, the tiles touched as a mask from the corner on (0 if
+    they are too many) and the corner, the first tile (x | y << 16); visible `[N]` uint64, the visible rows below
+    the bits of their depths (a positive float), packed to the front of each chunk; found `[chunks]` int32, how many.
     `group` is `[N]` int32, `counter` `[1]` int64 holding 0.
     """
-    records, corner, mask, depth, visible, found = out
+    records, spots, visible, found = out
     bits = records.view(np.int32)
     rows = means.shape[0]
     while True:
@@ -148,10 +158,9 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
                 continue
             _record(records, n, ellipse, view.q_max, z)
             bits[n, GROUP] = group[n]
-            corner[n] = np.uint32(left) | (np.uint32(top) << np.uint32(16))
-            mask[n] = touched
-            depth[n] = bits[n, DEPTH]
-            visible[fill] = n
+            spots[n, 0] = touched
+            spots[n, 1] = np.uint64(left) | (np.uint64(top) << CORNER_Y)
+            visible[fill] = (np.uint64(bits[n, DEPTH]) << KEY) | np.uint64(n)
             fill += 1
         found[chunk] = fill - start
 

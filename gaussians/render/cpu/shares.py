@@ -67,7 +67,7 @@ def split(worker, workers, first, entries, records, size, limits, plan, share, s
         labels, to = count[tile], place[tile]
         while start < stop and not finished:
             taken = min(CHUNK, stop - start)
-            _gather(entries, start, taken, stop, records, chunk, touched, f4(x), f4(y))
+            _gather(entries, start, taken, records, chunk, touched, f4(x), f4(y))
             if labels == 1:
                 weights[:] = ZERO
                 finished = _weigh_chunk(chunk, touched, state, alive, weights, limits)

@@ -103,13 +103,14 @@ def lowest_bit(typing_context: Any, value: Any) -> Any:
 
 
 @intrinsic
-def prefetch(typing_context: Any, records: Any, row: Any) -> Any:
-    """Prefetch a record's cache line."""
+def prefetch(typing_context: Any, rows: Any, row: Any) -> Any:
+    """Prefetch the cache line in which a row of the contiguous array `rows` `[N, M]` begins."""
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
         v = Lanes(builder)
-        base = pointer_to(context, builder, signature, arguments, 0)
-        pointer = v.at(base, builder.mul(arguments[1], ir.Constant(I64, RECORD)))
+        array = context.make_array(signature.args[0])(context, builder, arguments[0])
+        width = cgutils.unpack_tuple(builder, array.shape)[1]  # type: ignore[no-untyped-call]
+        pointer = v.at(array.data, builder.mul(arguments[1], width))
         byte = ir.IntType(8).as_pointer()
         kind = ir.FunctionType(ir.VoidType(), [byte, I32, I32, I32])
         function = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")  # type: ignore[no-untyped-call]
@@ -117,4 +118,4 @@ def prefetch(typing_context: Any, records: Any, row: Any) -> Any:
         builder.call(function, [builder.bitcast(pointer, byte), read, keep, data])
         return context.get_dummy_value()
 
-    return types.void(records, types.int64), generate
+    return types.void(rows, types.int64), generate
