@@ -100,7 +100,8 @@ def most_even(rgb: F64, known: Mask, footprint: Mask, zone: Mask, shade: Blocked
 
 def _levelled(rgb: F64, known: Mask, around: Mask, shadow: Shadow) -> Shadow:
     """The shadow with its ratio corrected by what it leaves too bright or too dark, where that makes the surface more
-    even; nothing becomes brighter than the surface is around the shadow.
+    even; nothing becomes brighter than the surface is around the shadow. What differs by more than a residual may, on
+    average, is another surface, and stays.
 
     Args:
         around: `[H, W]`, the shadow and what it is compared with.
@@ -111,9 +112,11 @@ def _levelled(rgb: F64, known: Mask, around: Mask, shadow: Shadow) -> Shadow:
         return shadow
     picture = rgb / shadow.ratio[..., None]
     clear = continued_far(picture, known & ~inside, inside)
-    rest = np.clip(_ratio(picture, clear, inside, _SMOOTH), 1 / _CORRECTED, _CORRECTED)
+    rest = _ratio(picture, clear, inside, _SMOOTH)
+    other = float((np.log(rest[inside]) ** 2).mean()) > np.log(_CORRECTED) ** 2
+    rest = np.clip(rest, 1 / _CORRECTED, _CORRECTED)
     ratio = np.where(inside, np.minimum(shadow.ratio * rest, 1.0), shadow.ratio)
-    if _unevenness(rgb, around, ratio) >= _EVENER * _unevenness(rgb, around, shadow.ratio):
+    if other or _unevenness(rgb, around, ratio) >= _EVENER * _unevenness(rgb, around, shadow.ratio):
         ratio = shadow.ratio
     bright = _GLOW * max(float(np.quantile(rgb[outside].mean(axis=1), _BRIGHT)), 1e-3)
     ratio = np.where(inside, np.maximum(ratio, np.minimum(rgb.mean(axis=2) / bright, 1.0)), ratio)
