@@ -42,7 +42,7 @@ ZERO, HALF, ONE, TWO, FOUR, SIXTEEN = (f4(v) for v in (0, 0.5, 1, 2, 4, 16))
 QUARTER, EIGHTH, PER_TILE = f4(0.25), f4(0.125), f4(1 / TILE)
 HUGE, TINY = f4(3e38), f4(1e-30)
 SLACK = f4(1.01)  # safety factor, larger than any rounding error
-BIT = np.uint64(1)
+BIT, EACH_ROW = np.uint64(1), np.uint64(0x0101010101010101)  # of a mask: its first tile, the first of each row
 CORNER_Y = np.uint64(16)  # where a corner's row begins; its column is below
 KEY = np.uint64(32)  # where the bits of the depth begin; the row is below
 
@@ -262,12 +262,12 @@ def _tiles(e, reach_x, view):  # type: ignore[no-untyped-def]
     right = int(min(e.x + reach_x, view.width - HALF) * PER_TILE) + 1
     wide, high = right - left, bottom - top
     mask = np.uint64(0)
-    if wide <= MASK_SIDE and high <= MASK_SIDE:
+    if wide * high <= SMALL:
+        mask = ((BIT << np.uint64(wide)) - BIT) * (EACH_ROW & ((BIT << np.uint64(high * MASK_SIDE)) - BIT))
+    elif wide <= MASK_SIDE and high <= MASK_SIDE:
         for row in range(top, bottom):
-            first, last = left, right
-            if wide * high > SMALL:
-                first, last = tile_span(e, row, view.width)
-                first, last = max(first, left), min(last, right)
+            first, last = tile_span(e, row, view.width)
+            first, last = max(first, left), min(last, right)
             run = (BIT << np.uint64(max(last - first, 0))) - BIT
             mask |= run << np.uint64((row - top) * MASK_SIDE + max(first - left, 0))
     return left, top, mask, mask != np.uint64(0) or wide > MASK_SIDE or high > MASK_SIDE
