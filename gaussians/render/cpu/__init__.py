@@ -143,7 +143,7 @@ def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, botto
     tally = np.zeros((order.DIGITS, order.BUCKETS), np.int64)
     rows = rows[: compiled.run_alone(order.depth_order, visible, found, project.CHUNK, buffer, rows, tally)]
     wide, high = (-(-side // project.TILE) for side in size)
-    places = np.zeros((count, wide * high), np.int64)
+    places = np.zeros((count, wide * high + wide + 2), np.int64)
     compiled.run(order.count_tiles, count, rows, records, spots, view, wide, places)
     first = np.empty(wide * high + 1, np.int64)
     total = compiled.run_alone(order.starts, places, first)

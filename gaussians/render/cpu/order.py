@@ -29,6 +29,8 @@ from .touch import lowest_bit, prefetch
 DIGIT = 11  # bits of a radix-sort digit: 2048 counters stay in the first-level cache
 BUCKETS = 1 << DIGIT
 AHEAD = 32  # rows between the prefetch of a footprint's tiles and their use
+# Masks of at most 2x2 tiles are counted without a branch on each tile: processors cannot predict it.
+SQUARE = np.uint64(0b11 | 0b11 << MASK_SIDE)
 DIGITS = 3  # 3 x 11 bits hold the 31 of a positive float
 
 
@@ -102,6 +104,12 @@ def _first_tile(corner, tiles_wide):  # type: ignore[no-untyped-def]
     return np.int64(corner >> CORNER_Y) * tiles_wide + np.int64(corner & np.uint64(0xFFFF))
 
 
+@helper
+def _bit(mask, place):  # type: ignore[no-untyped-def]
+    """A bit of a mask, 0 or 1."""
+    return np.int64(mask >> np.uint64(place)) & 1
+
+
 @kernel
 def count_tiles(worker, workers, order, records, spots, view, tiles_wide, tally):  # type: ignore[no-untyped-def]
     """Add this worker's share of `order` to `tally[worker]` `[tiles]` int32, which holds zeros."""
@@ -118,6 +126,13 @@ def count_tiles(worker, workers, order, records, spots, view, tiles_wide, tally)
                 for column in range(first, last):
                     mine[row * tiles_wide + column] += 1
         base = _first_tile(spots[n, 1], tiles_wide)
+        if touched & ~SQUARE == 0:
+            below = base + tiles_wide
+            mine[base] += _bit(touched, 0)
+            mine[base + 1] += _bit(touched, 1)
+            mine[below] += _bit(touched, MASK_SIDE)
+            mine[below + 1] += _bit(touched, MASK_SIDE + 1)
+            continue
         while touched != 0:
             bit = lowest_bit(touched)
             touched &= touched - np.uint64(1)
@@ -128,13 +143,13 @@ def count_tiles(worker, workers, order, records, spots, view, tiles_wide, tally)
 def starts(tally, first):  # type: ignore[no-untyped-def]
     """Turn counts `[workers, tiles]` into where each worker writes; fill `first` `[tiles + 1]`; returns the total."""
     total = 0
-    for tile in range(tally.shape[1]):
+    for tile in range(first.shape[0] - 1):
         first[tile] = total
         for worker in range(tally.shape[0]):
             size = tally[worker, tile]
             tally[worker, tile] = total
             total += size
-    first[tally.shape[1]] = total
+    first[first.shape[0] - 1] = total
     return total
 
 
