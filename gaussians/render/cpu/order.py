@@ -29,9 +29,9 @@ from .touch import lowest_bit, prefetch
 DIGIT = 11  # bits of a radix-sort digit: 2048 counters stay in the first-level cache
 BUCKETS = 1 << DIGIT
 AHEAD = 32  # rows between the prefetch of a footprint's tiles and their use
+DIGITS = 3  # 3 x 11 bits hold the 31 of a positive float
 # Masks of at most 2x2 tiles are counted without a branch on each tile: processors cannot predict it.
 SQUARE = np.uint64(0b11 | 0b11 << MASK_SIDE)
-DIGITS = 3  # 3 x 11 bits hold the 31 of a positive float
 
 
 @kernel
@@ -112,7 +112,10 @@ def _bit(mask, place):  # type: ignore[no-untyped-def]
 
 @kernel
 def count_tiles(worker, workers, order, records, spots, view, tiles_wide, tally):  # type: ignore[no-untyped-def]
-    """Add this worker's share of `order` to `tally[worker]` `[tiles]` int32, which holds zeros."""
+    """Add this worker's share of `order` to `tally[worker]`, which holds zeros.
+
+    `tally` is `[workers, tiles + tiles_wide + 2]` int64: 2x2 tiles from the last one on end in its margin.
+    """
     mine = tally[worker]
     for k in range(order.shape[0] * worker // workers, order.shape[0] * (worker + 1) // workers):
         prefetch(spots, order[min(k + AHEAD, order.shape[0] - 1)])
@@ -141,7 +144,7 @@ def count_tiles(worker, workers, order, records, spots, view, tiles_wide, tally)
 
 @kernel
 def starts(tally, first):  # type: ignore[no-untyped-def]
-    """Turn counts `[workers, tiles]` into where each worker writes; fill `first` `[tiles + 1]`; returns the total."""
+    """Turn counts from `count_tiles` into where each worker writes; fill `first` `[tiles + 1]`; returns the total."""
     total = 0
     for tile in range(first.shape[0] - 1):
         first[tile] = total

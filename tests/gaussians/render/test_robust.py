@@ -191,6 +191,22 @@ def test_exponential_is_accurate_to_three_millionths() -> None:
     assert np.abs(value / np.exp(-8 * q.astype(np.float64)) - 1).max() < 3e-6
 
 
+@pytest.mark.parametrize("count", [0, 1, 7, 5000])
+def test_each_record_lies_on_one_cache_line(count: int) -> None:
+    records = project.make_records(count)
+    assert records.shape == (count, project.RECORD) and records.flags.c_contiguous
+    assert records.ctypes.data % 64 == 0 or count == 0
+
+
+def test_footprints_at_the_last_tile_are_counted_in_it() -> None:
+    """Each image ends with the tile that the dots lie in: the places beside and below it belong to no tile."""
+    cloud = cloud_of([blob((x / 8, 0, z / 8), 0.01) for x in range(-8, 9) for z in range(-6, 7)])
+    for width, height in ((16, 16), (17, 17), (32, 16), (16, 32), (48, 48)):
+        camera = Camera.look_at([0, -3, 0], [0, 0, 0], [0, 0, 1], width, height)
+        fast, slow = (render(cloud, camera, backend=name) for name in ("cpu", "reference"))
+        assert float((fast.alpha - slow.alpha).abs().max()) < 1e-4  # float32 rounding of sums over 221 dots
+
+
 def test_machine_code_is_kept_under_the_name_of_all_sources() -> None:
     folder = Path(project.__file__).parent
     assert compiled.fingerprint(folder) in project.project.py_func.__qualname__
