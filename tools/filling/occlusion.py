@@ -9,7 +9,7 @@ shares count directions more that lean to one side, for light that comes from th
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import ndimage
@@ -40,6 +40,8 @@ class Blocked:
         touching: `[H, W]`, cells that its lowest layer fills.
         shares: `[LOBES, H, W]` in [0, 1]; the first of an even sky, the others of one that leans to a side.
         reach: how far beyond the footprint it goes, scene units.
+        filled: `[L, H, W]`, cells that each layer of the thing fills.
+        edges: `[L]`, height at which each layer ends, scene units.
     """
 
     chart: Chart
@@ -47,6 +49,35 @@ class Blocked:
     touching: Mask
     shares: F64
     reach: float
+    filled: Mask
+    edges: F64
+
+    def from_lamp(self, toward: F64, soft: float, rays: int = 24) -> F64:
+        """`[H, W]` the share of the light of a wide lamp that does not arrive.
+
+        Args:
+            toward: `[3]` towards its middle, along the chart's axes and its normal.
+            soft: tangent of half the angle that it fills.
+            rays: to it, spread evenly over its disc.
+        """
+        hit = np.zeros(self.chart.shape)
+        k = np.arange(rays)
+        radius, turn = soft * np.sqrt((k + 0.5) / rays), np.pi * (1 + 5**0.5) * k
+        slope = toward[:2] / max(float(toward[2]), 1e-6)
+        ways = slope + np.linalg.norm([*slope, 1.0]) * radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        low = np.concatenate([[0.0], self.edges[:-1]])
+        for ray, way in enumerate(ways / self.chart.cell):
+            # Each ray meets the layers at other heights, so that they leave no steps in the shadow.
+            heights = low + (ray * 0.618 % 1) * (self.edges - low)
+            one = np.zeros(self.chart.shape, bool)
+            for layer, height in zip(self.filled, heights, strict=True):
+                one |= moved(layer, round(float(height * way[1])), round(float(height * way[0])))
+            hit += one
+        return np.asarray(ndimage.gaussian_filter(hit / rays, _SOFT) * self._faded())
+
+    def _faded(self) -> F64:
+        away = ndimage.distance_transform_edt(~self.footprint) * self.chart.cell
+        return np.asarray(np.clip((self.reach - away) / max(_FADES * self.reach, 1e-12), 0.0, 1.0))
 
 
 def reach_of(extent: float, height: float) -> float:
@@ -62,7 +93,8 @@ def reach_of(extent: float, height: float) -> float:
 def blocked(points: F64, chart: Chart, reach: float) -> Blocked:
     """The light that points `[M, 3]` of a thing (world frame) take from a surface below them."""
     local = chart.plane.local(points)
-    layers, heights = _layers(local, chart)
+    layers, edges = _layers(local, chart)
+    heights = (np.concatenate([[0.0], edges[:-1]]) + edges) / 2
     footprint = ndimage.binary_closing(np.pad(layers.any(axis=0), 2), iterations=2)[2:-2, 2:-2]
     shares = np.zeros((LOBES, *chart.shape))
     weights = np.zeros(LOBES)
@@ -74,9 +106,8 @@ def blocked(points: F64, chart: Chart, reach: float) -> Blocked:
         shares += lean[:, None, None] * hit
         weights += lean
     shares = ndimage.gaussian_filter(shares / weights[:, None, None], (0, _SOFT, _SOFT))
-    away = ndimage.distance_transform_edt(~footprint) * chart.cell
-    fade = np.clip((reach - away) / max(_FADES * reach, 1e-12), 0.0, 1.0)
-    return Blocked(chart, footprint, layers[0], shares * fade, reach)
+    found = Blocked(chart, footprint, layers[0], shares, reach, layers, edges)
+    return replace(found, shares=shares * found._faded())
 
 
 def depth_of(share: F64) -> F64:
@@ -100,8 +131,8 @@ def _directions() -> tuple[tuple[float, float, F64], ...]:
 
 
 def _layers(local: F64, chart: Chart) -> tuple[Mask, F64]:
-    """`[layers, H, W]` cells that a thing fills in each layer, and the layers' heights; what its sides enclose is
-    filled."""
+    """`[layers, H, W]` cells that a thing fills in each layer, and the height at which each ends; what its sides
+    enclose is filled."""
     h, w = chart.shape
     top = max(float(local[:, 2].max()), 1e-9)
     edges = top * (np.arange(1, _LAYERS + 1) / _LAYERS) ** _UNEVEN
@@ -114,5 +145,4 @@ def _layers(local: F64, chart: Chart) -> tuple[Mask, F64]:
         if filled[k].any():
             closed = ndimage.binary_closing(np.pad(filled[k], 2), iterations=1)[2:-2, 2:-2]
             filled[k] = ndimage.binary_fill_holes(closed | filled[k])
-    low = np.concatenate([[0.0], edges[:-1]])
-    return filled, (low + edges) / 2
+    return filled, edges

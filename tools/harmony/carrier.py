@@ -19,6 +19,7 @@ from ..filling.charts import Chart
 from ..filling.fill import spread
 from ..filling.occlusion import Blocked, blocked, reach_of
 from ..filling.planes import Mask, Plane
+from .falling import taken
 
 F64 = NDArray[np.float64]
 _CELLS = 72  # along the longer side of a chart
@@ -42,36 +43,36 @@ class Carried:
         shade: the light that it takes from the surface.
         rows: `[M]` the Gaussians of the surface around it.
         level: whether the surface is level, else it is a wall.
+        table: `[H, W]` the share of the scene's light that it takes.
     """
 
     shade: Blocked
     rows: Tensor
     level: bool
+    table: F64
 
-    def share(self, cloud: GaussianCloud, lobes: F64 | None = None) -> F64:
-        """`[M]` the light that the thing takes from each of the surface's Gaussians, averaged over what it covers.
+    def share(self, cloud: GaussianCloud) -> F64:
+        """`[M]` the light that the thing takes from each of the surface's Gaussians, averaged over what it covers."""
+        return self.share_of(cloud[self.rows])
 
-        Args:
-            lobes: `[LOBES]` weights of `shade.shares`; None: that of an even sky.
-        """
-        return self.share_of(cloud[self.rows], lobes)
-
-    def share_of(self, cloud: GaussianCloud, lobes: F64 | None = None) -> F64:
+    def share_of(self, cloud: GaussianCloud) -> F64:
         """`[M]` likewise, of other Gaussians on the surface: all of a cloud."""
-        return _averaged(self.shade, self._table(lobes), cloud)
+        return _averaged(self.shade, self.table, cloud)
 
-    def at(self, points: Tensor, lobes: F64 | None = None) -> F64:
+    def at(self, points: Tensor) -> F64:
         """`[M]` likewise, at points `[M, 3]` (world)."""
         chart = self.shade.chart
         at = (chart.plane.local(points.to(torch.float64).cpu().numpy())[:, :2] - chart.low) / chart.cell - 0.5
-        return np.asarray(ndimage.map_coordinates(self._table(lobes), at[:, ::-1].T, order=1, mode="nearest"))
-
-    def _table(self, lobes: F64 | None) -> F64:
-        return np.asarray(self.shade.shares[0] if lobes is None else np.tensordot(lobes, self.shade.shares, 1))
+        return np.asarray(ndimage.map_coordinates(self.table, at[:, ::-1].T, order=1, mode="nearest"))
 
 
 def carried(
-    scene: Scene, thing: Tensor, without: Tensor | None = None, most: int | None = None, layers: bool = False
+    scene: Scene,
+    thing: Tensor,
+    without: Tensor | None = None,
+    most: int | None = None,
+    layers: bool = False,
+    lit: Scene | None = None,
 ) -> Carried | None:
     """The surface that carries a thing; None if it hangs in the air, or no surface was seen there.
 
@@ -80,6 +81,7 @@ def carried(
         without: `[N]` bool, Gaussians that are no surface: other things that are put there. None: there are none.
         most: Gaussians of the surface that are wanted, about; None: all.
         layers: whether what is seen of a level surface above and below its middle is wanted too.
+        lit: the scene whose light falls there; None: this one.
     """
     cloud = scene.cloud
     points = solid_points(cloud, thing)
@@ -99,7 +101,8 @@ def carried(
         found = _on(cloud, near, plane, body, extent, layers)
         if found is not None:
             shade, rows = found
-            return Carried(shade, rows if most is None else rows[:: max(1, len(rows) // most)], level)
+            some = rows if most is None else rows[:: max(1, len(rows) // most)]
+            return Carried(shade, some, level, taken(lit or scene, shade, level))
     return None
 
 

@@ -45,15 +45,15 @@ class Finer:
     parents: Tensor
 
 
-def finer(cloud: GaussianCloud, places: list[tuple[Carried, F64]], strength: float) -> Finer | None:
+def finer(cloud: GaussianCloud, places: list[Carried], strength: float) -> Finer | None:
     """The Gaussians that are too coarse for the shadows of things; None if there are none.
 
     Args:
-        places: what carries each thing, and the weights of its light's lobes.
+        places: what carries each thing.
     """
     counts = torch.ones(len(cloud), 2, dtype=torch.int64)
-    for place, lobes in places:
-        rows, wanted = _wanted(cloud, place, lobes, strength)
+    for place in places:
+        rows, wanted = _wanted(cloud, place, strength)
         counts[rows] = torch.maximum(counts[rows], wanted)
     split = (counts.amax(dim=1) > 1).nonzero().squeeze(1)
     if not len(split):
@@ -62,7 +62,7 @@ def finer(cloud: GaussianCloud, places: list[tuple[Carried, F64]], strength: flo
     return Finer(split, children, split[parents])
 
 
-def _wanted(cloud: GaussianCloud, place: Carried, lobes: F64, strength: float) -> tuple[Tensor, Tensor]:
+def _wanted(cloud: GaussianCloud, place: Carried, strength: float) -> tuple[Tensor, Tensor]:
     """Rows to be split, and `[M, 2]` into how many along their longest and their second axis."""
     least = _CELLS * place.shade.chart.cell
     rows = place.rows.cpu()
@@ -71,7 +71,7 @@ def _wanted(cloud: GaussianCloud, place: Carried, lobes: F64, strength: float) -
     rows, sides, order = rows[coarse], sides[coarse], order[coarse]
     if not len(rows):
         return rows, torch.ones(0, 2, dtype=torch.int64)
-    varies = torch.from_numpy(_varies(cloud, rows, order, place, lobes, strength) > _VARIES)
+    varies = torch.from_numpy(_varies(cloud, rows, order, place, strength) > _VARIES)
     rows, sides = rows[varies], sides[varies]
     opacities = cloud.opacities[rows]
     counts = torch.ones(len(rows), 2, dtype=torch.int64)
@@ -84,19 +84,19 @@ def _wanted(cloud: GaussianCloud, place: Carried, lobes: F64, strength: float) -
 
 
 def _varies(
-    cloud: GaussianCloud, rows: Tensor, order: Tensor, place: Carried, lobes: F64, strength: float
+    cloud: GaussianCloud, rows: Tensor, order: Tensor, place: Carried, strength: float
 ) -> F64:  # fmt: skip
     """`[M]` by how much the ratio of a shadow's colours varies over each Gaussian."""
     axes = to_matrix(cloud.quats[rows])
     means = cloud.means[rows]
-    found = [_ratio(place, means, lobes, strength)]
+    found = [_ratio(place, means, strength)]
     for k in (0, 1):
         along = axes.gather(2, order[:, k, None, None].expand(-1, 3, 1)).squeeze(2)
         side = _AT * cloud.scales[rows].gather(1, order[:, k, None])
-        found += [_ratio(place, means + sign * side * along, lobes, strength) for sign in (-1.0, 1.0)]
+        found += [_ratio(place, means + sign * side * along, strength) for sign in (-1.0, 1.0)]
     table = np.stack(found)
     return np.asarray(table.max(axis=0) - table.min(axis=0))
 
 
-def _ratio(place: Carried, points: Tensor, lobes: F64, strength: float) -> F64:
-    return np.exp(-strength * depth_of(place.at(points, lobes)))
+def _ratio(place: Carried, points: Tensor, strength: float) -> F64:
+    return np.exp(-strength * depth_of(place.at(points)))

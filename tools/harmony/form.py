@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...gaussians.assets.modeling.light import Occupancy, occupancy
+from .falling import lamp_of
 
 F64 = NDArray[np.float64]
 GAMMA = 1 / 2.2  # display value over linear light
@@ -26,11 +27,9 @@ _STEPS = (1.5, 2.6, 4.2, 6.8)  # cells along a cone
 _THICK = 0.65  # how much of a cone a filled cell blocks
 _OFF = 1.0  # cells from the surface at which cones begin
 _HORIZON = 0.55  # radiance of the horizon, of that of the zenith
-_LAMP = 0.8  # irradiance of a lamp over that of an unblocked sky
 _LAMP_STEPS, _PAST = (1.0, 2.2, 3.8, 6.0, 9.0), 1.9  # cells along its rays, and from the surface at which they begin
+_LAMP = 1.0  # irradiance of the lamp over that of an unblocked sky
 _FOOT, _UNDER = 0.22, 0.8  # of a thing's extent: height in which the support is dark for it, and by how much
-_LEANS = 2.5  # by how much the lamp stands lower than the slope tells, which is flattened by noise
-_LOWEST = 0.45  # sine of the elevation that a lamp has at least
 _DIM = 0.04  # irradiance, of that of a free level surface, that any part has at least
 
 
@@ -67,7 +66,7 @@ def form_light(points: F64, normals: F64, around: Surround) -> F64:
         normals: `[N, 3]` unit, outward.
     """
     space = occupancy(points, _ACROSS)
-    lamp = _lamp_of(around)
+    lamp = lamp_of(np.asarray(around.up), np.asarray(around.toward))
     light = np.zeros((len(points), 3))
     extent = float(np.ptp(points, axis=0).max())
     height = np.full(len(points), np.inf) if around.foot is None else points @ around.up - around.foot
@@ -86,23 +85,6 @@ def form_light(points: F64, normals: F64, around: Surround) -> F64:
     light += (_LAMP * facing * shade)[:, None]
     free = _free(around, lamp)
     return np.asarray((np.maximum(light, _DIM * free) / free) ** GAMMA)
-
-
-def _lamp_of(around: Surround) -> F64:
-    """`[3]` unit towards the lamp, which is never low."""
-    way = np.asarray(around.toward, dtype=np.float64)
-    length = float(np.linalg.norm(way))
-    if length < 1e-9:
-        return np.asarray(around.up)
-    rise = max(float(way @ around.up), 0.0)
-    way = _LEANS * (way - float(way @ around.up) * around.up) + rise * around.up
-    way = way / max(float(np.linalg.norm(way)), 1e-12)
-    rise = float(way @ around.up)
-    if rise < _LOWEST:
-        level = way - rise * around.up
-        level = level / max(float(np.linalg.norm(level)), 1e-12)
-        way = _LOWEST * around.up + np.sqrt(1 - _LOWEST**2) * level
-    return np.asarray(way)
 
 
 def _free(around: Surround, lamp: F64) -> float:

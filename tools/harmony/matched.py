@@ -18,7 +18,7 @@ from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.harmonics import SH_C0, dc_to_color
-from ...gaussians.language.field.measure import sample
+from ...gaussians.language.field.measure import Sample, sample
 from ...gaussians.rotations import to_matrix
 from ...gaussians.rows import rows_within
 from ...gaussians.scene import Scene
@@ -26,6 +26,7 @@ from ..color_map import LUMA
 from ..coloring.quantiles import quantile
 from ..coloring.scene_light import WHITE, SceneLight, scene_light
 from ..finishing.noise import fractal
+from .falling import slope_at
 from .form import Pigment, Surround, form_light
 from .shading import is_signed, lumas, normals_of, shading_of, solved
 
@@ -35,8 +36,12 @@ _AROUND = 2.5  # times the radius of a thing: its surroundings
 _FEWEST = 200  # Gaussians in them, or they are unknown
 _BRIGHT = 0.95  # quantile of their luma that white paint would have
 _BELOW, _FEW = 0.3, 20  # of its surroundings: up to which height the support shows, and the fewest Gaussians of it
-_BELIEVED, _DIMMEST = 0.6, 0.6  # exponent of what is missing there that is taken for a lack of light; the dimmest place
-_CAST, _CAST_AT_MOST = 0.2, (0.85, 1.15)  # exponent of the hue of what is around that its light has, and its bounds
+_BELIEVED, _DIMMEST = (
+    0.7,
+    0.48,
+)  # exponent of what is missing there that is taken for a lack of light; the dimmest place
+_CAST, _CAST_AT_MOST = 0.2, (0.7, 1.2)  # exponent of the hue of what is below that its light has, and its bounds
+_COOL = 0.9  # that exponent where the hue is cool: floors and ground are warm by pigment, and cool by light
 _CAST_ON_ASKED, _DIMMEST_ASKED = 0.12, 0.75  # the same of a thing whose colour was asked for
 _PAINT, _PURER = 0.15, 0.45  # purity up to which a pigment nobody asked for is kept, and what counts of more
 _WORN, _WORN_FINE = 0.09, 0.07  # by how much pigments vary over a thing, and over its details
@@ -150,17 +155,15 @@ def _surround(scene: Scene, cloud: GaussianCloud, light: SceneLight) -> Surround
     up = scene.frame.up_vector
     points = cloud.means.to(torch.float64).cpu().numpy()
     low, high = points.min(axis=0), points.max(axis=0)
-    reach = 0.5 * float((high - low).max())
     foot = float((points @ up).min())
-    near = rows_within(scene.cloud.means, low - reach, high + reach)
-    near = near[scene.cloud.means[near].to(torch.float64).cpu().numpy() @ up < foot + _BELOW * reach]
+    near = _below(scene, low, high)
     bounce = np.full(3, 0.5)
     if len(near) >= _FEW:
         taken = sample(scene.cloud, near, _SAMPLE)
         share = (taken.weight / taken.weight.sum().clamp(min=1e-12))[:, None]
         seen = (taken.rgb.clamp(0, 1) * share).sum(dim=0) / torch.tensor(light.white, dtype=torch.float64)
         bounce = seen.clamp(0.05, 0.9).cpu().numpy()
-    return Surround(up, shading_of(scene).slope, bounce, foot)
+    return Surround(up, slope_at(scene, (low + high) / 2), bounce, foot)
 
 
 def _light_at(scene: Scene, cloud: GaussianCloud, free: bool) -> SceneLight:
@@ -176,15 +179,33 @@ def _light_at(scene: Scene, cloud: GaussianCloud, free: bool) -> SceneLight:
         return light
     taken = sample(scene.cloud, near, _SAMPLE)
     level = quantile(taken.rgb.clamp(0, 1) @ torch.tensor(LUMA, dtype=torch.float64), taken.weight, _BRIGHT)
-    tint = (taken.rgb.clamp(0, 1) * taken.weight[:, None]).sum(dim=0)
-    whole = sample(scene.cloud, size=_SAMPLE)
-    usual = (whole.rgb.clamp(0, 1) * whole.weight[:, None]).sum(dim=0)
-    cast = (_luma_one(tint) / _luma_one(usual)).clamp(min=0.1) ** (_CAST if free else _CAST_ON_ASKED)
+    low, high = means.amin(dim=0).cpu().numpy(), means.amax(dim=0).cpu().numpy()
+    below = _below(scene, low, high)
+    tint = _tint(sample(scene.cloud, below, _SAMPLE) if len(below) >= _FEW else taken)
+    usual = _tint(sample(scene.cloud, size=_SAMPLE))
+    cast = (tint / usual).clamp(min=0.1)
+    cast = cast ** (_CAST_ON_ASKED if not free else _COOL if cast[2] > cast[0] else _CAST)
     cast = _luma_one(cast.clamp(*_CAST_AT_MOST))
     dimmest = _DIMMEST if free else _DIMMEST_ASKED
     dim = float(np.clip((level / (WHITE * light.level)) ** _BELIEVED, min(1.0, dimmest / light.level), 1.0))
     red, green, blue = (dim * w * float(c) for w, c in zip(light.white, cast, strict=True))
     return SceneLight((red, green, blue), light.share)
+
+
+def _tint(taken: Sample) -> Tensor:
+    """`[3]` colour of luma 1 of some surfaces, the brighter counting more: what is lit tells the hue of light."""
+    rgb = taken.rgb.clamp(0, 1)
+    luma = rgb @ torch.tensor(LUMA, dtype=rgb.dtype)
+    return _luma_one((rgb * (taken.weight * luma.square())[:, None]).sum(dim=0)).clamp(min=1e-2)
+
+
+def _below(scene: Scene, low: F64, high: F64) -> Tensor:
+    """Rows of what is around the foot of a thing with a box from low to high (world)."""
+    reach = 0.5 * float((high - low).max())
+    up = scene.frame.up_vector
+    foot = float(np.where(up > 0, low, high) @ up)
+    near = rows_within(scene.cloud.means, low - reach, high + reach)
+    return near[scene.cloud.means[near].to(torch.float64).cpu().numpy() @ up < foot + _BELOW * reach]
 
 
 def _luma_one(rgb: Tensor) -> Tensor:

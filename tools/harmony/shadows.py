@@ -16,21 +16,17 @@ from ...gaussians.language.field.group_index import index_groups
 from ...gaussians.scene import Scene
 from ..cloud_diff import fresh_ids, joined
 from ..field_update import after_recolor, recount
-from ..filling.occlusion import SIDES, depth_of
+from ..filling.occlusion import depth_of
 from ..filling.shadow import multiplied
-from .carrier import Carried, carried
+from .carrier import carried
 from .finer import finer
-from .shading import shading_of
 from .strength import FAINT, Strength, fitted, strength_of
 
 F64 = NDArray[np.float64]
 _LEAST = 0.01  # logarithm of a colour's change below which a Gaussian stays as it is
 _RECOLORED = 0.05  # of a group's Gaussians: fewer that are darker do not change its colour
-_LEAN = 0.6  # largest share of the light that leans to the side from which most light comes
-_WALL = 0.6  # likewise on walls, to above
 _TOLD = 0.05  # strength from which a shadow is there
 _PART = 0.5  # of a shadow: how much darker or lighter it becomes
-_STRAIGHT = 0.1  # slope of light from above that is taken to be there
 
 
 @dataclass(frozen=True)
@@ -71,19 +67,19 @@ def shadows_under(
     own = torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
     for rows in things:
         own[rows] = True
-    places = [p for rows in things if (p := carried(scene, rows, own if apart else None, layers=split)) is not None]
-    lobes = [lobes_of(lit or scene, place) for place in places]
+    others = own if apart else None
+    places = [p for rows in things if (p := carried(scene, rows, others, layers=split, lit=lit)) is not None]
     missing = len(things) - len(places)
-    parted = finer(scene.cloud, list(zip(places, lobes, strict=True)), strength.value) if split else None
+    parted = finer(scene.cloud, places, strength.value) if split else None
     dark = torch.zeros(len(scene.cloud), dtype=torch.float64)
-    for place, lean in zip(places, lobes, strict=True):
-        dark[place.rows.cpu()] += strength.value * torch.from_numpy(depth_of(place.share(scene.cloud, lean)))
+    for place in places:
+        dark[place.rows.cpu()] += strength.value * torch.from_numpy(depth_of(place.share(scene.cloud)))
     before, made, removed = scene, 0, 0
     if parted is not None:
         under = torch.zeros(len(parted.children), dtype=torch.float64)
-        for place, lean in zip(places, lobes, strict=True):
+        for place in places:
             on = torch.isin(parted.parents, place.rows.cpu()).nonzero().squeeze(1)
-            under[on] += strength.value * torch.from_numpy(depth_of(place.share_of(parted.children[on], lean)))
+            under[on] += strength.value * torch.from_numpy(depth_of(place.share_of(parted.children[on])))
         stays = torch.ones(len(scene.cloud), dtype=torch.bool)
         stays[parted.split] = False
         made, removed = len(parted.children), len(parted.split)
@@ -107,24 +103,6 @@ def _told_by_color(scene: Scene, rows: Tensor) -> Tensor:
     changed = torch.bincount(groups[rows], minlength=int(groups.max()) + 1)
     many = changed >= _RECOLORED * torch.bincount(groups, minlength=len(changed))
     return scene.cloud.ids[rows[many[groups[rows]]]]
-
-
-def lobes_of(scene: Scene, place: Carried) -> F64:
-    """`[LOBES]` how the light that falls on a surface is spread, as the scene's shading tells."""
-    lean = np.zeros(SIDES)
-    if place.level:
-        slope = shading_of(scene).slope
-        east, north, up = scene.frame.basis()
-        level = np.array([slope @ east, slope @ north])
-        length = float(np.linalg.norm(level))
-        share = min(_LEAN, length / (length + abs(float(slope @ up)) + _STRAIGHT))
-        toward = level / max(length, 1e-12)
-        lean = share * np.maximum(0.0, np.array([toward[0], toward[1], -toward[0], -toward[1]]))
-        lean *= share / max(float(lean.sum()), 1e-12)
-    else:
-        share = _WALL
-        lean[1] = share
-    return np.concatenate([[1 - share], lean])
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,9 +136,7 @@ def changed_shadow(
         found += 1
         now = fitted(scene.cloud, place)
         step = _step(change, now, usual)
-        # What is there was measured under an even light; what is cast follows the light of the scene.
-        lobes = lobes_of(scene, place) if change == "cast" else None
-        dark[place.rows.cpu()] += torch.from_numpy(step * depth_of(place.share(scene.cloud, lobes)))
+        dark[place.rows.cpu()] += torch.from_numpy(step * depth_of(place.share(scene.cloud)))
     rows = (dark.abs() > _LEAST).nonzero().squeeze(1).to(scene.cloud.device)
     if not len(rows):
         return scene.cloud, Changed(rows, found)

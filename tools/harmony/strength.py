@@ -25,8 +25,8 @@ from ..filling.occlusion import depth_of
 from .carrier import Carried, carried
 
 F64 = NDArray[np.float64]
-FAINT = 1.5  # strength where no shadow of the scene can be measured
-MOST = 2.4  # strength of the darkest shadows
+FAINT = 1.65  # strength where no shadow of the scene can be measured
+MOST = 2.6  # strength of the darkest shadows
 _ROWS = 8_000  # Gaussians of the surface around a thing that it is measured on
 _THINGS = 6  # that are measured, the largest that are no room
 _LEAST = 150  # Gaussians of a thing that is measured

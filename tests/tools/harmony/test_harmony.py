@@ -133,6 +133,18 @@ def test_a_side_from_which_the_light_comes_is_blocked_by_what_stands_there() -> 
     assert share[1] > 1.5 * share[0] > 0 and share[3] < 0.3 * share[1]
 
 
+def test_a_lamp_throws_the_shadow_of_a_disc_to_its_other_side() -> None:
+    """A narrow lamp with a slope of one throws the shadow as far aside as the disc is high, as large as it is."""
+    x, y = np.meshgrid(np.linspace(-0.2, 0.2, 41), np.linspace(-0.2, 0.2, 41))
+    inside = x**2 + y**2 <= 0.2**2
+    points = np.stack([x[inside], y[inside], np.full(int(inside.sum()), 0.5)], 1)
+    shade = blocked(points, Chart(GROUND, np.array([-1.0, -1.0]), 2 / 80, (80, 80)), 1.5)
+    above, aside = shade.from_lamp(np.array([0.0, 0, 1]), 0.02), shade.from_lamp(np.array([-1.0, 0, 1]), 0.02)
+    assert above[39:41, 39:41].min() > 0.95 and above[40, 60] < 0.05
+    assert aside[39:41, 57:60].min() > 0.8 and aside[40, 40] < 0.05
+    assert above.sum() * (2 / 80) ** 2 == pytest.approx(np.pi * 0.2**2, rel=0.15)
+
+
 @pytest.mark.parametrize("wanted", [0.4, 1.0])
 def test_the_strength_of_a_cast_shadow_is_measured_again(wanted: float) -> None:
     scene = _scene(_floor(), _box((0.1, 0.0)))
