@@ -156,7 +156,7 @@ def _with_shadows(before: Scene, op: EditOp, context: Context, placed: Scene, do
         return done
     seconds: dict[str, float] = {}
     with timed(seconds, "shadows"):
-        scene, cast, said, (made, replaced, changed) = _shaded(before, done.scene, put)
+        scene, cast, said, (made, replaced, changed) = _shaded(before, done.scene, put, op.op != "move")
     receipt = done.receipt.model_copy(
         update={
             "changed": done.receipt.changed + changed,
@@ -234,17 +234,17 @@ def filled(before: Scene, after: Scene, moved: Sequence[Tensor] = ()) -> tuple[S
 
 
 def _shaded(
-    before: Scene, scene: Scene, put: Sequence[Tensor]
+    before: Scene, scene: Scene, put: Sequence[Tensor], new: bool
 ) -> tuple[Scene, tuple[Filled, ...], tuple[str, ...], tuple[int, int, int]]:  # fmt: skip
     """The scene with the contact shadows of what was put somewhere, by the ids of each thing; what was done, in words
     too; how many Gaussians were made of coarse ones, of how many, and how many
-    others are darker."""
+    others are darker. Coarse Gaussians are split for new things alone: a thing that moves leaves all rows there."""
     from .harmony.shadows import shadows_under
     from .harmony.strength import strength_of
     from .harmony.told import notes
 
     things = [mask_of(scene.cloud, ids).nonzero().squeeze(1) for ids in put]
-    scene, told = shadows_under(scene, things, strength_of(before), lit=before, split=True)
+    scene, told = shadows_under(scene, things, strength_of(before), lit=before, split=new, layers=True)
     cast = Filled(surface="what it stands on", gaussians=0, area=0.0, sure=0.0, darker=told.darker)
     return scene, (cast,) if told.darker else (), notes(told), (told.made, told.replaced, told.changed)
 

@@ -88,7 +88,7 @@ def measured(kind: str) -> Cast | None:
         Frame((0, 0, 1), 0.0, 1.0, "given", "given"),
     )
     rows = torch.arange(len(floor), len(scene.cloud))
-    dark, _ = shadows_under(scene, [rows], Strength(FAINT, 0), split=True)
+    dark, _ = shadows_under(scene, [rows], Strength(FAINT, 0), split=True, layers=True)
     camera = Camera.look_at(
         [0, 0, 40 * half], [0, 0, 0], [0, 1, 0], _PIXELS, _PIXELS, 2 * np.degrees(np.arctan(1 / 40))
     )

@@ -51,6 +51,7 @@ def shadows_under(
     apart: bool = True,
     lit: Scene | None = None,
     split: bool = False,
+    layers: bool = False,
 ) -> tuple[Scene, Told]:
     """The scene with the contact shadows of things where they stand or hang; only colours of other Gaussians change.
 
@@ -60,6 +61,7 @@ def shadows_under(
         lit: the scene whose light is taken, as it was before an edit; None: this one.
         strength: how dark; None: as those that the scene has.
         split: whether Gaussians that are too coarse to show the shadows are split; their children are the last rows.
+        layers: whether they fall on all that is seen of fitted ground, above and below its middle.
     """
     strength = strength_of(scene) if strength is None else strength
     if strength.value <= 0 or not things:
@@ -68,7 +70,7 @@ def shadows_under(
     for rows in things:
         own[rows] = True
     others = own if apart else None
-    places = [p for rows in things if (p := carried(scene, rows, others, layers=split, lit=lit)) is not None]
+    places = [p for rows in things if (p := carried(scene, rows, others, layers=layers, lit=lit)) is not None]
     missing = len(things) - len(places)
     parted = finer(scene.cloud, places, strength.value) if split else None
     dark = torch.zeros(len(scene.cloud), dtype=torch.float64)

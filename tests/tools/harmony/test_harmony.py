@@ -175,7 +175,7 @@ def test_only_ground_too_coarse_for_a_shadow_is_split() -> None:
     scales = wide.scales.clone()
     scales[near, :2] = 0.15
     scene = _scene(wide.replace(scales=scales), _box((0.0, 0.0), size=0.3))
-    dark, told = shadows_under(scene, [_rows(scene)], Strength(1.5, 1), split=True)
+    dark, told = shadows_under(scene, [_rows(scene)], Strength(1.5, 1), split=True, layers=True)
     assert told.made > told.replaced > 0 and len(dark.cloud) == len(scene.cloud) + told.made - told.replaced
     gone = ~torch.isin(scene.cloud.ids, dark.cloud.ids)
     assert int(gone.sum()) == told.replaced and bool((scene.cloud.scales[gone, 0] > 0.1).all())
