@@ -62,6 +62,7 @@ _WIDE, _TALL = 3.2, 2.4  # metres of the wall
 _STEP = 0.04  # metres between its Gaussians
 _PIXELS = 1280
 _HARMONICS = 6
+_SHADED = 0.4  # metres around a thing within which its shadow falls
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -151,8 +152,8 @@ def _transferred(material: str, unit: float, context: Context) -> tuple[float, f
 
 
 def _room(text: str, floor: str, walls: str) -> tuple[float, float]:
-    """The share of floor and walls of a composed room that have the named material and show its colour, and the
-    processor seconds that this took."""
+    """The share of floor and walls of a composed room that have the named material and show its colour, where no thing
+    is near to shade them, and the processor seconds that this took."""
     room = compose(text, seed=1).layout.graph
     room = room.model_copy(update={"room": room.room.model_copy(update={"light": ""})})  # materials are measured
     scene = construct(room, seed=1).scene
@@ -173,11 +174,21 @@ def _room(text: str, floor: str, walls: str) -> tuple[float, float]:
         named = "planks" if found.finish == "wood" else found.finish
         assert scene.language is not None
         groups = [g.id for g in scene.language.groups if g.level == "structure" and g.label == label]
-        rows = torch.isin(scene.cloud.group, torch.tensor(groups, dtype=torch.int32))
+        rows = torch.isin(scene.cloud.group, torch.tensor(groups, dtype=torch.int32)) & ~_near_things(scene)
         seen = rgb_to_lab(dc_to_color(scene.cloud.sh[rows, 0]).clamp(0, 1).double().mean(dim=0))
         pattern = of_finish(FINISHES[asked], Choice(found.color, found.second), (0.8, 0.8, 0.8)).pattern  # type: ignore[index]
         right += named == asked and float(ciede2000(seen, rgb_to_lab(mean_pigment(pattern)))) < 12
     return right / 2, max(0.0, seconds[1] - seconds[0])
+
+
+def _near_things(scene: Scene) -> Tensor:
+    """`[N]` bool: Gaussians within `_SHADED` metres of a thing's box."""
+    assert scene.language is not None
+    near = torch.zeros(len(scene.cloud), dtype=torch.bool)
+    for group in scene.language.objects():
+        local = torch.from_numpy(group.box.local(scene.cloud.means.numpy()))
+        near |= (local.abs() <= torch.tensor(group.box.size) / 2 + _SHADED).all(dim=1)
+    return near
 
 
 def _picture(cloud: GaussianCloud, behind: float) -> Tensor:

@@ -15,7 +15,7 @@ from ..harness import Metric, Result
 from . import running
 
 BASELINE = Path(__file__).parent / "baseline.json"
-GUARDED = ("compose", "fill", "files", "plan", "restyle")  # what takes seconds and needs no data
+GUARDED = ("compose", "fill", "files", "plan", "relight", "restyle")  # what takes seconds and needs no data
 _OF_MACHINES = frozenset({"s", "ms", "ns", "x", "x a copy", "B"})  # units of times, of their ratios, and of memory
 _DATA = {"SCENEWRIGHT_DATA": "/nowhere"}
 

@@ -38,10 +38,6 @@ _EVENER = 0.97  # of a surface's unevenness that may be left by taking a shadow 
 _FAINTEST = 0.03  # logarithm of a shadow that is not worth taking off
 _APART = 9.0  # cells of a pattern that vary together
 _SEEN_MODEL, _DARKEST_LOG = 0.99, 2.0  # ratio above which nothing is changed, and logarithm of the darkest
-_LAMPS = np.array(
-    [[0, 0, 1.0], [0.9, 0, 1], [0, 0.9, 1], [-0.9, 0, 1], [0, -0.9, 1]]
-)  # directions to lamps that it may be of
-_SOFT, _LIGHTS = 0.3, LOBES + len(_LAMPS)  # tangent of half the angle that one fills; parts of light in all
 _RIDGE, _ROUNDS, _CELLS = 0.004, 5, 4_000  # of the fit, and most cells that it takes
 _CORRECTED, _BRIGHT = 1.2, 0.98  # by which a ratio is corrected at most, and quantile of the brightness around
 _OUTSIDE = 0.2  # how far from one the ratio may be where the shadow ends, which then counts as one
@@ -138,7 +134,7 @@ def modelled(rgb: F64, known: Mask, shade: Blocked) -> Shadow | None:
     if min(int(near.sum()), int(none.sum())) < _FEWEST:
         return None
     table, values = _table(rgb, known), -_log(rgb[known])
-    deep = depth_of(np.concatenate([shade.shares, [shade.from_lamp(way, _SOFT) for way in _LAMPS]]))
+    deep = depth_of(shade.shares)
     step = max(1, len(values) // _CELLS)
     weights, rest = _fitted(np.column_stack([deep[:, known].T, table])[::step], values[::step])
     dark = np.tensordot(weights, deep, 1)
@@ -162,21 +158,21 @@ def _table(rgb: F64, cells: Mask) -> F64:
 
 
 def _fitted(table: F64, values: F64) -> tuple[F64, float]:
-    """The weights `[_LIGHTS]` of the first columns of a robust fit, none below zero, and the spread of what is left."""
+    """The weights `[LOBES]` of the first columns of a robust fit, none below zero, and the spread of what is left."""
     from scipy.optimize import lsq_linear
 
     columns = table.shape[1]
-    ridge = np.eye(_LIGHTS, columns) * _RIDGE * np.sqrt(len(values))
-    low = np.concatenate([np.zeros(_LIGHTS), np.full(columns - _LIGHTS, -np.inf)])
+    ridge = np.eye(LOBES, columns) * _RIDGE * np.sqrt(len(values))
+    low = np.concatenate([np.zeros(LOBES), np.full(columns - LOBES, -np.inf)])
     weight, spread, best = np.ones(len(values)), 0.0, np.zeros(columns)
     for _ in range(_ROUNDS):
         root = np.sqrt(weight)
         rows = np.concatenate([table * root[:, None], ridge])
-        best = lsq_linear(rows, np.concatenate([values * root, np.zeros(_LIGHTS)]), (low, np.inf), method="bvls").x
+        best = lsq_linear(rows, np.concatenate([values * root, np.zeros(LOBES)]), (low, np.inf), method="bvls").x
         rest = values - table @ best
         spread = 1.48 * float(np.median(np.abs(rest))) + 1e-3
         weight = 1 / (1 + (rest / (2 * spread)) ** 2)
-    return best[:_LIGHTS], spread
+    return best[:LOBES], spread
 
 
 def _unevenness(rgb: F64, cells: Mask, ratio: F64) -> float:
