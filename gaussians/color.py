@@ -16,6 +16,7 @@ from .errors import UserError
 from .world.shades import FINISHES, PAINTS, SHADES
 from .world.spelling import did_you_mean
 
+LUMA = (0.2126, 0.7152, 0.0722)  # ITU-R BT.709: what red, green and blue add to the brightness of a colour
 Rgb = tuple[float, float, float]
 
 # Everyday names that CSS lacks, or for which its value is not what people picture.

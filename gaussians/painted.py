@@ -32,21 +32,18 @@ class Painted:
     before: Tensor
     after: Tensor
 
-    def unpainted(self, cloud: GaussianCloud) -> GaussianCloud:
-        """The cloud with the harmonics before the first paint, where nothing but paint changed them."""
-        if self.after.shape[1:] != cloud.sh.shape[1:]:  # bands were dropped
-            return cloud
-        rows = rows_of_ids(cloud.ids, self.ids)
-        places = torch.searchsorted(self.ids, cloud.ids[rows])
-        still = (cloud.sh[rows] == self.after[places]).flatten(1).all(dim=1)
-        if not bool(still.any()):
-            return cloud
-        return cloud.replace(sh=cloud.sh.index_copy(0, rows[still], self.before[places[still]]))
-
 
 def unpainted(cloud: GaussianCloud, painted: Painted | None) -> GaussianCloud:
-    """The cloud as it was before any paint; the cloud itself where none is known."""
-    return cloud if painted is None else painted.unpainted(cloud)
+    """The cloud with the harmonics before the first paint, where nothing but paint changed them; the cloud itself where
+    nothing is known to be painted."""
+    if painted is None or painted.after.shape[1:] != cloud.sh.shape[1:]:  # bands were dropped
+        return cloud
+    rows = rows_of_ids(cloud.ids, painted.ids)
+    places = torch.searchsorted(painted.ids, cloud.ids[rows])
+    still = (cloud.sh[rows] == painted.after[places]).flatten(1).all(dim=1)
+    if not bool(still.any()):
+        return cloud
+    return cloud.replace(sh=cloud.sh.index_copy(0, rows[still], painted.before[places[still]]))
 
 
 def painted_again(painted: Painted | None, bare: GaussianCloud, now: GaussianCloud, rows: Tensor) -> Painted:

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from ..gaussians.color import LUMA as LUMA
 from ..gaussians.harmonics import SH_C0
 
-LUMA = (0.2126, 0.7152, 0.0722)  # ITU-R BT.709
 # Largest allowed CIE94 distance of the lit faces from the requested colour. A pure colour at the end of the display's
 # range has to change its lightness to leave room for light and shadow: a distance of 5 is usual, and twice that for a
 # target of several colours whose pattern stays visible. At half as much again another colour name begins.

@@ -237,8 +237,10 @@ def _shaded(
     before: Scene, scene: Scene, put: Sequence[Tensor], new: bool
 ) -> tuple[Scene, tuple[Filled, ...], tuple[str, ...], tuple[int, int, int]]:  # fmt: skip
     """The scene with the contact shadows of what was put somewhere, by the ids of each thing; what was done, in words
-    too; how many Gaussians were made of coarse ones, of how many, and how many
-    others are darker. Coarse Gaussians are split for new things alone: a thing that moves leaves all rows there."""
+    too; how many Gaussians were made of coarse ones, of how many, and how many others are darker.
+
+    Coarse Gaussians are split for new things alone: a thing that moves leaves all rows there.
+    """
     from .harmony.shadows import shadows_under
     from .harmony.strength import strength_of
     from .harmony.told import notes

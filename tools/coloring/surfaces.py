@@ -11,10 +11,9 @@ from torch import Tensor
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.language.field.measure import mean_lab, sample
 from ...gaussians.language.query.selection import Selection
-from ...gaussians.painted import unpainted
 from ...gaussians.scene import Scene
 from ..placement.bodies import rows_by_thing
-from .materials import Parts, materials
+from .materials import Materials, Parts, materials
 
 SAME_COLOR = 20.0  # Lab distance, lightness weighted by half, below which things share one colour map
 _MEAN = 2048  # Gaussians that the mean of a thing is measured on
@@ -42,26 +41,28 @@ class Surfaces:
         return f'parts of other colours were left as they are: {told}; say "the whole ..." to include them'
 
 
-def surfaces(scene: Scene, selection: Selection, *, whole: bool = False) -> Surfaces:
+def surfaces(scene: Scene, selection: Selection, *, whole: bool = False, bare: GaussianCloud | None = None) -> Surfaces:
     """The surfaces of a selection: one for all things of nearly the same colour, else one for each thing.
 
     So patches of one cloth keep their shading relative to each other, while a white and a black chair both turn red.
-    What is left is told by the colours that are seen; what shares a map, by those before any paint.
+    What is left is told by the colours that are seen; what shares a map, by those of `bare`.
 
     Args:
         whole: paint parts of other hues too, each as a surface of its own.
+        bare: the cloud before any paint (see `gaussians.painted`); None: as it is.
     """
     things: list[Tensor] = []
     parts: dict[str, float] = {}
     left = [torch.zeros(0, dtype=torch.int64)]
     apart = _apart(scene, selection)
     count = max(sum(len(rows) for rows in apart), 1)
-    bare = unpainted(scene.cloud, scene.painted)
+    bare = scene.cloud if bare is None else bare
     for rows in apart:
         made = materials(scene.cloud, rows)
-        things += [rows[made.main]] if bare is scene.cloud else _by_material(bare, rows[made.main])
+        main, *others = _by_material(rows, made)
+        things += [main] if bare is scene.cloud else _by_material(main, materials(bare, main))
         if whole:
-            things += [rows[made.part == n] for n in range(1, len(made.shares) + 1)]
+            things += others
             continue
         for name, share in made.shares:
             parts[name] = parts.get(name, 0.0) + share * len(rows) / count
@@ -71,8 +72,8 @@ def surfaces(scene: Scene, selection: Selection, *, whole: bool = False) -> Surf
     return Surfaces(painted, told, torch.cat(left).sort().values)
 
 
-def _by_material(cloud: GaussianCloud, rows: Tensor) -> list[Tensor]:
-    made = materials(cloud, rows)
+def _by_material(rows: Tensor, made: Materials) -> list[Tensor]:
+    """The rows of each material of a thing, the main one first."""
     return [rows[made.main], *(rows[made.part == n] for n in range(1, len(made.shares) + 1))]
 
 

@@ -108,20 +108,20 @@ class Recolor(TargetedOp):
         return self.whole or (everything and not (self.target.colors or self.target.relations))
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        draft = Draft(scene.cloud)
+        draft, bare = Draft(scene.cloud), unpainted(scene.cloud, scene.painted)
         if self.color is None:
             touched, notes = selection.ids, self._adjust(scene, selection, draft)
         else:
-            touched, notes = self._paint(scene, selection, draft)
+            touched, notes = self._paint(scene, bare, selection, draft)
         after = scene.replace(cloud=draft.done())
-        after = after.replace(language=after_recolor(after, touched), painted=self._record(scene, after, touched))
+        painted = self._record(scene, bare, after, touched)
+        after = after.replace(language=after_recolor(after, touched), painted=painted)
         return Outcome(after, touched=touched, notes=tuple(notes))
 
-    def _record(self, scene: Scene, after: Scene, touched: Tensor) -> Painted | None:
+    def _record(self, scene: Scene, bare: GaussianCloud, after: Scene, touched: Tensor) -> Painted | None:
         """What is known of paint after this; an adjustment of what was never painted is none."""
         if self.color is None and scene.painted is None:
             return None
-        bare = unpainted(scene.cloud, scene.painted)
         rows = rows_of(after.cloud, touched)
         if self.color is None:
             rows = rows[(bare.sh[rows] != scene.cloud.sh[rows]).flatten(1).any(dim=1)]
@@ -148,10 +148,13 @@ class Recolor(TargetedOp):
         factor = 1 + 1.5 * self.amount if self.adjust == "more_saturated" else 1 - self.amount
         return adjusting.Saturation(factor, scene_light(cloud).tint)
 
-    def _paint(self, scene: Scene, selection: Selection, draft: Draft) -> tuple[Tensor, list[str]]:
-        """Give every surface of the selection a map to the colour; ids that were painted, and notes."""
-        found = surfaces(scene, selection, whole=self.paints_parts)
-        scene = self._start(scene)
+    def _paint(self, scene: Scene, bare: GaussianCloud, selection: Selection, draft: Draft) -> tuple[Tensor, list[str]]:
+        """Give every surface of the selection a map to the colour; ids that were painted, and notes.
+
+        A new colour starts from the scene before any paint, `bare`, so that a second coat costs no shading.
+        """
+        found = surfaces(scene, selection, whole=self.paints_parts, bare=bare)
+        scene = scene if self.adjust is not None else scene.replace(cloud=bare)
         light = scene_light(scene.cloud)
         clipped = 0.0
         for rows in found.painted:
@@ -165,10 +168,6 @@ class Recolor(TargetedOp):
         notes = [note for note in (found.note(), light.note()) if note is not None]
         return painted, [*notes, *_clipping(clipped)]
 
-    def _start(self, scene: Scene) -> Scene:
-        """What is painted: with a new colour the scene before any paint, so that a second coat costs no shading."""
-        return scene if self.adjust is not None else scene.replace(cloud=unpainted(scene.cloud, scene.painted))
-
     def aim(self, cloud: GaussianCloud, rows: Tensor, colors: Sample, light: SceneLight) -> Tensor:
         """`[3]` display colour that the requested pigment has on lit faces, where the rows `[M]` of the cloud are."""
         lit = float(lit_color(colors) @ torch.tensor(LUMA, dtype=torch.float64))
@@ -180,7 +179,8 @@ class Recolor(TargetedOp):
         return torch.tensor(shade_of(self.color), dtype=torch.float64)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
-        before = self._start(before)
+        if self.adjust is None:
+            before = before.replace(cloud=unpainted(before.cloud, before.painted))
         rows = rows_of(before.cloud, outcome.touched)
         was, now = (seen_colors(s, rows_of(s.cloud, outcome.touched)) for s in (before, outcome.scene))
         checks = [self._arrived(before.cloud, rows, was, now), count_matches(before, outcome.scene, outcome)]

@@ -5,21 +5,21 @@ from __future__ import annotations
 import torch
 
 from ...cloud import GaussianCloud
+from ...color import LUMA
 from ...harmonics import SH_C0
+from ..segmentation.surface import MIN_OPACITY
 
 BRIGHT = 0.95  # quantile of the luma of visible Gaussians that tells how bright a scene is
 DIM = 0.35  # a scene whose bright parts are below this is dim: captures by day have .8, a room at .4 of its light .34
 LIT = 0.7  # where the bright parts of a dim scene are put
 MOST = 16.0  # gain of a scene in which hardly anything can be seen
-_LUMA = (0.2126, 0.7152, 0.0722)
-_VISIBLE = 0.08
 _SAMPLE = 1 << 16
 
 
 def gain_of(cloud: GaussianCloud) -> float:
     """How many times brighter a scene is to be shown: 1 unless it is dim."""
     part = cloud[torch.arange(0, len(cloud), max(1, len(cloud) // _SAMPLE))]
-    luma = (part.sh[part.opacities > _VISIBLE][:, 0] * SH_C0 + 0.5).clamp(0, 1) @ torch.tensor(_LUMA)
+    luma = (part.sh[part.opacities > MIN_OPACITY][:, 0] * SH_C0 + 0.5).clamp(0, 1) @ torch.tensor(LUMA)
     luma = luma[luma.isfinite()]
     if not len(luma):
         return 1.0
