@@ -64,9 +64,20 @@ for _verb in VERBS:
 
 
 def main(arguments: list[str] | None = None) -> NoReturn:
-    """Run the command line on `arguments` (by default those of the process) and exit with its code."""
+    """Run the command line on `arguments` and exit with its code.
+
+    Without arguments those of the process are run, and the process ends by `startup.leave_with`.
+    """
+    try:
+        _run(sys.argv[1:] if arguments is None else arguments)
+    except SystemExit as end:
+        if arguments is None and isinstance(end.code, int):
+            startup.leave_with(end.code)
+        raise
+
+
+def _run(given: list[str]) -> NoReturn:
     terminal.as_json = terminal.debug = False
-    given = sys.argv[1:] if arguments is None else arguments
     code: object = 0
     if given[:1] and given[0] in _ON_A_SESSION:
         startup.begin()

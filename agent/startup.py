@@ -1,8 +1,11 @@
-"""The start of a command: no garbage is collected while modules load, and `--debug` tells what loading took."""
+"""The start and the end of a command: no garbage is collected while modules load, the process ends without taking
+everything apart, and `--debug` tells what loading took."""
 
 from __future__ import annotations
 
+import atexit
 import gc
+import os
 import sys
 import time
 from collections.abc import Sequence
@@ -33,6 +36,28 @@ def end() -> None:
     if _collects:
         gc.enable()
         _collects = False
+
+
+_exit_code: int | None = None
+
+
+def leave_with(code: int) -> None:
+    """Let this process end with an exit code as soon as threads have ended, `atexit` functions have run and output is
+    written. Freeing the modules of torch one by one took another 0.7 s."""
+    global _exit_code
+    _exit_code = code
+
+
+@atexit.register  # the first to be registered runs last
+def _leave() -> None:
+    if _exit_code is None:
+        return
+    try:
+        for stream in (sys.stdout, sys.stderr):
+            stream.flush()
+    except (OSError, ValueError):  # the reader has gone, or the stream is closed: Python reports it
+        return
+    os._exit(_exit_code)
 
 
 class _Watch(MetaPathFinder):

@@ -1,9 +1,10 @@
-"""What a command tells of its start, and that garbage is collected again after it."""
+"""What a command tells of its start, that garbage is collected again after it, and how the process ends."""
 
 from __future__ import annotations
 
 import gc
 import importlib
+import subprocess
 import sys
 from pathlib import Path
 
@@ -36,3 +37,29 @@ def test_garbage_is_collected_again_after_the_start() -> None:
     assert not gc.isenabled()
     startup.end()
     assert gc.isenabled()
+
+
+ENDING = """
+import atexit, sys, threading, time
+from scenewright.agent import cli
+
+class Kept:
+    def __del__(self):
+        print("taken apart")
+
+kept = Kept()
+atexit.register(print, "functions have run")
+threading.Thread(target=lambda: (time.sleep(0.2), print("threads have ended"))).start()
+sys.argv = ["scenewright", *{arguments}]
+cli.main()
+"""
+
+
+@pytest.mark.parametrize(("arguments", "code"), [(["--version"], 0), (["nonsense"], 2), (["info", "absent.ply"], 4)])
+def test_the_process_ends_whole_but_is_not_taken_apart(arguments: list[str], code: int) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", ENDING.format(arguments=arguments)], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == code
+    assert done.stdout.splitlines()[-2:] == ["threads have ended", "functions have run"]
+    assert code == 0 or "scenewright: " in done.stderr
