@@ -68,6 +68,8 @@ def main(arguments: list[str] | None = None) -> NoReturn:
 
     Without arguments those of the process are run, and the process ends by `startup.leave_with`.
     """
+    if arguments is None:
+        startup.own_process()
     try:
         _run(sys.argv[1:] if arguments is None else arguments)
     except SystemExit as end:

@@ -38,6 +38,21 @@ def end() -> None:
         _collects = False
 
 
+_began: float | None = None
+
+
+def own_process() -> None:
+    """Remember that this process was started for one command, and when: reading Python's own modules and ours has kept
+    its one thread busy since."""
+    global _began
+    _began = time.perf_counter() - time.process_time()
+
+
+def began(started: float) -> float:
+    """`time.perf_counter()` at which the process of a command began, if it has one of its own, else `started`."""
+    return started if _began is None else min(_began, started)
+
+
 _exit_code: int | None = None
 
 

@@ -23,7 +23,7 @@ def budget_text(found: Budget) -> str:
         columns = ", ".join(f"{name} {bits:.2f}" for name, bits in found.field_bits.items())
         lines.append(
             f"language field: {sum(found.field_bits.values()):.1f} bits a Gaussian ({columns}); a vector for each "
-            f"Gaussian would take {found.vector_bits:,.0f}"
+            f"Gaussian would take {found.vector_bits:,.0f}, and finer vectors find names no better (docs/slim.md)"
         )
     return "\n".join(lines)
 

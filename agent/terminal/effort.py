@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from .. import startup
 from .output import terminal
 
 if TYPE_CHECKING:
@@ -11,7 +12,8 @@ if TYPE_CHECKING:
 
 
 def dialled(effort: str | None, started: float) -> Dial | None:
-    """The dial of a command that began at `started` (`time.perf_counter()`); None without --effort.
+    """The dial of a command that began at `started` (`time.perf_counter()`), or with its process; None without
+    --effort.
 
     Raises:
         UserError: it is no effort.
@@ -20,7 +22,7 @@ def dialled(effort: str | None, started: float) -> Dial | None:
         return None
     from ...gaussians.effort import Dial
 
-    return Dial(effort, started)
+    return Dial(effort, startup.began(started))
 
 
 def reported(dial: Dial | None) -> dict[str, Any]:

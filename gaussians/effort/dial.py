@@ -18,6 +18,7 @@ from .points import WORDS, Method, Point, machine, method
 
 Effort = str | float
 KEPT = 0.15  # share of promised seconds that a job may be over
+LEAST_CLOCK = 1.0  # seconds that a method with a clock gets where none are left
 
 
 def parse(effort: Effort) -> Effort:
@@ -202,8 +203,8 @@ class Dial:
         for c in self.choices:
             if not c.fits:
                 lines.append(
-                    f"effort: nothing that was measured of {c.method.name} fits; the fastest was taken, "
-                    f"{c.predicted:.3g} s predicted"
+                    f"effort: nothing that was measured of {c.method.name} fits; the fastest was taken"
+                    f"{', as short as it gets' if c.clock else ''}, {c.predicted:.3g} s predicted"
                 )
         if self.overruled:
             lines.append(f"effort: {', '.join(self.overruled)} as given, not by the dial")
@@ -229,7 +230,7 @@ def _named(known: Method, word: str, size: float, factor: float) -> Choice:
 def _fitting(known: Method, seconds: float, size: float, factor: float) -> Choice:
     """The most accurate point that fits in `seconds`, of equally accurate ones the fastest; else the fastest of all.
 
-    A method with a clock gets all that is left, also where that is less than was measured.
+    A method with a clock gets all that is left, also where that is less than was measured, and at least `LEAST_CLOCK`.
     """
     fitting = [p for p in known.points if factor * p.seconds(size) <= seconds]
     best = min(fitting, key=lambda p: (-p.accuracy, p.seconds(size)), default=None)
@@ -240,4 +241,6 @@ def _fitting(known: Method, seconds: float, size: float, factor: float) -> Choic
     clock = seconds - factor * quickest.overhead(size)
     if quickest.clock and clock > 0:
         return Choice(known, quickest, size, factor, seconds, clock, below=True)
-    return Choice(known, quickest, size, factor, factor * quickest.seconds(size), factor * quickest.clock, fits=False)
+    clock = LEAST_CLOCK if quickest.clock else 0.0
+    predicted = factor * quickest.overhead(size) + clock
+    return Choice(known, quickest, size, factor, predicted, clock, fits=False, below=clock > 0)

@@ -1,7 +1,7 @@
 """The measured points of each method: settings, seconds and accuracy, read from `points.json`.
 
-`benchmarks/effort.py` measures them. Times are processor seconds of one core of the reference machine; a file of the
-user's machine (`user_file`) scales them. Accuracies carry over to other machines.
+`benchmarks/_effort/measure.py` measures them. Times are processor seconds of one core of the reference machine; a file
+of the user's machine (`user_file`) scales them. Accuracies carry over to other machines.
 """
 
 from __future__ import annotations

@@ -194,7 +194,8 @@ class Search:
                     state.restore(kept)
                 else:
                     cost = now
-            if cost > before - _MIN_GAIN:
+            late = self.until is not None and time.perf_counter() > self.until
+            if late or cost > before - _MIN_GAIN:
                 return
 
     def _clear_discs(self, state: State) -> None:

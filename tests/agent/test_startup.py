@@ -6,11 +6,21 @@ import gc
 import importlib
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
 from scenewright.agent import startup
+
+
+def test_seconds_count_from_the_start_of_a_process_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(startup, "_began", None)
+    now = time.perf_counter()
+    assert startup.began(now) == now
+    startup.own_process()
+    assert startup.began(now) <= now - 0.05  # reading pytest alone takes longer
+    assert startup.began(0.0) == 0.0
 
 
 def test_debug_tells_the_package_that_took_the_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

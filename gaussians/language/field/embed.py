@@ -32,7 +32,7 @@ from ..segmentation.group_renders import one_thread
 from ..segmentation.orient import estimate_frame
 from ..segmentation.segment import VIEWS_PER_CANDIDATE, Progress, Segment, segment
 from ..segmentation.settle import settled
-from ..segmentation.surface import MIN_OPACITY, Surface, least_opacity, surface_of
+from ..segmentation.surface import MAX_POINTS, MIN_OPACITY, Surface, least_opacity, surface_of
 from .exposure import exposed, gain_of
 from .group_table import vector_of_votes, with_table
 from .making import MaskSource
@@ -40,6 +40,7 @@ from .photograph_crops import crops_of
 
 MAX_DISTANCE = 6.0  # spacings within which a Gaussian off the surface joins the group of the nearest surface point
 MAX_DISTANCE_OPAQUE = 2.0  # likewise for an opaque one, which is a floater: otherwise it would be a surface point
+FITTED = 0.9  # median opacity below which a scene was fitted to photographs: modelled surfaces are opaque
 COVERS = 1.0  # own standard deviations within which a Gaussian off the surface joins the nearest surface point
 COVERS_HAZY = 4.0  # likewise where surfaces consist of faint Gaussians, most of which are not surface points
 
@@ -129,9 +130,9 @@ def _dialled(
     from ..masks.sources import pictures
 
     photographs = capture is not None and bool(present(capture))
-    fitted = least_opacity(scene.cloud) < MIN_OPACITY
+    fitted = float(scene.cloud.opacities.median()) < FITTED
     name = "embed with photographs" if photographs else "embed a fit" if fitted else "embed"
-    chosen = dial.choose(name, len(scene.cloud), reserve)
+    chosen = dial.choose(name, min(len(scene.cloud), MAX_POINTS), reserve)
     count = int(chosen.settings["pictures"])
     return replace(pictures.load(), capture=capture if photographs else None, count=count) if count else None
 

@@ -93,6 +93,13 @@ def test_a_clock_gets_all_that_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
         assert "at least" in chosen.sentence()
 
 
+def test_a_clock_for_which_nothing_is_left_is_as_short_as_it_gets(monkeypatch: pytest.MonkeyPatch) -> None:
+    dial = _dial(1.5, CLOCKED, monkeypatch)
+    chosen = dial.choose("test", 1)
+    assert not chosen.fits and chosen.clock == module.LEAST_CLOCK and chosen.data()["accuracy"] is None
+    assert any("as short as it gets" in line for line in dial.lines(3.0))
+
+
 def test_a_clock_shorter_than_measured_claims_no_accuracy(monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = _dial(20, CLOCKED, monkeypatch).choose("test", 1)
     assert chosen.below and chosen.clock == pytest.approx(18, abs=0.1) and chosen.data()["accuracy"] is None

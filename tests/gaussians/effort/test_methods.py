@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+import torch
 
 from scenewright.benchmarks._fits import small_photos
 from scenewright.gaussians import assets
@@ -19,12 +20,10 @@ def _without_calibration(monkeypatch: pytest.MonkeyPatch, tmp_path: object) -> N
     monkeypatch.setenv("SCENEWRIGHT_EFFORT", f"{tmp_path}/effort.json")
 
 
-@pytest.mark.parametrize(("least", "word", "count"), [(0.01, "fast", 0), (0.01, "accurate", 32), (1.0, "accurate", 0)])
-def test_fitted_scenes_get_masks_where_they_were_measured_to_help(
-    least: float, word: str, count: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(embed, "least_opacity", lambda cloud: least)
-    scene = Scene(assets.make("stool", 0).cloud)
+@pytest.mark.parametrize(("opacity", "word", "count"), [(0.3, "fast", 0), (0.3, "accurate", 32), (None, "accurate", 0)])
+def test_fitted_scenes_get_masks_where_they_were_measured_to_help(opacity: float | None, word: str, count: int) -> None:
+    cloud = assets.make("stool", 0).cloud
+    scene = Scene(cloud if opacity is None else cloud.replace(opacities=torch.full((len(cloud),), opacity)))
     found = embed._dialled(scene, Dial(word), None, None, 0.0)
     assert (found.count if isinstance(found, Pictures) else 0) == count
 
