@@ -1,0 +1,279 @@
+// The viewer: a canvas that shows Gaussians from a camera, kept up to date by rows, and tells what is under the pointer.
+// Draws only when something changed. Knows nothing of the session; see docs/view-protocol.md for the messages it decodes.
+
+import { Pinhole } from './camera.js';
+import { OrbitFlyWalk } from './controls.js';
+import { readMessage } from './decode.js';
+import { Drawing } from './drawing.js';
+import { gridOver, heaviest, ranges } from './picking.js';
+import { SELECTED, Splats } from './splats.js';
+
+const BATCHES = [0.12, 0.3, 0.55]; // shares of the footprints after which finished pixels are closed
+const SENT = 1 << 16; // slots a message to the sorting worker
+
+export class SplatViewer {
+  // onFrame(stats) after each picture, onCamera(camera) after each move; makeWorker: the sorting worker, where it is not a file beside this.
+  constructor(canvas, { onFrame, onCamera, makeWorker } = {}) {
+    const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, powerPreference: 'high-performance' });
+    if (!gl) throw new Error('This browser has no WebGL2, or it is switched off; the scene cannot be drawn.');
+    this.canvas = canvas;
+    this.gl = gl;
+    this.onFrame = onFrame;
+    this.onCamera = onCamera;
+    this.drawing = new Drawing(gl);
+    this.background = [0, 0, 0];
+    this.stats = { frame_ms: 0, sort_ms: 0, drawn: 0, slots: 0 };
+    this.near = 0.01;
+    this.view = { position: [0, 0, 0], forward: [0, 1, 0], up: [0, 0, 1], fov_y: 50 };
+    this.marks = { groups: new Set(), ranges: [], color: [1, 0.62, 0.1] };
+    this.veiled = new Set();
+    this.waiting = []; // resolve functions of idle()
+    this.number = 0; // of the state to be sorted: grows with each change of view or rows
+    this.sortedNumber = -1;
+    this.sorting = false;
+    this.fresh = false; // whether the picture is that of the present state
+    this.controls = new OrbitFlyWalk(this);
+    this.worker = makeWorker ? makeWorker() : new Worker(new URL('./sort_worker.js', import.meta.url));
+    this.worker.onmessage = ({ data }) => this.sorted(data);
+    this.observer = new ResizeObserver(() => this.touch(true));
+    this.observer.observe(canvas);
+  }
+
+  // Scene -------------------------------------------------------------------------------------------------------------
+
+  begin({ slots, degree, near }) {
+    if (this.splats) this.splats.free();
+    this.splats = new Splats(this.gl, slots, degree);
+    this.near = near ?? this.near;
+    this.worker.postMessage({ reset: true });
+    this.ready = null;
+    this.flagged = false;
+    this.touch(true);
+  }
+
+  write(column, changed, bytes) {
+    this.splats.write(column, changed, bytes);
+    if (column !== 'harmonics') this.tell(changed);
+    this.touch(true);
+  }
+
+  decode(buffer) {
+    const { header, columns } = readMessage(buffer);
+    if (header.base === null && (header.chunk?.[0] ?? 0) === 0) this.begin({ slots: header.slots, degree: header.degree, near: this.near });
+    this.splats.grow(header.slots);
+    const changed = new Map();
+    for (const { column, ranges: where, bytes } of columns) {
+      this.splats.write(column, where, bytes);
+      if (column !== 'harmonics') where.forEach(([first, count]) => changed.set(`${first} ${count}`, [first, count]));
+    }
+    this.tell([...changed.values()]);
+    this.touch(true);
+    return header;
+  }
+
+  // Tell the sorting worker of changed slots.
+  tell(changed) {
+    const capacity = this.splats.capacity;
+    for (const [first, count] of changed) {
+      for (let from = first; from < first + count; from += SENT) {
+        const rows = this.splats.extents(from, Math.min(SENT, first + count - from));
+        this.worker.postMessage({ first: from, rows, capacity }, [rows.buffer]);
+      }
+    }
+  }
+
+  // View --------------------------------------------------------------------------------------------------------------
+
+  get camera() {
+    return { ...this.view };
+  }
+
+  set camera(view) {
+    this.view = { ...this.view, ...view };
+    this.touch(true);
+    this.onCamera?.(this.camera);
+  }
+
+  get highlight() {
+    return this.marks;
+  }
+
+  set highlight({ groups = new Set(), ranges: where = [], color = [1, 0.62, 0.1] }) {
+    this.marks = { groups: new Set(groups), ranges: where ?? [], color };
+    this.drawing.setMarks(this.marks.groups);
+    if (this.flagged || this.marks.ranges.length) this.splats?.flag(SELECTED, this.marks.ranges);
+    this.flagged = this.marks.ranges.length > 0;
+    this.touch(false);
+  }
+
+  get hidden() {
+    return this.veiled;
+  }
+
+  set hidden(groups) {
+    if (groups.size === this.veiled.size && [...groups].every((group) => this.veiled.has(group))) return;
+    this.veiled = new Set(groups);
+    this.worker.postMessage({ hidden: this.veiled });
+    this.touch(true);
+  }
+
+  // Pixels of the canvas by CSS pixel.
+  get ratio() {
+    return this.canvas.width / (this.canvas.clientWidth || this.canvas.width);
+  }
+
+  get pinhole() {
+    return new Pinhole(this.view, this.canvas.width, this.canvas.height);
+  }
+
+  project(point) {
+    const found = this.pinhole.project(point);
+    return found && { x: found.x / this.ratio, y: found.y / this.ratio, depth: found.depth };
+  }
+
+  unproject(x, y, depth) {
+    return this.pinhole.unproject(x * this.ratio, y * this.ratio, depth);
+  }
+
+  // Picking -----------------------------------------------------------------------------------------------------------
+
+  pick(x, y) {
+    if (!this.ready) return null;
+    const at = [Math.floor(x * this.ratio), Math.floor(y * this.ratio)];
+    const { slots, depths } = heaviest(this.splats, this.ready, this.ready.camera, gridOver(at[0], at[1], at[0] + 1, at[1] + 1));
+    if (slots[0] < 0) return null;
+    return { slot: slots[0], group: this.splats.group[4 * slots[0] + 3], position: this.unproject(x, y, depths[0]) };
+  }
+
+  pickBox(x0, y0, x1, y1) {
+    return this.pickRegion([Math.min(x0, x1), Math.min(y0, y1), Math.max(x0, x1), Math.max(y0, y1)], null);
+  }
+
+  // points: [[x, y], ...] along the stroke; radius in CSS pixels.
+  pickBrush(points, radius) {
+    const xs = points.map(([x]) => x);
+    const ys = points.map(([, y]) => y);
+    const box = [Math.min(...xs) - radius, Math.min(...ys) - radius, Math.max(...xs) + radius, Math.max(...ys) + radius];
+    return this.pickRegion(box, (x, y) => points.some((a, i) => distance([x, y], a, points[i + 1] ?? a) <= radius));
+  }
+
+  // box: CSS pixels; inside(x, y): whether a point of it counts (null: all do).
+  pickRegion(box, inside) {
+    if (!this.ready) return [];
+    const { width, height } = this.canvas;
+    const limits = [width, height, width, height];
+    const [x0, y0, x1, y1] = box.map((value, i) => Math.min(Math.max(value * this.ratio, 0), limits[i]));
+    if (x1 <= x0 || y1 <= y0) return [];
+    const grid = gridOver(x0, y0, x1, y1);
+    let open = null;
+    if (inside) {
+      open = new Uint8Array(grid.columns * grid.rows);
+      for (let i = 0; i < open.length; i++) {
+        const x = grid.x + grid.step * (i % grid.columns);
+        const y = grid.y + grid.step * Math.floor(i / grid.columns);
+        open[i] = Number(inside(x / this.ratio, y / this.ratio));
+      }
+    }
+    return ranges(heaviest(this.splats, this.ready, this.ready.camera, grid, open).slots);
+  }
+
+  // Pictures ----------------------------------------------------------------------------------------------------------
+
+  // Something changed. sort: whether the order of the slots may have, too.
+  touch(sort) {
+    if (sort) this.number++;
+    this.fresh = false;
+    this.asked ??= requestAnimationFrame(() => this.tick());
+  }
+
+  tick() {
+    this.asked = null;
+    if (!this.splats) return this.settle();
+    this.fit();
+    if (this.sortedNumber < this.number && !this.sorting) this.sort();
+    // While the camera moves, the order of the last view will do if a new one takes long.
+    if (this.sortedNumber === this.number || (this.ready && this.stats.sort_ms > 25)) this.draw();
+  }
+
+  fit() {
+    const { canvas } = this;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const [wide, high] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.max(1, Math.round(size * ratio)));
+    if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
+  }
+
+  sort() {
+    const camera = this.pinhole;
+    const { position, right, down, forward, focal, width, height, tangents } = camera;
+    const margin = 2 / focal; // the reach of the dilation
+    this.sorting = true;
+    this.sortCamera = camera;
+    const buffer = this.spare;
+    this.spare = null;
+    this.worker.postMessage(
+      {
+        ...{ position, right, down, forward, near: this.near, number: this.number, which: 0, buffer },
+        slopes: [width / 2 / focal + margin, height / 2 / focal + margin],
+        clamps: [tangents[1], tangents[3]],
+      },
+      buffer ? [buffer] : [],
+    );
+  }
+
+  sorted({ order, count, number, ms }) {
+    this.sorting = false;
+    this.spare = this.ready?.order.buffer;
+    this.ready = { order, count, camera: this.sortCamera };
+    this.sortedNumber = number;
+    this.stats.sort_ms = ms;
+    this.drawing.setOrder(order, count);
+    this.tick();
+  }
+
+  draw() {
+    const camera = this.pinhole;
+    const { drawing } = this;
+    const began = performance.now();
+    const marked = this.marks.groups.size || this.marks.ranges.length;
+    drawing.project(this.splats, camera, marked ? [...this.marks.color, 0.45] : null);
+    drawing.blend(camera.width, camera.height, BATCHES);
+    drawing.present(this.background);
+    this.fresh = this.sortedNumber === this.number;
+    Object.assign(this.stats, { frame_ms: performance.now() - began, drawn: this.ready.count, slots: this.splats.slots });
+    this.onFrame?.(this.stats);
+    if (this.fresh) this.settle();
+    else this.asked ??= requestAnimationFrame(() => this.tick());
+  }
+
+  settle() {
+    this.waiting.splice(0).forEach((resolve) => resolve());
+  }
+
+  idle() {
+    if (this.fresh || !this.splats) return Promise.resolve();
+    return new Promise((resolve) => this.waiting.push(resolve));
+  }
+
+  // The canvas as a PNG.
+  async png() {
+    await this.idle();
+    this.draw(); // a canvas may be read only in the task that drew it
+    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+  }
+
+  close() {
+    this.observer.disconnect();
+    this.controls.close();
+    this.worker.terminate();
+    if (this.asked) cancelAnimationFrame(this.asked);
+    this.gl.getExtension('WEBGL_lose_context')?.loseContext();
+  }
+}
+
+// From a point to the segment between two others.
+function distance([x, y], [ax, ay], [bx, by]) {
+  const [dx, dy] = [bx - ax, by - ay];
+  const length = dx * dx + dy * dy;
+  const share = length ? Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / length)) : 0;
+  return Math.hypot(x - ax - share * dx, y - ay - share * dy);
+}
