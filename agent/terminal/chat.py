@@ -1,7 +1,6 @@
 """The chat: passes each line to the session or to a slash command, and shows the result.
 
-A line is a command (`slash_commands.py`), an answer to an open question, a question about the scene, or an
-instruction. Lines come from `input_lines.py`.
+A line is a command (`slash_commands.py`), or what `session/dialogue.py` makes of it. Lines come from `input_lines.py`.
 """
 
 from __future__ import annotations
@@ -11,16 +10,8 @@ import shutil
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from ...gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
-from ..pictures.named_cameras import view_text
-from ..session import portions
-from ..session.answers import chosen_numbers, keeps_and_more, rejects, says_enough
-from ..session.camera_moves import Looked, look
-from ..session.camera_words import read_moves
-from ..session.clarify import is_further
-from ..session.plan_report import candidate_json, planner_json, refusal_json, usage_lines
-from ..session.planner_client import is_dismissal, undo_or_redo
-from ..session.refusal import verdict_of
+from ...gaussians.errors import InstructionError, ScenewrightError
+from ..session.dialogue import Dialogue
 from . import slash_commands
 from .halfblocks import depth_of, draw
 from .input_lines import InputLines
@@ -30,7 +21,6 @@ if TYPE_CHECKING:
     from prompt_toolkit.input import Input
     from prompt_toolkit.output import Output
 
-    from ...gaussians.camera import Camera
     from ...gaussians.language.query.selection import Selection
     from ...planners.plan import EditPlan
     from ..pictures.scene_pictures import Picture
@@ -52,7 +42,7 @@ class Chat:
 
     Attributes:
         planned: the last plan that was carried out.
-        home: the first view, whose left and right "from the left" means; None until the camera is moved.
+        dialogue: what typed lines mean to the session.
         ended: whether the user ended the chat.
     """
 
@@ -62,13 +52,10 @@ class Chat:
         self.session = session
         self.terminal = terminal
         self.planned: EditPlan | None = None
-        self.home: Camera | None = None
+        self.dialogue = Dialogue(session)
         self.ended = False
         self._kept = session.scene
-        self._looked: Looked | None = None  # the last move of the camera
-        self._looking = False  # whether nothing was edited since
         self._lines = InputLines(COMMANDS, self._words, terminal.as_json, input, output)
-        self._previous_plan: EditPlan | None = None
 
     # -- the loop ---------------------------------------------------------------------------------------------------
 
@@ -114,137 +101,47 @@ class Chat:
 
     def say(self, line: str) -> None:
         """Handle one line: a command, an answer, a question or an instruction. Errors become one sentence."""
-        self._previous_plan = self.session.planned
+        self.dialogue.begin()
         try:
             with self.terminal.interruptible():
-                slash_commands.run_command(self, line) if line.startswith("/") else self._instruction(line)
+                slash_commands.run_command(self, line) if line.startswith("/") else self._typed(line)
         except KeyboardInterrupt:
             self.tell("cancelled; nothing was changed", {"verdict": "cancelled"})
-        except InstructionError as error:
-            self._ask_back(error)
         except ScenewrightError as error:
-            if self.terminal.debug:
+            if self.terminal.debug and not isinstance(error, InstructionError):
                 raise
-            text = "\n".join([str(error), *usage_lines(self._new_plan)])
-            data = {"verdict": verdict_of(error), "reason": str(error), **refusal_json(error, self._new_plan)}
-            self.tell(text, data, "red")
+            self._refuse(error)
         except Exception as error:  # after a bug of ours the user must still be able to save
             if self.terminal.debug:
                 raise
             reason = f"internal error ({type(error).__name__}: {error}); the scene is as it was. Please report it"
             self.tell(reason, {"verdict": "internal", "reason": reason}, "red")
 
-    def _instruction(self, text: str) -> None:
-        if self._look(text):
+    def _typed(self, text: str) -> None:
+        """Do what a line says that is no command, and show what it led to."""
+        said = self.dialogue.say(text)
+        if said.result is not None:
+            self.show_result(said.result)
             return
-        if self._waits_for(text):
-            if is_dismissal(text):
-                if rejects(text) and (others := self.session.offer_others()) is not None:
-                    raise others
-                self.session.question = None
-                self.tell("nothing was changed", {"verdict": "cancelled"})
-                return
-            try:
-                result = self.session.answer(text)
-            except UserError:
-                if self.session.is_question(text):
-                    self._question(text)  # the open question stays open
-                    return
-                plan = self.session.plan(text)
-                if not plan.ops:
-                    raise  # neither an answer nor an instruction: the question stays open
-                result = self.session.apply(plan, planned_in=plan.seconds)  # closes the question
-        elif undo_or_redo(text) is None and self.session.is_question(text):
-            self._question(text)
-            return
-        else:
-            result = self.session.do(text)
-        self.show_result(result)
-
-    def _look(self, text: str) -> bool:
-        """Move the camera, if that is what the text asks for; False if it does not.
-
-        "closer" alone goes on with an edit of the instruction before, unless the camera was moved since.
-        """
-        moves = read_moves(text)
-        if moves is None or self._names_a_camera():
-            return False
-        bare = all(move.bare for move in moves)
-        if bare and (self.session.question is not None or (not self._looking and self.session.continues(text))):
-            return False
-        self.home = self.home or self.session.viewer
-        looked = look(self.session, moves, self.home, self._looked)
-        self.session.viewer, self._looked, self._looking = looked.camera, looked, True
-        data = {"verdict": "ok", "view": view_text(looked.camera), "notes": list(looked.notes)}
-        self.tell("\n".join([looked.told, *(f"note: {note}" for note in looked.notes)]), data)
-        if self._lines.interactive:
+        self.tell(said.text, said.data, "default" if said.sure else "yellow")
+        if said.camera is not None and self._lines.interactive:
             self.show_picture()
-        return True
-
-    def _names_a_camera(self) -> bool:
-        """Whether a camera is one of the things in the scene, so that words about it may be an edit."""
-        language = self.session.scene.language
-        return language is not None and any(g.label == "camera" for g in language.groups)
-
-    def _waits_for(self, text: str) -> bool:
-        """Whether a question is open that `text` may answer. Of the nearest things that were listed in place of one
-        that is absent, only a number chooses."""
-        question = self.session.question
-        if question is None or undo_or_redo(text) is not None:
-            return False
-        if question.selection.verdict != "absent" or chosen_numbers(text, len(question.candidates)) is not None:
-            return True
-        count = len(question.candidates)
-        if (is_further(question) and says_enough(text)) or keeps_and_more(text, count) is not None:
-            return True
-        return bool(question.candidates) and portions.read(text, count) is not None
-
-    def _question(self, text: str) -> None:
-        """Answer a question about the scene."""
-        answer = self.session.ask(text)
-        self.tell(answer.text, answer.to_json(), "default" if answer.answer is not None else "yellow")
 
     def show_result(self, result: Result) -> None:
         """Print the result and, on an interactive terminal, a picture."""
-        self.planned, self._looking = result.plan or self.planned, False
-        lines = list(result.sentences()) or [result.text]
-        lines += usage_lines(result.plan)
-        if sum(result.seconds.values()) > 0:
-            lines.append(f"({sum(result.seconds.values()):.2f} s)")
-        self.tell("\n".join(lines), result.to_json(), "green")
+        self.planned = result.plan or self.planned
+        said = self.dialogue.edited(result)
+        self.tell(said.text, said.data, "green")
         if self._lines.interactive:
             self.show_picture()
 
-    @property
-    def _new_plan(self) -> EditPlan | None:
-        """The plan that was made for the present line, even if it was refused; None if there is none."""
-        return self.session.planned if self.session.planned is not self._previous_plan else None
-
-    def _ask_back(self, error: InstructionError) -> None:
-        question = self.session.question
-        candidates = question.candidates if question else ()
-        lines = [str(error)]
-        offered = question is not None and question.offered
-        if isinstance(error, AbsentError) and candidates and not offered:
-            lines.append("The nearest things that are there:")
-        where = [f", {c.seen_from(self.session.viewer)}" if offered else "" for c in candidates]
-        lines += [f"  {i}. {c.describe()}{side}" for i, (c, side) in enumerate(zip(candidates, where, strict=True), 1)]
-        verdict = question.selection.verdict if question is not None else ""
-        if verdict == "ambiguous":
-            lines.append("Which one? A number, several ('1 and 2'), 'all', or for example 'the left one'.")
-        if verdict == "absent" and candidates:
-            lines.append("A number chooses one of them; or say it in other words.")
-        if verdict == "unconfirmed":
-            lines.append("Is that meant? 'yes' or 'no'.")
-        data = {
-            "verdict": verdict_of(error),
-            "reason": str(error),
-            "candidates": [candidate_json(c) for c in candidates],
-            **planner_json(question.plan if question else self._new_plan),
-        }
-        self.tell("\n".join([*lines, *usage_lines(self._new_plan)]), data, "yellow")
-        if verdict == "unconfirmed" and self._lines.interactive and question is not None:
-            self.show_picture(question.selection)
+    def _refuse(self, error: ScenewrightError) -> None:
+        """Print why a line was refused; where it asks whether something is meant, also a picture of that."""
+        refused, question = self.dialogue.refused(error), self.session.question
+        self.tell("\n".join(refused.lines), refused.data, "yellow" if isinstance(error, InstructionError) else "red")
+        doubted = question.selection if isinstance(error, InstructionError) and question is not None else None
+        if doubted is not None and doubted.verdict == "unconfirmed" and self._lines.interactive:
+            self.show_picture(doubted)
 
     # -- output -----------------------------------------------------------------------------------------------------
 

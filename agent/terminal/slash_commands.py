@@ -11,9 +11,9 @@ from ..session.plan_report import format_usage, plan_lines, selection_json, usag
 from .tables import table
 
 if TYPE_CHECKING:
-    from ...gaussians.camera import Camera
     from ...planners.plan import EditPlan
     from ..pictures.scene_pictures import Picture
+    from ..session.dialogue import Dialogue
     from ..session.result import Result
     from ..session.session import Session
     from .output import Terminal
@@ -33,7 +33,7 @@ class Conversation(Protocol):
     session: Session
     terminal: Terminal
     planned: EditPlan | None
-    home: Camera | None
+    dialogue: Dialogue
     ended: bool
 
     def tell(self, text: str, data: dict[str, Any], style: str = "default") -> None: ...
@@ -133,7 +133,7 @@ def _show(chat: Conversation, view: str) -> None:
     from ..pictures.named_cameras import choose_view
 
     if view:
-        chat.session.viewer, chat.home = choose_view(chat.session.scene, view), None
+        chat.session.viewer, chat.dialogue.home = choose_view(chat.session.scene, view), None
     chat.show_picture()
 
 
