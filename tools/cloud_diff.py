@@ -143,7 +143,7 @@ def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, rem
         if column is other:
             continue
         mask = torch.zeros(n, dtype=torch.bool, device=before.device)
-        if _mark_changed(column, other, kept, mask):
+        if mark_changed(column, other, mask, kept):
             changed[name] = mask
             differs |= mask
     where = rows_where(differs)
@@ -155,8 +155,15 @@ def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, rem
     return Difference(lost + outside, tuple(changed), bad_ids, kept, changed)
 
 
-def _mark_changed(column: Tensor, other: Tensor, kept: Tensor | None, differs: Tensor) -> bool:
-    """Set `differs` where the rows of two columns differ in any bit; return whether any does."""
+def mark_changed(
+    column: Tensor, other: Tensor, differs: Tensor, kept: Tensor | None = None, others: Tensor | None = None
+) -> bool:
+    """Set `differs` `[K]` where the rows of two columns differ in any bit; return whether any does.
+
+    Args:
+        kept: `[K]` int64, the rows of `column` that are compared; None: the first K.
+        others: `[K]` int64, the rows of `other` that they are compared with; None: the first K.
+    """
     if column.shape[1:] != other.shape[1:]:
         differs.fill_(True)
         return True
@@ -164,7 +171,8 @@ def _mark_changed(column: Tensor, other: Tensor, kept: Tensor | None, differs: T
     for start in range(0, len(differs), step):
         end = min(start + step, len(differs))
         a = column[start:end] if kept is None else column.index_select(0, kept[start:end])
-        a, b = _bits(a), _bits(other[start:end])
+        b = other[start:end] if others is None else other.index_select(0, others[start:end])
+        a, b = _bits(a), _bits(b)
         if not torch.equal(a, b):
             apart = (a != b).reshape(end - start, -1)
             if apart.shape[1] % 8 == 0:  # eight flags at a time

@@ -5,12 +5,13 @@ A state is frozen and shares its unchanged columns with its neighbours, so undo 
 
 from __future__ import annotations
 
+import weakref
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING
 
+from ...gaussians.cloud import GaussianCloud
 from ...gaussians.errors import UserError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
@@ -18,6 +19,7 @@ from ...gaussians.scene import Scene
 
 if TYPE_CHECKING:
     from ...planners.plan import EditPlan
+    from ...tools.receipt import Receipt
 
 DEPTH = 200  # states kept for undo; each holds only the columns that its edit changed
 
@@ -32,6 +34,7 @@ class State:
         text: the instruction that led here, "" for the first state.
         context: the previous instruction, for "a bit more" and "the red one".
         plan: the plan that was carried out to get here; None for the first state, and where it is not known.
+        receipts: of its operations.
         pointed: what a vision model pointed at in this scene, by phrase.
     """
 
@@ -41,11 +44,24 @@ class State:
     context: str = ""
     pointed: Mapping[str, Query] = field(default_factory=dict)
     plan: EditPlan | None = None
+    receipts: tuple[Receipt, ...] = ()
 
-    @cached_property
+    @property
     def digest(self) -> str:
-        """SHA-256 digest of the cloud; computed once, when a log needs it."""
-        return self.scene.cloud.digest()
+        """SHA-256 digest of the cloud; computed once for each cloud, when a log needs it."""
+        cloud = self.scene.cloud
+        if cloud not in _digests:
+            _digests[cloud] = cloud.digest()
+        return _digests[cloud]
+
+
+_digests: weakref.WeakKeyDictionary[GaussianCloud, str] = weakref.WeakKeyDictionary()
+
+
+def looks_alike(a: GaussianCloud, b: GaussianCloud) -> bool:
+    """Whether two clouds give the same pictures, as they share every column that pictures show."""
+    columns = zip(a.columns(), b.columns(), strict=True)
+    return all(column is other for (name, column), (_, other) in columns if name not in ("group", "ids"))
 
 
 @dataclass

@@ -8,15 +8,19 @@ Schema version 1. Every record has `v`, `seq` (1, 2, ... through the file), `tim
     open    session, continues, scenewright, scene (path or null), gaussians, digest, file
                                                                      a session begins; undo never goes back before it
     embed   encoder, things, before, after                           a language field was added to the scene; no edit
-    do      text, it, plan, viewer, receipts, selection, before, after, seconds
+    do      text, it, it_ids, plan, viewer, receipts, selection, before, after, seconds
                                                                      an instruction was carried out
     failed  text, plan (or null), error, message, before             an instruction was refused; nothing was changed
+    select  groups, gaussians, ids, before                           "it" was pointed at; no edit
+    restore session                                                  the edits of an earlier session are made again
+    restored                                                         they are all made
     undo    text, before, after                                      the last `do` was undone
     redo    text, before, after                                      the last `undo` was redone
     save    path, digest, file                                       the scene was written to a file
 
 `session` is the id of the session, `continues` that of the earlier one that ended with this scene, or null; `file` is
-the SHA-256 digest of the scene file's bytes; `it` and `selection` are what "it" referred to before and after; `viewer`
+the SHA-256 digest of the scene file's bytes; `it` and `selection` are what "it" referred to before and after, and
+`it_ids` and `ids` its Gaussians (`packed_ids`), null where they are those of its groups; `viewer`
 is the camera in whose frame left, right, in front and behind were meant (see `viewer_fields`). Logs of earlier versions
 lack some of these. `before` and `after` are SHA-256 digests of the cloud, so that a reader can check that the records
 form a chain. The functions `*_fields` give the fields of a record. A session without a log does not call them, as
@@ -208,6 +212,7 @@ def do_fields(result: Result, before: State, after: State) -> dict[str, Any]:
     return {
         "text": result.text,
         "it": list(before.last.groups) if before.last is not None else [],
+        "it_ids": _packed(before),
         "plan": result.plan.model_dump(mode="json") if result.plan is not None else None,
         "viewer": viewer_fields(result.viewer),
         "receipts": [r.model_dump(mode="json") for r in result.receipts],
@@ -216,6 +221,25 @@ def do_fields(result: Result, before: State, after: State) -> dict[str, Any]:
         "after": after.digest,
         "seconds": dict(result.seconds),
     }
+
+
+def select_fields(state: State) -> dict[str, Any]:
+    """Fields of `select`."""
+    last = state.last
+    groups, count = ([], 0) if last is None else (list(last.groups), len(last))
+    return {"groups": groups, "gaussians": count, "ids": _packed(state), "before": state.digest}
+
+
+def _packed(state: State) -> str | None:
+    """The Gaussians of what "it" refers to, packed; None if they are those of its groups, or there are none."""
+    last, field = state.last, state.scene.language
+    if last is None or not len(last):
+        return None
+    if field is not None and len(last) == sum(field.groups[g].count for g in last.groups):
+        return None
+    from .packed_ids import pack
+
+    return pack(last.ids)
 
 
 def viewer_fields(camera: Camera) -> dict[str, Any]:

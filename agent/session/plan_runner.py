@@ -94,7 +94,8 @@ def run_plan(
         except ScenewrightError as error:
             raise PlanFailed(error, None) from error
     pointed = start.pointed if scene.cloud is start.scene.cloud else {}  # group ids and places may differ after an edit
-    return State(scene, last, plan.instruction, plan.instruction, pointed, plan), tuple(receipts)
+    told = tuple(receipts)
+    return State(scene, last, plan.instruction, plan.instruction, pointed, plan, told), told
 
 
 def _question(plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, context: Context) -> Question | None:

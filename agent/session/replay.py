@@ -10,10 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+import torch
+from torch import Tensor
+
 from ...gaussians.errors import FileError, ScenewrightError
 from ...gaussians.language.query.nested import exchange, queries
 from .log import Record, viewer_of
 from .log_sessions import LoggedSession, logged_session
+from .packed_ids import unpack
+from .plan_runner import has_queries
 from .refusal import with_message
 from .result import Result
 
@@ -46,7 +51,8 @@ class Replayed:
 @dataclass(frozen=True)
 class LoggedEdit:
     """An edit of a logged session: its words, its plan, the digests of the cloud before and after it, the groups that
-    "it" referred to, which a question or a selection between edits may have set, and the viewer it was meant for."""
+    "it" referred to, which a question or a selection between edits may have set, the viewer it was meant for, and the
+    packed Gaussians of "it" where they are not those of the groups."""
 
     text: str
     plan: EditPlan
@@ -54,6 +60,7 @@ class LoggedEdit:
     it: tuple[int, ...] = ()
     after: str | None = None
     viewer: Camera | None = None
+    it_ids: str | None = None
 
     def plan_for(self, digest: str) -> EditPlan:
         """The plan for the cloud with this digest; on another cloud than the logged one, without group ids."""
@@ -78,7 +85,13 @@ def logged_edits(log: str | Path, session: int | str) -> list[LoggedEdit]:
     """
     return [
         LoggedEdit(
-            str(r["text"]), read_plan(r, log), r.get("before"), tuple(r.get("it") or ()), r.get("after"), viewer_of(r)
+            str(r["text"]),
+            read_plan(r, log),
+            r.get("before"),
+            tuple(r.get("it") or ()),
+            r.get("after"),
+            viewer_of(r),
+            r.get("it_ids"),
         )
         for r in logged_session(log, session).edits
     ]
@@ -95,8 +108,9 @@ class Edited(Protocol):
     def viewer(self) -> Camera: ...
     @viewer.setter
     def viewer(self, camera: Camera) -> None: ...
-    def embed(self) -> Scene: ...
+    def embed(self, then: str | None = None) -> Scene: ...
     def remember(self, groups: tuple[int, ...]) -> None: ...
+    def point(self, ids: Tensor | None) -> Selection | None: ...
     def apply(self, plan: EditPlan) -> Result: ...
     def undo(self) -> Result: ...
 
@@ -119,8 +133,12 @@ def _replayed(session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool, o
     outcome: list[Replayed] = []
     for edit in edits:
         try:
+            if has_queries(edit.plan):
+                session.embed("edit")  # as the edit did, so that the groups are those of the log
             before = session.digest
-            if edit.it and before == edit.before and (session.last is None or session.last.groups != edit.it):
+            if edit.it_ids and before == edit.before:
+                point_again(session, edit.it_ids)
+            elif edit.it and before == edit.before and (session.last is None or session.last.groups != edit.it):
                 session.embed()
                 session.remember(edit.it)
                 before = session.digest
@@ -135,6 +153,16 @@ def _replayed(session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool, o
                 raise with_message(error, message) from error
             outcome.append(Replayed(edit.text, None, error))
     return outcome
+
+
+def point_again(session: Edited, packed: str) -> None:
+    """Let "it" refer to the Gaussians that a log has packed, if it does not yet; a text that is none is passed over."""
+    try:
+        ids = unpack(packed)
+    except ValueError:
+        return
+    if session.last is None or not torch.equal(session.last.ids, ids):
+        session.point(ids)
 
 
 def read_plan(record: Record, source: str | Path) -> EditPlan:

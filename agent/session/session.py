@@ -32,6 +32,7 @@ from .own_references import own_references
 from .picture_models import infill_of, photographed, restyler_of
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, undo_or_redo
+from .pointing import pointed_at
 from .refusal import refusal, with_message
 from .replay import Replayed, logged_edits, replay_edits
 from .result import Result
@@ -39,6 +40,8 @@ from .sight import needs_sight, point_out
 from .vision_client import VisionClient
 
 if TYPE_CHECKING:
+    from torch import Tensor
+
     from ...gaussians.effort import Dial, Effort
     from ...gaussians.files.captures.capture import Capture
     from ...gaussians.language.encoders import Encoder
@@ -193,6 +196,16 @@ class Session:
     def done(self) -> tuple[str, ...]:
         """The instructions that led to the present scene, oldest first."""
         return tuple(s.text for s in [*self._history.past, self._history.present] if s.text)
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """The states that led to the present one, oldest first, and the present one."""
+        return (*self._history.past, self._history.present)
+
+    @property
+    def redoable(self) -> bool:
+        """Whether there is something to redo."""
+        return bool(self._history.future)
 
     @property
     def viewer(self) -> Camera:
@@ -537,6 +550,18 @@ class Session:
         found = self._context(None).resolve(self.scene, Query(groups=groups[:256]))
         self._history.amend(replace(self._history.present, last=found))
 
+    def point(self, ids: Tensor | None) -> Selection | None:
+        """Let "it" refer to Gaussians that were pointed at, not named: ids `[M]`, ascending; None or no id: to nothing.
+
+        No edit, but the log tells it, so that a replay has the same "it".
+        """
+        present = self._history.present
+        found = pointed_at(self.scene, ids) if ids is not None and len(ids) else None
+        state = replace(present, last=found)
+        self._record("select", session_log.select_fields, state)
+        self._history.amend(state)
+        return found
+
     # -- questions --------------------------------------------------------------------------------------------------
 
     def ask(self, text: str) -> Answer:
@@ -624,6 +649,13 @@ class Session:
             UserError: it holds no such session.
         """
         return replay_edits(self, logged_edits(log, session), skip_failed)
+
+    def note_restoring(self, earlier: str | None) -> None:
+        """Tell the log that the edits of an earlier session are made again from here on; None: that they are made."""
+        if earlier is None:
+            self._record("restored", dict)
+        else:
+            self._record("restore", lambda: {"session": earlier})
 
     # -- undo and redo ----------------------------------------------------------------------------------------------
 

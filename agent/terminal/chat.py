@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import InstructionError, ScenewrightError
 from ..session.dialogue import Dialogue
+from ..session.history import looks_alike
 from . import slash_commands
 from .halfblocks import depth_of, draw
 from .input_lines import InputLines
@@ -76,12 +77,7 @@ class Chat:
     @property
     def unsaved(self) -> bool:
         """Whether the scene looks other than when it was saved last; undoing all edits makes it as it was."""
-        now, kept = self.session.scene.cloud, self._kept.cloud
-        return any(
-            column is not before
-            for (name, column), (_, before) in zip(now.columns(), kept.columns(), strict=True)
-            if name not in ("group", "ids")
-        )
+        return not looks_alike(self.session.scene.cloud, self._kept.cloud)
 
     def kept(self) -> None:
         """Note that the present scene was saved."""

@@ -41,7 +41,7 @@ def _tool(name: str, op: type[EditOp]) -> Tool:
 def _runs(name: str) -> Callable[[Desk, dict[str, Any]], Reply]:
     def run(desk: Desk, given: dict[str, Any]) -> Reply:
         op, picture = _parsed(name, given)
-        plan = EditPlan(instruction=_told(op), ops=(op,), planner="agent")
+        plan = EditPlan(instruction=operation_words(op), ops=(op,), planner="agent")
         result = desk.session.apply(plan)
         return edited(result, (views.after_edit(result),) if picture else ())
 
@@ -62,7 +62,7 @@ def _parsed(name: str, given: dict[str, Any]) -> tuple[EditOp, bool]:
         raise ArgumentError(str(error)) from error
 
 
-def _told(op: EditOp) -> str:
+def operation_words(op: EditOp) -> str:
     """The operation in words, for the history and the log."""
     fields = op.model_dump(exclude_defaults=True, exclude={"op", "target"}, mode="json")
     more = ", ".join(f"{k} {json.dumps(v, ensure_ascii=False)}" for k, v in fields.items())

@@ -22,7 +22,7 @@ class SaveArguments(Arguments):
     """Overwrite a file that exists."""
 
 
-def _save(desk: Desk, said: SaveArguments) -> Reply:
+def save_scene(desk: Desk, said: SaveArguments) -> Reply:
     """Write the scene to a file in its own folder, completely or not at all; an existing file only with `force`."""
     from ...gaussians.language.field.store import field_path, save_field
 
@@ -45,4 +45,4 @@ def _save(desk: Desk, said: SaveArguments) -> Reply:
 
 def saving_tools() -> list[Tool]:
     """The tools of this module."""
-    return [tool("save", SaveArguments, Hints(destructive=True, idempotent=True), _save, needs_field=False)]
+    return [tool("save", SaveArguments, Hints(destructive=True, idempotent=True), save_scene, needs_field=False)]

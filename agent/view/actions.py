@@ -1,0 +1,180 @@
+"""What each message of a page does to the session, and the answer to it. Runs on the hub's worker."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from ...gaussians.errors import InstructionError, ScenewrightError, UserError
+from ...gaussians.language.field.group_index import difference, index_groups, union
+from ...gaussians.language.query.nested import without_confirmation
+from ...planners.plan import EditPlan
+from ...tools import registry
+from ..session.dialogue import Dialogue, Said
+from ..toolbox.folder import Folder
+from ..toolbox.limits import check_arguments
+from ..toolbox.operations import operation_words
+from ..toolbox.saving import SaveArguments, save_scene
+from ..toolbox.tool import Desk
+from .messages import Answer, Asked, Operate, Save, Say, Select, SelectSlots, Step
+from .slots import EMPTY, slots_of
+from .state import camera_json
+
+if TYPE_CHECKING:
+    from .changes import Shown
+
+Reply = dict[str, Any]
+
+
+class Stage(Protocol):
+    """The part of the hub that messages use."""
+
+    shown: Shown
+
+    def settle(self) -> None: ...
+    def before(self) -> bytes: ...
+
+
+class Actions:
+    """Carries messages out.
+
+    Args:
+        stage: what is shown.
+        dialogue: the session, and what words mean to it.
+        folder: where scenes are saved; None: nowhere.
+        keep_field: write the language field beside a saved scene.
+    """
+
+    def __init__(self, stage: Stage, dialogue: Dialogue, folder: Folder | None, keep_field: bool) -> None:
+        self._stage = stage
+        self._dialogue = dialogue
+        self._session = dialogue.session
+        self._desk = Desk(dialogue.session, folder, keep_field)
+
+    def do(self, message: Asked) -> Reply | bytes:
+        """The answer to a message, without its number; bytes go as they are.
+
+        Raises:
+            ScenewrightError: it cannot be done; nothing was changed.
+        """
+        if isinstance(message, Say):
+            self._look(message)
+            return self._typed(message.text)
+        if isinstance(message, Answer):
+            return self._typed(str(message.choice))
+        if isinstance(message, Select | SelectSlots):
+            return self._select(message)
+        if isinstance(message, Operate):
+            self._look(message)
+            return self._operate(message)
+        if isinstance(message, Save):
+            return self._save(message)
+        assert isinstance(message, Step)
+        if message.type == "before":
+            return self._stage.before()
+        return self._stepped(message)
+
+    def _look(self, message: Say | Operate) -> None:
+        """Take over the camera of the page."""
+        if message.camera is not None:
+            self._session.viewer = message.camera.camera()
+
+    # -- words -------------------------------------------------------------------------------------------------------
+
+    def _typed(self, text: str) -> Reply:
+        """A line that was typed. One that is refused or asks back is answered with why."""
+        try:
+            return _said(self._dialogue.say(text))
+        except ScenewrightError as error:
+            return self._refused(error)
+
+    def _refused(self, error: ScenewrightError) -> Reply:
+        first, *lines = self._dialogue.refused(error).lines
+        asks = isinstance(error, InstructionError) and self._session.question is not None
+        return {**_ANSWER, "ok": False, "text": first, "lines": lines if not asks else lines[-1:]}
+
+    def _stepped(self, step: Step) -> Reply:
+        if step.type == "export":
+            raise UserError("this server makes no pages; `scenewright export` does")
+        result = self._session.undo() if step.type == "undo" else self._session.redo()
+        return _said(self._dialogue.edited(result))
+
+    # -- the selection -----------------------------------------------------------------------------------------------
+
+    def _select(self, message: Select | SelectSlots) -> Reply:
+        """Let "it" mean what was clicked, boxed or brushed."""
+        if self._session.scene.language is None and message.mode != "clear":
+            self._session.embed()
+            self._stage.settle()
+        ids = self._meant(message)
+        now = self._session.last.ids if self._session.last is not None else ids[:0]
+        if message.mode == "add":
+            ids = union(now, ids)
+        elif message.mode == "remove":
+            ids = difference(now, ids)
+        found = self._session.point(ids)
+        self._dialogue.begin()
+        text = "nothing is selected" if found is None else f"{len(found):,} Gaussians are selected"
+        return {**_ANSWER, "text": text}
+
+    def _meant(self, message: Select | SelectSlots) -> Tensor:
+        """The ids `[M]` that a message means, ascending."""
+        shown = self._stage.shown
+        cloud, field = shown.scene.cloud, shown.scene.language
+        if isinstance(message, SelectSlots):
+            ranges = np.array(message.ranges, np.int64).reshape(-1, 2)
+            if len(ranges) and int(ranges[-1].sum()) > shown.slots.count:
+                raise UserError("there are no such slots; the page shows an older state")
+            rows = shown.slots.rows[slots_of(ranges)]
+            return cloud.ids[torch.from_numpy(rows[rows != EMPTY])].sort().values
+        if message.mode == "clear" or field is None:
+            return cloud.ids[:0]
+        group = message.group
+        if message.slot is not None:
+            row = int(shown.slots.rows[message.slot]) if message.slot < shown.slots.count else EMPTY
+            group = int(cloud.group[row]) if row != EMPTY else -1
+            group = group if message.mode == "part" else int(shown.owner[group + 1])
+        if group is None or not 0 <= group < len(field.groups):
+            if message.slot is None:
+                raise UserError(f"there is no thing {group}; the page shows an older state")
+            return cloud.ids[:0]  # what was clicked belongs to no thing
+        return index_groups(cloud).ids_of(field.leaves(group))
+
+    def _operate(self, message: Operate) -> Reply:
+        """Typed operations on the selection, as one step."""
+        if self._session.last is None:
+            raise UserError("nothing is selected; click a thing first")
+        ops = []
+        for given in message.ops:
+            fields = check_arguments(given)
+            op = registry.parse({**fields, "target": fields.get("target", {"last": True})})
+            ops.append(without_confirmation(op))
+        plan = EditPlan(instruction=" and ".join(map(operation_words, ops))[:400], ops=tuple(ops), planner="page")
+        try:
+            return _said(self._dialogue.edited(self._session.apply(plan)))
+        except ScenewrightError as error:
+            return self._refused(error)
+
+    def _save(self, message: Save) -> Reply:
+        if "/" in message.name or "\\" in message.name:
+            raise UserError(
+                f"{message.name!r} is not the name of a file; it is saved beside the scene, without a folder"
+            )
+        return {**_ANSWER, "text": save_scene(self._desk, SaveArguments(file=message.name)).text}
+
+
+_ANSWER: Reply = {
+    "type": "said", "ok": True, "text": "", "lines": [], "receipt": [], "pictures": [], "link": None, "camera": None,
+}  # fmt: skip
+
+
+def _said(said: Said) -> Reply:
+    """The answer to what was done."""
+    first, *lines = said.text.split("\n")
+    receipts = said.result.receipts if said.result is not None else ()
+    rows = [{"name": c.name, "passed": c.passed, "text": c.sentence} for r in receipts for c in r.checks]
+    camera = camera_json(said.camera) if said.camera is not None else None
+    return {**_ANSWER, "ok": said.sure, "text": first, "lines": lines, "receipt": rows, "camera": camera}

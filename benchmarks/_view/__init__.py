@@ -1,0 +1,1 @@
+"""Parts of `bench view`: the server under faults, strangers, and words to bytes."""

@@ -1,0 +1,137 @@
+"""The server of the page: what is shown follows the session, on every tab, through cuts and restarts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scenewright.agent.session.session import Session
+from scenewright.benchmarks._view.client import Page, Server, same, served
+from scenewright.gaussians.scene import Scene
+
+
+@pytest.fixture
+def server(boxes: Scene, encoder: Any) -> Iterator[Server]:
+    with served(Session(boxes, encoder=encoder)) as made:
+        yield made
+
+
+@pytest.fixture
+def page(server: Server) -> Iterator[Page]:
+    with Page(server.port, server.cookie) as made:
+        yield made
+
+
+def test_a_tab_gets_everything_and_the_state(server: Server, page: Page) -> None:
+    assert page.welcome["slots"] == len(server.hub.shown.scene.cloud)
+    assert same(page, server.hub)
+    assert [t["name"] for t in page.state["things"]] == ["box", "box", "box", "floor"]
+    assert page.state["things"][0]["color"].startswith("#d")
+    assert page.state["selection"]["groups"] == [] and not page.state["can_undo"]
+
+
+def test_words_change_what_every_tab_shows_and_undo_restores_it(server: Server, page: Page) -> None:
+    with Page(server.port, server.cookie) as other:
+        digest = page.state["digest"]
+        said = page.ask("say", text="make the green thing blue")
+        assert said["ok"] and any(row["passed"] for row in said["receipt"])
+        assert page.state["digest"] != digest and same(page, server.hub)
+        assert page.received < 343 * 8 * 1.2 + 700  # only the colours of the box, and a header
+        assert page.state["history"][0]["text"] == "make the green thing blue"
+        while other.state["digest"] == digest:
+            other.take()
+        assert same(other, server.hub)
+        page.ask("undo")
+        assert page.state["digest"] == digest and page.state["can_redo"] and same(page, server.hub)
+
+
+def test_rows_that_go_and_come_back_keep_the_page_right(server: Server, page: Page) -> None:
+    for text in ("delete the green thing", "undo", "duplicate the green thing", "delete the green things", "undo"):
+        said = page.ask("say", text=text)
+        assert said["ok"], said
+        assert same(page, server.hub), text
+
+
+def test_it_is_what_was_clicked(server: Server, page: Page) -> None:
+    page.ask("select", mode="set", group=2)
+    assert page.state["selection"]["groups"] == [2]
+    page.ask("select", mode="add", group=1)
+    assert page.state["selection"]["groups"] == [1, 2]
+    page.ask("select", mode="remove", group=2)
+    before = server.hub.session.scene.cloud
+    assert page.ask("say", text="make it blue")["ok"]
+    now = server.hub.session.scene.cloud
+    assert set(now.group[(now.sh != before.sh).any(dim=2)[:, 0]].tolist()) == {1}
+
+
+def test_a_slot_selects_its_thing_and_slots_a_part_of_it(server: Server, page: Page) -> None:
+    shown = server.hub.shown
+    row = int((shown.scene.cloud.group == 0).nonzero()[0])
+    page.ask("select", mode="set", slot=int(shown.slots.slot[row]))
+    assert page.state["selection"]["groups"] == [0]
+    page.ask("select", mode="clear")
+    assert server.hub.session.last is None
+    page.ask("select_slots", mode="set", ranges=[[int(shown.slots.slot[row]), 1]])
+    assert page.state["selection"]["ranges"] == [[int(shown.slots.slot[row]), 1]]
+    assert page.state["selection"]["box"] is not None
+
+
+def test_operations_go_to_the_selection_as_one_step(server: Server, page: Page) -> None:
+    move = {"op": "move", "direction": "up", "distance": {"value": 0.5, "unit": "m"}}
+    assert page.ask("operate", ops=[move])["type"] == "error"  # nothing is selected
+    page.ask("select", mode="set", group=1)
+    assert page.ask("operate", ops=[move, {"op": "scale", "factor": 1.2}])["ok"]
+    assert len(page.state["history"]) == 1 and same(page, server.hub)
+    assert page.ask("operate", ops=[{"op": "nonsense"}])["type"] == "error"
+
+
+def test_a_question_is_answered_by_a_click(server: Server, page: Page) -> None:
+    asked = page.ask("say", text="delete the red thing")
+    assert not asked["ok"] and [c["number"] for c in page.state["question"]["candidates"]] == [1, 2]
+    assert page.ask("answer", choice=2)["ok"]
+    assert page.state["question"] is None and same(page, server.hub)
+
+
+def test_before_turns_the_page_into_what_it_was(server: Server, page: Page) -> None:
+    assert page.ask("before")["type"] == "error"
+    page.ask("say", text="make the green thing blue")
+    page.send({"type": "before", "id": 99})
+    header = page.take()
+    assert header["type"] == "before" and header["base"] == page.revision
+    assert [p["column"] for p in header["parts"]] == ["color"]
+
+
+def test_a_tab_that_comes_back_gets_what_it_missed_only(server: Server, page: Page) -> None:
+    with Page(server.port, server.cookie) as other:
+        page.cut()
+        for text in ("make the green thing blue", "make the green thing yellow", "delete the green thing"):
+            other.ask("say", text=text)
+        page.received = 0
+        page.connect()
+        assert page.headers[-1]["base"] is not None
+        assert same(page, server.hub) and page.state["digest"] == other.state["digest"]
+
+
+def test_the_log_makes_the_work_again_after_a_crash(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
+    from scenewright.agent.session.restoring import restore, unfinished
+
+    log = tmp_path / "log.jsonl"
+    with served(Session(boxes, encoder=encoder, log=log)) as first, Page(first.port, first.cookie) as page:
+        slots = first.hub.shown.slots.slot[(boxes.cloud.group == 1).numpy()][:40]
+        page.ask("select_slots", mode="set", ranges=[[int(s), 1] for s in sorted(slots)])
+        assert page.ask("operate", ops=[{"op": "recolor", "color": "blue"}])["ok"]
+        page.ask("say", text="delete the green thing")
+        page.ask("undo")
+        page.ask("select", mode="set", group=2)
+        digest = page.state["digest"]
+    again = Session(boxes, encoder=encoder, log=log)
+    earlier = unfinished(log)
+    assert earlier is not None
+    notes: list[str] = []
+    restore(again, earlier, notes.append)
+    assert again.digest == digest and again.last is not None and again.last.groups == (2,), notes
+    assert len(again.done) == 1
+    again.close()
