@@ -22,7 +22,7 @@ from .repeats import merged
 # Seconds for all together, on two cores.
 QUICK, WHOLE = 180.0, 3600.0
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
-LONG = frozenset({"edits", "fit_sizes", "layout", "mcp", "stability", "structure"})
+LONG = frozenset({"edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure"})
 MOST_REPEATS = 3
 _STARTS = 5.0  # seconds that a process takes besides its measurement
 _CHANGED = "the source changed while it was measured; leave it alone until all is measured"

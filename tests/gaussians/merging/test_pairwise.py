@@ -146,6 +146,22 @@ def test_merging_keeps_more_than_leaving_out_what_shows_least(share: int) -> Non
     assert np.mean(merged) > np.mean(left_out) + 3
 
 
+def test_what_is_hidden_and_what_lies_before_its_own_colour_show_little() -> None:
+    x = torch.tensor([-0.6, 0.0, 0.6])
+    wall = torch.stack([x, torch.zeros(3), torch.zeros(3)], dim=1)
+    own = wall + torch.tensor([[0.0, -0.2, 0.0], [0.0, -0.2, 0.0], [0.0, 0.2, 0.0]])  # before, before, behind
+    sh = torch.full((6, 1, 3), 1.0)
+    sh[4] = -1.0  # of another colour than the wall
+    cloud = GaussianCloud.create(
+        torch.cat([wall, own]), torch.tensor([1.0, 0, 0, 0]).repeat(6, 1),
+        torch.tensor([0.2, 0.01, 0.2]).repeat(6, 1) * torch.tensor([2.0] * 3 + [1.0] * 3)[:, None],
+        torch.tensor([0.999] * 3 + [0.5] * 3), sh,
+    )  # fmt: skip
+    seen = visibility(cloud, [Camera.look_at((0, -3, 0), (0, 0, 0), (0, 0, 1), 96, 96)] * 8)
+    same, other, hidden = seen[3:]
+    assert hidden < 0.05 * other and same < 0.2 * other
+
+
 def test_what_no_view_shows_is_merged_first() -> None:
     cloud = ball(800, groups=1)
     inside = cloud.replace(means=0.7 * cloud.means, opacities=torch.full((800,), 0.99), ids=cloud.ids + 800)
@@ -153,9 +169,9 @@ def test_what_no_view_shows_is_merged_first() -> None:
         *(torch.cat([a, b]) for (_, a), (_, b) in zip(cloud.columns()[:5], inside.columns()[:5], strict=True))
     )
     shell = shell.replace(opacities=torch.full((1600,), 0.99), scales=shell.scales * 2)
-    done = merge(shell, 1000, visibility(shell, EYES))
+    done = merge(shell, 1300, visibility(shell, EYES))
     merged = np.bincount(done.rows)[done.rows] > 1
-    assert merged[800:].mean() > 2 * merged[:800].mean()
+    assert merged[800:].mean() > 4 * merged[:800].mean()
 
 
 def test_a_number_below_that_of_the_groups_and_bad_values_are_refused() -> None:
