@@ -49,6 +49,7 @@ def listen(port: int) -> socket.socket:
     try:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listening.bind((HOST, port))
+        listening.listen(CONNECTIONS)  # before the address is told: who is early waits
     except (OSError, OverflowError) as error:
         listening.close()
         why = getattr(error, "strerror", None) or error

@@ -30,6 +30,7 @@ CUTS, QUICK_CUTS = 50, 8
 MESSAGES, QUICK_MESSAGES = 10_000, 500
 HUGE, QUICK_HUGE = 1 << 30, 1 << 26
 KILLS, QUICK_KILLS = 5, 1
+_NOTHING: dict[str, Any] = {"type": "select_slots", "mode": "add", "ranges": []}  # leaves the selection as it is
 _COLORS = ("blue", "red", "green", "yellow", "teal")
 
 
@@ -68,7 +69,7 @@ def cuts(server: Server, log: Path, times: int, seed: int) -> dict[str, Any]:
             for _ in range(rng.randrange(3)):
                 other.ask("operate", ops=[_recolor(rng)]) if rng.random() < 0.7 else other.ask("undo")
             page.connect()
-            other.ask("before")  # what the first tab asked for is done by then
+            other.ask(**_NOTHING)  # what the first tab asked for is done by then
             while page.state["digest"] != other.state["digest"] or page.revision != other.revision:
                 page.take()
             right += same(page, server.hub) and page.state["digest"] == server.hub.session.digest
@@ -87,7 +88,7 @@ def kills(folder: Path, times: int, seed: int) -> dict[str, Any]:
         try:
             with Page(port, cookie) as page:
                 if digest is not None:
-                    page.ask("before")  # its answer comes after the edits were made again
+                    page.ask(**_NOTHING)  # its answer comes after the edits were made again
                     right += page.state["digest"] == digest and page.state["selection"] == selected
                 if time < times:
                     page.ask("select", mode="set", slot=rng.randrange(page.welcome["slots"]))

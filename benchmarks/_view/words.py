@@ -27,7 +27,7 @@ _WORDS = ("make it red", "make it blue", "make it yellow")
 def measure(quick: bool) -> list[dict[str, Any]]:
     """A row for each edit: seconds until all bytes are there, and bytes over those that changed."""
     scene, group = with_thing(crowded(QUICK_GAUSSIANS if quick else GAUSSIANS), SHARE)
-    rows = []
+    rows: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder:
         session = Session(scene, planner="grammar", log=Path(folder) / "log.jsonl")
         session.embed()  # names are no part of what is measured
