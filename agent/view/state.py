@@ -23,6 +23,7 @@ from .slots import ranges_of
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera, Vec3
     from ...gaussians.language.field.language_field import Group, LanguageField
+    from ...gaussians.scene import Scene
     from ...tools.receipt import Receipt
     from ..session.session import Session
     from .changes import Shown
@@ -54,7 +55,12 @@ def _summary(receipts: Sequence[Receipt]) -> str:
 
 def welcome(session: Session, title: str) -> dict[str, Any]:
     """The fields of a `welcome` message that no edit changes."""
-    scene, frame = session.scene, framed(session.scene).frame
+    return about(session.scene, session.viewer, title)
+
+
+def about(scene: Scene, camera: Camera, title: str) -> dict[str, Any]:
+    """What a page must know of a scene to show it from a camera: title, frame, near plane, bounds."""
+    frame = framed(scene).frame
     means = scene.cloud.means.numpy()
     ends = [np.zeros(3), np.ones(3)]
     if len(means):
@@ -67,7 +73,7 @@ def welcome(session: Session, title: str) -> dict[str, Any]:
         "metres_per_unit": frame.metres_per_unit,
         "near": near_plane(means),
         "bounds": [[float(c) for c in end] for end in ends],
-        "camera": camera_json(session.viewer),
+        "camera": camera_json(camera),
     }
 
 
@@ -91,6 +97,13 @@ def _things(field: LanguageField) -> list[dict[str, Any]]:
         for g in field.groups
         if g.count and g.parent < 0
     ]
+
+
+def names(scene: Scene) -> dict[int, str]:
+    """The names of the things that have Gaussians, by group; empty without a language field."""
+    if scene.language is None:
+        return {}
+    return {g.id: name_of(g) for g in scene.language.groups if g.count and g.parent < 0}
 
 
 def name_of(group: Group) -> str:

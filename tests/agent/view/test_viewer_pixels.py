@@ -216,3 +216,23 @@ def test_hidden_groups_are_not_drawn_and_highlighted_ones_are_tinted(page: Any) 
     wanted = render(scene.cloud.replace(sh=marked), CAMERA).to_uint8()
     assert psnr(tinted, wanted) > 30 > psnr(plain, wanted)
     assert psnr(picture(page), plain) > 60
+
+
+def test_the_slider_shows_the_scene_before_on_its_left(page: Any) -> None:
+    scene = clusters(1)
+    cloud = scene.cloud
+    means = cloud.means + torch.tensor([0.3, 0.0, 0.4]) * (cloud.group == 2)[:, None]
+    now = Scene(cloud.replace(means=means)[cloud.group != 1])
+    past = shown(page, now).then(scene)  # it has Gaussians that the scene of now lacks
+    message = change(past, 0, changes(Shown.first(now), past) or {}, "before")
+    send = "text => viewer.setBefore(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer)"
+    page.evaluate(send, base64.b64encode(message).decode())
+    before, after = (render(s.cloud, CAMERA).to_uint8() for s in (scene, now))
+    assert psnr(picture(page), after) > 30 > psnr(before, after)
+    page.evaluate("() => { viewer.compare = 0.5 }")
+    drawn, half = picture(page), WIDTH // 2
+    keep("slider", before, drawn, after)
+    assert psnr(drawn[:, :half], before[:, :half]) > 30 > psnr(drawn[:, :half], after[:, :half])
+    assert psnr(drawn[:, half:], after[:, half:]) > 30 > psnr(drawn[:, half:], before[:, half:])
+    page.evaluate("() => { viewer.setBefore(null); viewer.compare = null }")
+    assert psnr(picture(page), after) > 30

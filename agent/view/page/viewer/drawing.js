@@ -26,9 +26,25 @@ export class Drawing {
     this.rows = 0;
   }
 
-  // Upload the sorted slots of one picture.
-  setOrder(order, count) {
+  // One picture of `splats` from `camera` (Pinhole). list: {order, count}, its sorted slots; tint: see `project`; part: the columns of
+  // pixels [first, end] to draw, null for all.
+  picture(splats, list, camera, tint, batches, background, part) {
     const { gl } = this;
+    if (this.list !== list) this.setOrder(list);
+    this.project(splats, camera, tint);
+    if (part) {
+      gl.enable(gl.SCISSOR_TEST);
+      gl.scissor(part[0], 0, part[1] - part[0], camera.height);
+    }
+    this.blend(camera.width, camera.height, batches);
+    this.present(background);
+    gl.disable(gl.SCISSOR_TEST);
+  }
+
+  setOrder(list) {
+    const { gl } = this;
+    const { order, count } = list;
+    this.list = list;
     const rows = Math.max(1, Math.ceil(count / WIDTH));
     if (rows > this.rows) {
       this.rows = Math.ceil(rows * 1.2);

@@ -7,15 +7,15 @@ let groups = new Int32Array(0);
 let depths = new Float32Array(0);
 let seen = new Uint32Array(0);
 let hidden = new Set();
-let side = new Map(); // slot -> 1: only in the picture after, 2: only in the one before
+let sides = null; // of a slot 1: only in the picture after, 2: only in the one before, 0: in both (Uint8Array)
 const KEYS = 65536;
 const starts = new Uint32Array(KEYS + 1);
 
 onmessage = ({ data }) => {
   if (data.rows) rows(data);
   else if (data.hidden) hidden = data.hidden;
-  else if (data.sides) side = data.sides;
-  else if (data.reset) slots = 0;
+  else if ('sides' in data) sides = data.sides;
+  else if ('keep' in data) slots = data.keep; // forget the slots behind these
   else {
     const answer = sorted(data);
     postMessage(answer, [answer.order.buffer]);
@@ -63,7 +63,7 @@ function sorted({ position, right, down, forward, near, slopes, clamps, which, n
     if (Math.abs(rx * x + ry * y + rz * z) > tx * depth + sx * radius) continue;
     if (Math.abs(dx * x + dy * y + dz * z) > ty * depth + sy * radius) continue;
     if (picky && hidden.has(groups[at + 4])) continue;
-    if (which && (side.get(slot) ?? which) !== which) continue;
+    if (sides && sides[slot] && sides[slot] !== (which || 1)) continue;
     if (depth < nearest) nearest = depth;
     if (depth > farthest) farthest = depth;
     depths[count] = depth;

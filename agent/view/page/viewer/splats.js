@@ -46,24 +46,10 @@ export class Splats {
     this.textures?.forEach((texture) => gl.deleteTexture(texture));
     this.textures = [gl.RGBA32UI, gl.RGBA32UI, gl.RG32UI].map((format) => allocate(gl, format, WIDTH, rows));
     for (let i = 0; i < 3; i++) this.upload(i, 0, this.capacity);
-    this.growHarmonics(2 * rows);
-  }
-
-  growHarmonics(rows) {
-    const { gl } = this;
-    const wide = Math.max(1, HARMONIC_WIDTH * TEXELS[this.degree]);
-    const texture = allocate(gl, gl.RGBA32UI, wide, this.degree ? rows : 1);
-    if (this.harmonics && this.degree) {
-      const frame = gl.createFramebuffer();
-      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, frame);
-      gl.framebufferTexture2D(gl.READ_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.harmonics, 0);
-      gl.copyTexSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 0, 0, wide, this.harmonicRows);
-      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, null);
-      gl.deleteFramebuffer(frame);
-      gl.deleteTexture(this.harmonics);
-    }
-    this.harmonics = texture;
-    this.harmonicRows = rows;
+    this.bands = wider(Uint32Array, 4 * TEXELS[this.degree], this.bands);
+    if (this.harmonics) gl.deleteTexture(this.harmonics);
+    this.harmonics = allocate(gl, gl.RGBA32UI, Math.max(1, HARMONIC_WIDTH * TEXELS[this.degree]), this.degree ? 2 * rows : 1);
+    if (this.degree) this.uploadHarmonics(0, this.capacity);
   }
 
   // Write the rows `bytes` of a column into the ranges [[first, count], ...] of slots.
@@ -122,15 +108,32 @@ export class Splats {
     const texels = TEXELS[this.degree];
     const halves = 3 * ((this.degree + 1) ** 2 - 1);
     const from = new Uint16Array(bytes.buffer, bytes.byteOffset, halves * count);
-    const padded = new Uint16Array(8 * texels * count);
-    for (let i = 0; i < count; i++) padded.set(from.subarray(halves * i, halves * (i + 1)), 8 * texels * i);
-    const words = new Uint32Array(padded.buffer);
+    const to = new Uint16Array(this.bands.buffer);
+    for (let i = 0; i < count; i++) to.set(from.subarray(halves * i, halves * (i + 1)), 8 * texels * (first + i));
+    this.uploadHarmonics(first, count);
+  }
+
+  uploadHarmonics(first, count) {
     const { gl } = this;
+    const texels = TEXELS[this.degree];
     gl.bindTexture(gl.TEXTURE_2D, this.harmonics);
     for (const [x, y, wide, high, start] of rectangles(first, count, HARMONIC_WIDTH)) {
-      const part = words.subarray(4 * texels * (start - first));
+      const part = this.bands.subarray(4 * texels * start, 4 * texels * (start + wide * high));
       gl.texSubImage2D(gl.TEXTURE_2D, 0, x * texels, y, wide * texels, high, gl.RGBA_INTEGER, gl.UNSIGNED_INT, part);
     }
+  }
+
+  // Copy those of `slots` that there are to as many from `first` on; they do not count as slots.
+  copy(slots, first) {
+    const { slots: count } = this;
+    this.grow(first + slots.length);
+    this.slots = count;
+    const each = [[this.geometry, 4], [this.shape, 4], [this.paint, 2], [this.bands, 4 * TEXELS[this.degree]]];
+    for (const [array, size] of each) {
+      slots.forEach((slot, i) => slot < count && array.copyWithin(size * (first + i), size * slot, size * (slot + 1)));
+    }
+    for (let i = 0; i < 3; i++) this.upload(i, first, slots.length);
+    if (this.degree) this.uploadHarmonics(first, slots.length);
   }
 
   // Set the flags of all slots: `bit` in the ranges, cleared elsewhere.

@@ -45,8 +45,11 @@ export class SplatViewer {
     if (this.splats) this.splats.free();
     this.splats = new Splats(this.gl, slots, degree);
     this.near = near ?? this.near;
-    this.worker.postMessage({ reset: true });
+    this.worker.postMessage({ keep: 0 });
+    this.worker.postMessage({ sides: null });
     this.ready = null;
+    this.past = null;
+    this.earlier = null;
     this.flagged = false;
     this.touch(true);
   }
@@ -59,6 +62,7 @@ export class SplatViewer {
 
   decode(buffer) {
     const { header, columns } = readMessage(buffer);
+    this.setBefore(null);
     if (header.base === null && (header.chunk?.[0] ?? 0) === 0) this.begin({ slots: header.slots, degree: header.degree, near: this.near });
     this.splats.grow(header.slots);
     const changed = new Map();
@@ -69,6 +73,49 @@ export class SplatViewer {
     this.tell([...changed.values()]);
     this.touch(true);
     return header;
+  }
+
+  // The rows that turn the scene into the one before (a "before" message), or null. They become slots behind the others, which only the
+  // picture before shows, as only the picture after shows those that they stand for.
+  setBefore(buffer) {
+    if (!buffer && !this.past) return;
+    const { splats } = this;
+    this.past = null;
+    this.earlier = null;
+    this.worker.postMessage({ keep: splats.slots });
+    this.worker.postMessage({ sides: null });
+    if (buffer) {
+      const { columns } = readMessage(buffer);
+      const all = new Set(columns.flatMap(({ ranges: where }) => where.flatMap(([first, count]) => span(first, count))));
+      const slots = Uint32Array.from(all).sort();
+      const count = splats.slots;
+      const copies = new Map(Array.from(slots, (slot, i) => [slot, count + i]));
+      splats.copy(slots, count);
+      for (const { column, ranges: where, bytes } of columns) splats.write(column, moved(where, copies), bytes);
+      splats.slots = count;
+      const sides = new Uint8Array(count + slots.length).fill(2, count);
+      slots.forEach((slot) => slot < count && (sides[slot] = 1));
+      this.tell([[count, slots.length]]);
+      this.worker.postMessage({ sides }, [sides.buffer]);
+      this.past = true;
+    }
+    this.touch(true);
+  }
+
+  // null, or the share of the width left of which the picture before is shown, if `setBefore` told it.
+  get compare() {
+    return this.share ?? null;
+  }
+
+  set compare(share) {
+    if (this.compare === share) return;
+    const kept = share !== null && this.share !== null && this.share !== undefined;
+    this.share = share;
+    this.touch(!kept);
+  }
+
+  get comparing() {
+    return Boolean(this.past) && this.compare !== null;
   }
 
   // Tell the sorting worker of changed slots.
@@ -190,7 +237,7 @@ export class SplatViewer {
     this.asked = null;
     if (!this.splats) return this.settle();
     this.fit();
-    if (this.sortedNumber < this.number && !this.sorting) this.sort();
+    if (this.sortedNumber < this.number && !this.sorting) this.sort(this.comparing ? 1 : 0);
     // While the camera moves, the order of the last view will do if a new one takes long.
     if (this.sortedNumber === this.number || (this.ready && this.stats.sort_ms > 25)) this.draw();
   }
@@ -202,7 +249,8 @@ export class SplatViewer {
     if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
   }
 
-  sort() {
+  // which: 0 for the only picture; 1 for that after, to be followed by 2 for that before.
+  sort(which) {
     const camera = this.pinhole;
     const { position, right, down, forward, focal, width, height, tangents } = camera;
     const margin = 2 / focal; // the reach of the dilation
@@ -210,9 +258,10 @@ export class SplatViewer {
     this.sortCamera = camera;
     const buffer = this.spare;
     this.spare = null;
+    this.asking = which === 2 ? this.asking : this.number;
     this.worker.postMessage(
       {
-        ...{ position, right, down, forward, near: this.near, number: this.number, which: 0, buffer },
+        ...{ position, right, down, forward, near: this.near, number: this.asking, which, buffer },
         slopes: [width / 2 / focal + margin, height / 2 / focal + margin],
         clamps: [tangents[1], tangents[3]],
       },
@@ -220,13 +269,14 @@ export class SplatViewer {
     );
   }
 
-  sorted({ order, count, number, ms }) {
+  sorted({ order, count, number, which, ms }) {
     this.sorting = false;
-    this.spare = this.ready?.order.buffer;
-    this.ready = { order, count, camera: this.sortCamera };
-    this.sortedNumber = number;
+    const name = which === 2 ? 'earlier' : 'ready';
+    this.spare = this[name]?.order.buffer;
+    this[name] = { order, count, camera: this.sortCamera };
     this.stats.sort_ms = ms;
-    this.drawing.setOrder(order, count);
+    if (which === 1 && this.comparing) return this.sort(2);
+    this.sortedNumber = number;
     this.tick();
   }
 
@@ -235,9 +285,11 @@ export class SplatViewer {
     const { drawing } = this;
     const began = performance.now();
     const marked = this.marks.groups.size || this.marks.ranges.length;
-    drawing.project(this.splats, camera, marked ? [...this.marks.color, 0.45] : null);
-    drawing.blend(camera.width, camera.height, BATCHES);
-    drawing.present(this.background);
+    const tint = marked ? [...this.marks.color, 0.45] : null;
+    const line = this.comparing && this.earlier ? Math.round(this.compare * camera.width) : 0;
+    const part = line ? [line, camera.width] : null;
+    if (line) drawing.picture(this.splats, this.earlier, camera, null, BATCHES, this.background, [0, line]);
+    if (line < camera.width) drawing.picture(this.splats, this.ready, camera, tint, BATCHES, this.background, part);
     this.fresh = this.sortedNumber === this.number;
     Object.assign(this.stats, { frame_ms: performance.now() - began, drawn: this.ready.count, slots: this.splats.slots });
     this.onFrame?.(this.stats);
@@ -268,6 +320,20 @@ export class SplatViewer {
     if (this.asked) cancelAnimationFrame(this.asked);
     this.gl.getExtension('WEBGL_lose_context')?.loseContext();
   }
+}
+
+const span = (first, count) => Array.from({ length: count }, (_, i) => first + i);
+
+// Ranges of slots as ranges of their copies, in the same order of rows.
+function moved(where, copies) {
+  const found = [];
+  for (const slot of where.flatMap(([first, count]) => span(first, count))) {
+    const to = copies.get(slot);
+    const last = found[found.length - 1];
+    if (last && last[0] + last[1] === to) last[1]++;
+    else found.push([to, 1]);
+  }
+  return found;
 }
 
 // From a point to the segment between two others.

@@ -1,0 +1,61 @@
+// The exported page: shows the scene that the file holds; a click names what is under the pointer. It needs no server.
+
+import { add, dot, norm, scale } from './camera.js';
+import { SplatViewer } from './viewer.js';
+
+const byId = (id) => document.getElementById(id);
+const about = JSON.parse(byId('about').textContent);
+const told = byId('told');
+const help = 'Drag to turn, wheel or two fingers to approach, W A S D to move; click a thing for its name.';
+
+function makeWorker() {
+  return new Worker(URL.createObjectURL(new Blob([byId('worker').textContent], { type: 'text/javascript' })));
+}
+
+// The bytes of base64 text that were packed with gzip.
+async function unpacked(text) {
+  const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+}
+
+function home(viewer) {
+  const { position, forward, up, fov_y } = about.camera;
+  viewer.camera = { position, forward, up, fov_y };
+  const [low, high] = about.bounds;
+  const ahead = dot(add(scale(add(low, high), 0.5), position, -1), forward);
+  viewer.controls.distance = ahead > 0 ? ahead : norm(add(high, low, -1)) / 4;
+}
+
+async function show() {
+  const viewer = new SplatViewer(byId('canvas'), { makeWorker });
+  viewer.near = about.near;
+  Object.assign(viewer.controls, { up: about.up, floor: about.floor, metres: about.metres_per_unit ?? 1 });
+  home(viewer);
+  const parts = [...document.querySelectorAll('.columns')];
+  for (const [number, part] of parts.entries()) {
+    told.textContent = `Loading: ${Math.round((100 * number) / parts.length)} %`;
+    viewer.decode(await unpacked(part.textContent));
+    part.remove(); // the text is not needed any more
+  }
+  await viewer.idle();
+  told.textContent = help;
+  byId('home').onclick = () => home(viewer);
+  const modes = [...byId('modes').querySelectorAll('[data-mode]')];
+  for (const button of modes) {
+    button.onclick = () => {
+      viewer.controls.mode = button.dataset.mode;
+      modes.forEach((other) => other.setAttribute('aria-pressed', String(other === button)));
+      byId('canvas').focus();
+    };
+  }
+  byId('canvas').addEventListener('click', (event) => {
+    if (viewer.controls.dragged) return;
+    const found = viewer.pick(event.offsetX, event.offsetY);
+    const name = found && about.names[found.group];
+    viewer.highlight = { groups: name ? new Set([found.group]) : new Set() };
+    told.textContent = name ?? help;
+  });
+  window.viewer = viewer;
+}
+
+show().catch((error) => (told.textContent = error.message));
