@@ -98,7 +98,7 @@ class Actions:
 
     def _stepped(self, step: Step) -> Reply:
         if step.type == "export":
-            raise UserError("this server makes no pages; `scenewright export` does")
+            raise UserError("this server cannot make a page to share; `save` writes the scene")
         result = self._session.undo() if step.type == "undo" else self._session.redo()
         return _said(self._dialogue.edited(result))
 

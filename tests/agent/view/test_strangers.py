@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -44,6 +45,18 @@ def test_paths_that_lead_elsewhere_are_no_files(server: Server) -> None:
               "/viewer/%2e%2e/%2e%2e/hub.py", "/\\..\\server.py", "/index.html%00.js", "/./", "/.hidden")  # fmt: skip
     for path in tricks:
         assert asked(server.port, path, {"Cookie": server.cookie})[0] == 404, path
+
+
+def test_the_page_and_all_that_it_names_are_served(server: Server) -> None:
+    status, headers, body = asked(server.port, "/", {"Cookie": server.cookie})
+    assert status == 200 and headers["content-type"].startswith("text/html")
+    named = re.findall(rb'(?:src|href)="([^"#:]+)"', body)
+    assert named
+    for name in named:
+        path = "/" + name.decode().removeprefix("./").removeprefix("/")
+        status, headers, _ = asked(server.port, path, {"Cookie": server.cookie})
+        assert status == 200, name
+        assert not name.endswith(b".js") or headers["content-type"].startswith("text/javascript")
 
 
 def test_answers_allow_this_origin_only(server: Server) -> None:
