@@ -36,6 +36,7 @@ class Stage(Protocol):
 
     def settle(self) -> None: ...
     def before(self) -> bytes: ...
+    def export(self) -> str: ...
 
 
 class Actions:
@@ -98,9 +99,13 @@ class Actions:
 
     def _stepped(self, step: Step) -> Reply:
         if step.type == "export":
-            raise UserError("this server cannot make a page to share; `save` writes the scene")
+            return self._export()
         result = self._session.undo() if step.type == "undo" else self._session.redo()
         return _said(self._dialogue.edited(result))
+
+    def _export(self) -> Reply:
+        """The scene as a page of its own, to download."""
+        return {**_ANSWER, "text": "the page is ready", "link": self._stage.export()}
 
     # -- the selection -----------------------------------------------------------------------------------------------
 

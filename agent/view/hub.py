@@ -15,6 +15,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import PurePath
 from typing import Any, Protocol
 
 import numpy as np
@@ -28,11 +29,13 @@ from . import state, wire
 from .actions import Actions
 from .changes import Changes, Shown, changes
 from .messages import Asked
+from .standalone import page
 
 _log = logging.getLogger(__name__)
 RING = 256  # changes that are kept for tabs that come back
 RING_SLOTS = 8_000_000  # slots in all of them
 WAITING = 256  # messages that wait for the worker; more are refused
+MADE = "/made.html"  # where the last page that was made is
 BUSY_AFTER = 0.15  # seconds after which work is told
 PROGRESS_EVERY = 0.05  # seconds
 
@@ -60,6 +63,7 @@ class Hub:
     Attributes:
         shown: what the tabs should show.
         state: the text of the present `state` message.
+        made: the name and the bytes of the last page that was made of the scene; None: none was.
     """
 
     def __init__(
@@ -77,6 +81,7 @@ class Hub:
         self._actions = Actions(self, self._dialogue, folder, keep_field)
         # Revisions of another run of the server are never those of this one.
         self.shown = Shown.first(session.scene, int(time.time() * 1000))
+        self.made: tuple[str, bytes] | None = None
         self._state = state.of(session, self.shown)
         self.state = self._told(False)
         self._welcome = state.welcome(session, self.title)
@@ -254,6 +259,12 @@ class Hub:
     def _wake(self) -> None:
         for tab in self._everyone():
             tab.wake()
+
+    def export(self) -> str:
+        """Make the scene a page of its own; returns its path on this server, where the last one made is."""
+        name = f"{PurePath(self.title).stem}.html"
+        self.made = (name, page(self.session.scene, self.session.viewer, self.title))
+        return MADE
 
     def before(self) -> bytes:
         """The `before` message: what turns the present state into the one before the last edit.

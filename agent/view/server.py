@@ -13,13 +13,13 @@ from collections.abc import Awaitable, Callable, MutableMapping
 from http.cookies import CookieError, SimpleCookie
 from pathlib import Path
 from typing import Any
-from urllib.parse import parse_qs
+from urllib.parse import parse_qs, quote
 
 from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse, Response
 from starlette.websockets import WebSocket
 
-from .hub import Hub
+from .hub import MADE, Hub
 from .tab import ServedTab
 
 HOST = "127.0.0.1"
@@ -117,6 +117,10 @@ class App:
             return self._entered(query)
         if not self._known(scope):
             return self._refusal(403, "open the address that `scenewright view` printed; its token counts once")
+        if scope["path"] == MADE and self._hub.made is not None:
+            name, page = self._hub.made
+            there = {"content-disposition": f"attachment; filename*=UTF-8''{quote(name, safe='')}"}
+            return Response(page, headers={**self._always, **there}, media_type="text/html")
         file = self._table.get(scope["path"])
         if file is None:
             return self._refusal(404, "there is no such file")

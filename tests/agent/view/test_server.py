@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from scenewright.agent.session.session import Session
-from scenewright.benchmarks._view.client import Page, Server, same, served
+from scenewright.benchmarks._view.client import Page, Server, asked, same, served
 from scenewright.gaussians.scene import Scene
 
 
@@ -135,3 +135,13 @@ def test_the_log_makes_the_work_again_after_a_crash(boxes: Scene, encoder: Any, 
     assert again.digest == digest and again.last is not None and again.last.groups == (2,), notes
     assert len(again.done) == 1
     again.close()
+
+
+def test_the_scene_is_exported_as_a_page_to_download(server: Server, page: Page) -> None:
+    cookie = {"Cookie": server.cookie}
+    assert asked(server.port, "/made.html", cookie)[0] == 404
+    link = page.ask("export")["link"]
+    status, headers, body = asked(server.port, link, cookie)
+    assert status == 200 and body.startswith(b"<!doctype html>")
+    assert headers["content-disposition"] == "attachment; filename*=UTF-8''test.html"
+    assert asked(server.port, link)[0] == 403
