@@ -30,7 +30,11 @@ const connection = new Connection({
   revision: () => (store.state.loaded === 1 ? store.state.revision : null),
   onMessage, onColumns, onStatus, onLost,
 });
-const send = (message) => connection.send(message);
+
+function send(message) {
+  if (message.type.startsWith("select")) store.update({marked: true});
+  return connection.send(message);
+}
 
 // -- the picture ---------------------------------------------------------------------------------------------------
 
@@ -115,6 +119,7 @@ function onColumns(header, buffer) {
   viewer.decode(buffer);
   const [number, of] = header.chunk;
   const whole = header.base !== null || number + 1 === of;
+  if (header.base !== null) store.update({marked: false});
   store.update({loaded: whole ? 1 : (number + 1) / of, revision: header.revision, connection: whole ? "ready" : "loading"});
 }
 
@@ -218,8 +223,9 @@ selection({store, viewer, send, answer});
 selectedBar(store, commands);
 keys({store, commands, answer});
 
-store.watch(["selection", "pointed"], ({selection, pointed}) => {
-  viewer.highlight = {groups: new Set(pointed === null ? selection.groups : [...selection.groups, pointed]), ranges: selection.ranges};
+store.watch(["selection", "pointed", "marked"], ({selection, pointed, marked}) => {
+  const groups = new Set(marked ? selection.groups : []);
+  viewer.highlight = {groups: pointed === null ? groups : groups.add(pointed), ranges: marked ? selection.ranges : []};
 });
 store.watch(["hidden"], ({hidden}) => {
   viewer.hidden = hidden;
