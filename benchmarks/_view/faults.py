@@ -18,6 +18,7 @@ from typing import Any
 
 from websockets.exceptions import WebSocketException
 
+from ...agent.session.history import looks_alike
 from ...agent.session.log import read_log
 from ...agent.session.log_sessions import problems
 from ...agent.session.session import Session
@@ -141,7 +142,7 @@ def random_messages(server: Server, count: int, seed: int) -> list[str]:
                 sent += 1
                 socket.send(message)
                 socket.ping(ack_on_close=True).wait(10)
-        if server.hub.session.scene.cloud is not scene:
+        if not looks_alike(server.hub.session.scene.cloud, scene):  # a click on a scene may find its things, no more
             wrong.append(f"after {sent} messages the scene was another one")
             break
     with Page(server.port, server.cookie) as page:
