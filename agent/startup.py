@@ -31,9 +31,12 @@ def begin() -> None:
 
 
 def end() -> None:
-    """Collect garbage again; nothing if that is not stopped."""
+    """Collect garbage again, but not among what the first command loaded: each search through that took 0.14 s. Nothing
+    if the collection is not stopped."""
     global _collects
     if _collects:
+        if not gc.get_freeze_count():
+            gc.freeze()
         gc.enable()
         _collects = False
 

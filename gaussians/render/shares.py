@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
 
 DENSE_LABELS = 1_000_000  # range of labels up to which they are counted and not sorted
 
@@ -28,6 +27,8 @@ class Split:
 
 def sum_pairs(count: int, rows: NDArray[np.integer], labels: NDArray[np.int32], weights: NDArray[np.floating]) -> Split:
     """Add up the weights of equal (row, label) pairs, in the order given; `count` is the number of Gaussians."""
+    from scipy.sparse import csr_matrix
+
     names, column = _numbered(labels)
     sizes = (count, max(len(names), 1))
     table = csr_matrix((weights.astype(np.float64), (rows, column)), shape=sizes)  # constructing it adds duplicates

@@ -47,6 +47,11 @@ def test_garbage_is_collected_again_after_the_start() -> None:
     assert not gc.isenabled()
     startup.end()
     assert gc.isenabled()
+    kept = gc.get_freeze_count()
+    assert kept
+    startup.begin()
+    startup.end()
+    assert gc.get_freeze_count() <= kept  # a second command in this process leaves its garbage to be collected
 
 
 ENDING = """

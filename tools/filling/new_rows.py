@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
@@ -76,6 +75,8 @@ def is_fill(cloud: GaussianCloud, rows: Tensor) -> Tensor:
 
 def _bands(points: Tensor, cloud: GaussianCloud, rows: Tensor) -> Tensor:
     """`[M, K - 1, 3]` mean view-dependent bands of the nearest Gaussians of the surface."""
+    from scipy.spatial import cKDTree
+
     tree = cKDTree(cloud.means[rows].cpu().numpy())
     _, near = tree.query(points.numpy(), k=min(_NEIGHBOURS, len(rows)))
     near = near.reshape(len(points), -1)

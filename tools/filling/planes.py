@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 F64 = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -150,6 +149,8 @@ def thinned(points: F64, voxel: float) -> F64:
 
 def _best(points: F64, body: F64, up: F64, tolerance: float, rng: np.random.Generator) -> tuple[F64, float] | None:
     """Normal and offset of the plane through some points that holds most of them, before which the thing lies."""
+    from scipy.spatial import cKDTree
+
     normals, offsets, weights = [], [], []
     heights = points @ up
     edges = np.arange(heights.min(), heights.max() + 2 * tolerance, tolerance)

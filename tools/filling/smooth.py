@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage, sparse
-from scipy.sparse.linalg import spsolve
+from scipy import ndimage
 
 F64 = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -24,6 +23,9 @@ def harmonic(values: F64, known: Mask, unknown: Mask) -> F64:
         known: `[H, W]`, cells whose values hold.
         unknown: `[H, W]`, cells to solve for; disjoint from `known`.
     """
+    from scipy import sparse
+    from scipy.sparse.linalg import spsolve
+
     out = values.astype(np.float64, copy=True)
     if not unknown.any() or not known.any():
         return out

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
@@ -242,6 +241,8 @@ def _hidden_cost(
 ) -> Array:
     """A cost for places of a capture that its pictures do not show: large on the floor of a room, where any place will
     do, small beside and on a thing."""
+    from scipy.spatial import cKDTree
+
     assert around.sight is not None
     open_floor = region.walled and region.surface is None and not region.beside
     weight = _FAR * float(np.linalg.norm(region.high - region.low)) if open_floor else _ASIDE * max(size[:2])
