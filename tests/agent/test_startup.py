@@ -55,7 +55,7 @@ def test_garbage_is_collected_again_after_the_start() -> None:
 
 
 ENDING = """
-import atexit, sys, threading, time
+import atexit, sys, threading
 from scenewright.agent import cli
 
 class Kept:
@@ -64,7 +64,7 @@ class Kept:
 
 kept = Kept()
 atexit.register(print, "functions have run")
-threading.Thread(target=lambda: (time.sleep(0.2), print("threads have ended"))).start()
+threading.Thread(target=lambda: (threading.main_thread().join(), print("threads have ended"))).start()
 sys.argv = ["scenewright", *{arguments}]
 cli.main()
 """
