@@ -32,7 +32,6 @@ const connection = new Connection({
 });
 
 function send(message) {
-  if (message.type.startsWith("select")) store.update({marked: true});
   return connection.send(message);
 }
 
@@ -119,7 +118,6 @@ function onColumns(header, buffer) {
   viewer.decode(buffer);
   const [number, of] = header.chunk;
   const whole = header.base !== null || number + 1 === of;
-  if (header.base !== null) store.update({marked: false});
   store.update({loaded: whole ? 1 : (number + 1) / of, revision: header.revision, connection: whole ? "ready" : "loading"});
 }
 
@@ -223,9 +221,9 @@ selection({store, viewer, send, answer});
 selectedBar(store, commands);
 keys({store, commands, answer});
 
-store.watch(["selection", "pointed", "marked"], ({selection, pointed, marked}) => {
-  const groups = new Set(marked ? selection.groups : []);
-  viewer.highlight = {groups: pointed === null ? groups : groups.add(pointed), ranges: marked ? selection.ranges : []};
+store.watch(["selection", "pointed"], ({selection, pointed}) => {
+  const groups = new Set(selection.groups);
+  viewer.highlight = {groups: pointed === null ? groups : groups.add(pointed), ranges: selection.ranges};
 });
 store.watch(["hidden"], ({hidden}) => {
   viewer.hidden = hidden;

@@ -45,7 +45,6 @@ export function initialState() {
     revision: null,
     things: [],
     selection: {groups: [], ranges: [], text: "", box: null},
-    marked: true, // whether the selection is tinted: not right after an edit, whose colours are to be seen
     question: null,
     history: [],
     canUndo: false,

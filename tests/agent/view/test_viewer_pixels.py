@@ -16,6 +16,7 @@ import pytest
 import torch
 from numpy.typing import NDArray
 from PIL import Image
+from scipy import ndimage
 
 from scenewright import agent
 from scenewright.agent.view.changes import Shown, changes
@@ -197,24 +198,37 @@ def test_a_change_of_rows_shows(page: Any) -> None:
     assert psnr(drawn, was) < 30
 
 
-def test_hidden_groups_are_not_drawn_and_highlighted_ones_are_tinted(page: Any) -> None:
+def test_hidden_groups_are_not_drawn(page: Any) -> None:
     scene = clusters(0)
     shown(page, scene)
     plain = picture(page)
     page.evaluate("() => { viewer.hidden = new Set([1, 3]) }")
     drawn = picture(page)
-    page.evaluate("() => { viewer.hidden = new Set(); viewer.highlight = { groups: new Set([2]) } }")
-    tinted = picture(page)
-    page.evaluate("() => { viewer.highlight = {} }")
+    page.evaluate("() => { viewer.hidden = new Set() }")
     seen = (scene.cloud.group != 1) & (scene.cloud.group != 3)
     wanted = render(scene.cloud[seen], CAMERA).to_uint8()
-    keep("hidden", plain, drawn, wanted, tinted)
+    keep("hidden", plain, drawn, wanted)
     assert psnr(drawn, wanted) > 30 > psnr(plain, wanted)
-    color = (0.28209479177 * scene.cloud.sh + 0.5).clamp(min=0)
-    mixed = torch.lerp(color, torch.tensor([1.0, 0.62, 0.1]), 0.45)
-    marked = torch.where((scene.cloud.group == 2)[:, None, None], (mixed - 0.5) / 0.28209479177, scene.cloud.sh)
-    wanted = render(scene.cloud.replace(sh=marked), CAMERA).to_uint8()
-    assert psnr(tinted, wanted) > 30 > psnr(plain, wanted)
+    assert psnr(picture(page), plain) > 60
+
+
+def test_a_line_runs_around_what_is_selected_and_its_colours_stay(page: Any) -> None:
+    scene = clusters(0)
+    shown(page, scene)
+    plain = picture(page)
+    page.evaluate("() => { viewer.highlight = { groups: new Set([2]), color: [1, 0, 1] } }")
+    outlined = picture(page)
+    page.evaluate("() => { viewer.highlight = {} }")
+    keep("outlined", plain, outlined)
+    line = (outlined == [255, 0, 255]).all(axis=-1)
+    white = torch.where((scene.cloud.group == 2)[:, None, None], 0.5, -0.5) / 0.28209479177
+    chosen = render(scene.cloud.replace(sh=white.expand_as(scene.cloud.sh)), CAMERA).rgb[..., 0].numpy() > 0.5
+    near = ndimage.binary_dilation(chosen, ndimage.generate_binary_structure(2, 2), iterations=4)
+    assert chosen.sum() > 200
+    assert (line & near & ~ndimage.binary_erosion(chosen)).sum() > 0.98 * line.sum()
+    border = ndimage.binary_dilation(chosen) & ~chosen
+    assert (line & border).sum() > 0.9 * border.sum()
+    assert np.abs(outlined.astype(int) - plain)[~line].max() <= 1
     assert psnr(picture(page), plain) > 60
 
 

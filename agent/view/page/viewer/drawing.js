@@ -10,10 +10,11 @@ export class Drawing {
     this.gl = gl;
     this.float = Boolean(gl.getExtension('EXT_color_buffer_float') || gl.getExtension('EXT_color_buffer_half_float'));
     this.programs = {
-      splat: program(gl, shaders.SPLAT_VERTEX, shaders.SPLAT),
-      close: program(gl, shaders.FULL, shaders.CLOSE),
-      present: program(gl, shaders.FULL, shaders.PRESENT),
+      splat: [false, true].map((marked) => program(gl, shaders.SPLAT_VERTEX, shaders.splat(marked))),
+      close: [false, true].map((marked) => program(gl, shaders.FULL, shaders.close(marked))),
+      present: [false, true].map((marked) => program(gl, shaders.FULL, shaders.present(marked))),
     };
+    this.line = null; // around what is selected: its colour
     this.empty = gl.createVertexArray();
     this.quads = gl.createVertexArray();
     gl.bindVertexArray(this.quads);
@@ -26,18 +27,20 @@ export class Drawing {
     this.rows = 0;
   }
 
-  // One picture of `splats` from `camera` (Pinhole). list: {order, count}, its sorted slots; tint: see `project`; part: the columns of
+  // One picture of `splats` from `camera` (Pinhole). list: {order, count}, its sorted slots; line: [red, green, blue] around what is selected, or
+  // null; wide: of the line, px; part: the columns of
   // pixels [first, end] to draw, null for all.
-  picture(splats, list, camera, tint, batches, background, part) {
+  picture(splats, list, camera, line, wide, batches, background, part) {
     const { gl } = this;
     if (this.list !== list) this.setOrder(list);
-    this.project(splats, camera, tint);
+    this.line = line;
+    this.project(splats, camera);
     if (part) {
       gl.enable(gl.SCISSOR_TEST);
       gl.scissor(part[0], 0, part[1] - part[0], camera.height);
     }
     this.blend(camera.width, camera.height, batches);
-    this.present(background);
+    this.present(background, wide);
     gl.disable(gl.SCISSOR_TEST);
   }
 
@@ -60,7 +63,7 @@ export class Drawing {
     this.count = count;
   }
 
-  // groups: of which the Gaussians are tinted.
+  // groups: which are selected.
   setMarks(groups) {
     const { gl } = this;
     const most = Math.max(-1, ...groups);
@@ -75,8 +78,8 @@ export class Drawing {
     this.markCount = most + 1;
   }
 
-  // Footprints of the sorted slots as `camera` (Pinhole) sees them. tint: [red, green, blue, share] or null.
-  project(splats, camera, tint) {
+  // Footprints of the sorted slots as `camera` (Pinhole) sees them.
+  project(splats, camera) {
     const { gl } = this;
     const name = `project${splats.degree}`;
     const { handle, at } = (this.programs[name] ??= program(gl, shaders.FULL, shaders.project(splats.degree)));
@@ -95,9 +98,8 @@ export class Drawing {
     gl.uniform2f(at.size, camera.width, camera.height);
     gl.uniform1f(at.focal, camera.focal);
     gl.uniform1i(at.count, this.count);
-    gl.uniform1i(at.marked, tint ? 1 : 0);
+    gl.uniform1i(at.marked, this.line ? 1 : 0);
     gl.uniform1i(at.markCount, this.markCount);
-    gl.uniform4fv(at.tint, tint ?? [0, 0, 0, 0]);
     gl.bindVertexArray(this.empty);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
@@ -123,7 +125,7 @@ export class Drawing {
 
   splats(from, to) {
     const { gl } = this;
-    const { handle, at } = this.programs.splat;
+    const { handle, at } = this.programs.splat[this.line ? 1 : 0];
     const { width, height } = this.targets[0];
     gl.useProgram(handle);
     bind(gl, at, { places: this.place, looks: this.look });
@@ -143,10 +145,10 @@ export class Drawing {
   close() {
     const { gl } = this;
     const [now, next] = this.targets;
-    const { handle, at } = this.programs.close;
+    const { handle, at } = this.programs.close[this.line ? 1 : 0];
     gl.useProgram(handle);
     gl.bindFramebuffer(gl.FRAMEBUFFER, next.frame);
-    bind(gl, at, { picture: now.texture });
+    bind(gl, at, { picture: now.texture, selection: now.marks });
     gl.disable(gl.BLEND);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.ALWAYS);
@@ -157,32 +159,44 @@ export class Drawing {
   }
 
   // The picture over `background` onto the canvas.
-  present(background) {
+  present(background, wide) {
     const { gl } = this;
-    const { handle, at } = this.programs.present;
+    const { handle, at } = this.programs.present[this.line ? 1 : 0];
     gl.useProgram(handle);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.BLEND);
     gl.disable(gl.DEPTH_TEST);
-    bind(gl, at, { picture: this.targets[0].texture });
+    const { texture, marks, width, height } = this.targets[0];
+    bind(gl, at, { picture: texture, selection: marks });
     gl.uniform3fv(at.background, background);
+    if (this.line) {
+      gl.uniform3fv(at.line, this.line);
+      gl.uniform1f(at.wide, wide);
+      gl.uniform2f(at.size, width, height);
+    }
     gl.bindVertexArray(this.empty);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
   resize(width, height) {
     const { gl } = this;
-    if (this.targets && this.targets[0].width === width && this.targets[0].height === height) return;
-    this.targets?.forEach(({ texture, frame }) => (gl.deleteTexture(texture), gl.deleteFramebuffer(frame)));
+    const marked = Boolean(this.line);
+    const now = this.targets?.[0];
+    if (now && now.width === width && now.height === height && Boolean(now.marks) === marked) return;
+    this.targets?.forEach(({ texture, marks, frame }) => {
+      [texture, marks].forEach((made) => gl.deleteTexture(made));
+      gl.deleteFramebuffer(frame);
+    });
     gl.deleteRenderbuffer(this.depth ?? null);
     this.depth = gl.createRenderbuffer();
     gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
     gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT16, width, height);
     this.targets = [0, 1].map(() => {
       const texture = allocate(gl, this.float ? gl.RGBA16F : gl.RGBA8, width, height);
-      const frame = framebuffer(gl, [texture]);
+      const marks = marked ? allocate(gl, gl.RGBA8, width, height) : null;
+      const frame = framebuffer(gl, marks ? [texture, marks] : [texture]);
       gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, this.depth);
-      return { texture, frame, width, height };
+      return { texture, marks, frame, width, height };
     });
   }
 }
@@ -218,6 +232,7 @@ function program(gl, vertex, fragment) {
 
 function bind(gl, at, textures) {
   Object.entries(textures).forEach(([name, texture], unit) => {
+    if (!texture) return;
     gl.activeTexture(gl.TEXTURE0 + unit);
     gl.bindTexture(gl.TEXTURE_2D, texture);
     if (at[name]) gl.uniform1i(at[name], unit);

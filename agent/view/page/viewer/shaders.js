@@ -14,7 +14,7 @@ void main() {
   gl_Position = vec4(gl_VertexID == 1 ? 3. : -1., gl_VertexID == 2 ? 3. : -1., 0., 1.);
 }`;
 
-// Output place: centre (px, from the top left), long half axis (px, to alpha 1/255); look: short by long axis, red|green, blue|0,
+// Output place: centre (px, from the top left), long half axis (px, to alpha 1/255); look: short by long axis, red|green, blue|1 if it is selected,
 // logarithm (base 2) of the opacity, which is far below zero where nothing is to be drawn.
 export const project = (degree) => `${HEAD}
 #define DEGREE ${degree}
@@ -26,7 +26,6 @@ uniform vec2 size;
 uniform float focal;
 uniform int count, markCount;
 uniform bool marked;
-uniform vec4 tint; // colour of what is selected, and how much of it
 layout(location = 0) out uvec4 place;
 layout(location = 1) out uvec4 look;
 
@@ -123,15 +122,15 @@ void main() {
   color += bands(slot, normalize(toward));
 #endif
   color = max(color, 0.);
+  bool selected = false;
   if (marked) {
     int group = int(g.w);
-    bool selected = (c.y & 65536u) != 0u;
+    selected = (c.y & 65536u) != 0u;
     if (group >= 0 && group < markCount) selected = selected || texelFetch(marks, ivec2(group & 1023, group >> 10), 0).x != 0u;
-    if (selected) color = mix(color, tint.rgb, tint.a);
   }
   vec2 along = axis * sqrt(large) * reach;
   place = floatBitsToUint(vec4(centre, along));
-  look = uvec4(floatBitsToUint(sqrt(small / large)), packHalf2x16(color.rg), packHalf2x16(vec2(color.b, 0.)),
+  look = uvec4(floatBitsToUint(sqrt(small / large)), packHalf2x16(color.rg), packHalf2x16(vec2(color.b, selected ? 1. : 0.)),
     floatBitsToUint(log2(opacity)));
 }`;
 
@@ -141,6 +140,7 @@ uniform usampler2D places, looks;
 uniform int first;
 uniform vec2 size;
 flat out vec4 paint; // red, green, blue, logarithm of the opacity
+flat out float selected;
 out vec2 offset; // in units of which the square is taken from that logarithm
 void main() {
   int number = first + (gl_VertexID >> 2);
@@ -157,34 +157,57 @@ void main() {
   vec2 pixel = place.xy + corner.x * place.zw + corner.y * across;
   gl_Position = vec4(pixel.x / size.x * 2. - 1., 1. - pixel.y / size.y * 2., 0., 1.);
   offset = corner * sqrt(opacity + 7.994353437); // log2(255)
-  paint = vec4(unpackHalf2x16(look.y), unpackHalf2x16(look.z).x, opacity);
+  vec2 rest = unpackHalf2x16(look.z);
+  paint = vec4(unpackHalf2x16(look.y), rest.x, opacity);
+  selected = rest.y;
 }`;
 
-// Nothing is discarded, so that closed pixels fail the depth test before this runs.
-export const SPLAT = `${HEAD}
+// Nothing is discarded, so that closed pixels fail the depth test before this runs. With `marked` a second target takes the share of
+// each pixel that is selected, beside an alpha of its own, which blending needs.
+export const splat = (marked) => `${HEAD}
 flat in vec4 paint;
+flat in float selected;
 in vec2 offset;
-out vec4 result;
+layout(location = 0) out vec4 result;
+${marked ? 'layout(location = 1) out vec4 mark;' : ''}
 void main() {
   float alpha = min(exp2(paint.w - dot(offset, offset)), .999);
   alpha = alpha < 1. / 255. ? 0. : alpha;
   result = vec4(paint.rgb * alpha, alpha);
+  ${marked ? 'mark = vec4(selected * alpha, 0., 0., alpha);' : ''}
 }`;
 
 // Copies the picture so far and closes finished pixels: what is behind them changes an 8-bit value by half a step at most.
-export const CLOSE = `${HEAD}
-uniform sampler2D picture;
-out vec4 result;
+export const close = (marked) => `${HEAD}
+uniform sampler2D picture, selection;
+layout(location = 0) out vec4 result;
+${marked ? 'layout(location = 1) out vec4 mark;' : ''}
 void main() {
-  result = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  result = texelFetch(picture, at, 0);
+  ${marked ? 'mark = texelFetch(selection, at, 0);' : ''}
   gl_FragDepth = result.a > .998 ? 0. : 1.;
 }`;
 
-export const PRESENT = `${HEAD}
-uniform sampler2D picture;
-uniform vec3 background;
+// Over the background; with `marked` a line runs just outside what is selected, whose own colours stay as they are.
+export const present = (marked) => `${HEAD}
+uniform sampler2D picture, selection;
+uniform vec3 background, line;
+uniform float wide; // of the line, px
+uniform vec2 size;
 out vec4 result;
+bool inside(ivec2 at) { return texelFetch(selection, clamp(at, ivec2(0), ivec2(size) - 1), 0).r > .5; }
 void main() {
-  vec4 drawn = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
-  result = vec4(drawn.rgb + (1. - drawn.a) * background, 1.);
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  vec4 drawn = texelFetch(picture, at, 0);
+  vec3 color = drawn.rgb + (1. - drawn.a) * background;
+${marked ? `  if (!inside(at)) {
+    bool near = false;
+    for (int i = 0; i < 16; i++) {
+      float turn = float(i) * .39269908;
+      near = near || inside(at + ivec2(round(wide * vec2(cos(turn), sin(turn)))));
+    }
+    if (near) color = line;
+  }` : ''}
+  result = vec4(color, 1.);
 }`;

@@ -9,6 +9,7 @@ import { gridOver, heaviest, ranges } from './picking.js';
 import { SELECTED, Splats } from './splats.js';
 
 const BATCHES = [0.12, 0.3, 0.55]; // shares of the footprints after which finished pixels are closed
+const LINE = 2; // CSS pixels of the line around what is selected
 const SENT = 1 << 16; // slots a message to the sorting worker
 
 export class SplatViewer {
@@ -285,11 +286,12 @@ export class SplatViewer {
     const { drawing } = this;
     const began = performance.now();
     const marked = this.marks.groups.size || this.marks.ranges.length;
-    const tint = marked ? [...this.marks.color, 0.45] : null;
+    const outline = marked ? this.marks.color : null;
+    const wide = Math.max(1.5, LINE * this.ratio);
     const line = this.comparing && this.earlier ? Math.round(this.compare * camera.width) : 0;
     const part = line ? [line, camera.width] : null;
-    if (line) drawing.picture(this.splats, this.earlier, camera, null, BATCHES, this.background, [0, line]);
-    if (line < camera.width) drawing.picture(this.splats, this.ready, camera, tint, BATCHES, this.background, part);
+    if (line) drawing.picture(this.splats, this.earlier, camera, null, wide, BATCHES, this.background, [0, line]);
+    if (line < camera.width) drawing.picture(this.splats, this.ready, camera, outline, wide, BATCHES, this.background, part);
     this.fresh = this.sortedNumber === this.number;
     Object.assign(this.stats, { frame_ms: performance.now() - began, drawn: this.ready.count, slots: this.splats.slots });
     this.onFrame?.(this.stats);
