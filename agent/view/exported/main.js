@@ -6,7 +6,8 @@ import { SplatViewer } from './viewer.js';
 const byId = (id) => document.getElementById(id);
 const about = JSON.parse(byId('about').textContent);
 const told = byId('told');
-const help = 'Drag to turn, wheel or two fingers to approach, W A S D to move; click a thing for its name.';
+const named = Object.keys(about.names).length > 0;
+const help = `Drag to turn, wheel or two fingers to approach, W A S D to move${named ? '; click a thing for its name' : ''}.`;
 
 function makeWorker() {
   return new Worker(URL.createObjectURL(new Blob([byId('worker').textContent], { type: 'text/javascript' })));
