@@ -254,8 +254,8 @@ def figures(data: Path, quick: bool = False) -> dict[str, float]:
     threshold = pairs.encoder.calibration.threshold
     everything = np.arange(len(pairs.names))
     result = {f"room.{k}": v for k, v in top1(pairs, room_rows(pairs)).items()}
-    result |= {f"all.{k}": v for k, v in top1(pairs, everything, 20 if quick else 1).items()}
-    scenes = 20 if quick else 100
+    result |= {f"all.{k}": v for k, v in top1(pairs, everything, 60 if quick else 1).items()}
+    scenes = 10 if quick else 100
     scores = {f"names{n}": ask(pairs, pairs.half(odd=True), n, scenes) for n in NAMES}
     room, home = room_rows(pairs), named_rows(pairs, Vocabulary.household())
     scores["room29"] = ask_alike(pairs, room, room, scenes)

@@ -23,6 +23,7 @@ from . import _cascade, _data, _nouns, _spoiled, _written
 from .harness import Metric, Result
 
 CASES = Path(__file__).resolve().parent.parent / "tests" / "planners" / "instructions.jsonl"
+NOUNS, QUICK_NOUNS = 4, 40  # every such sentence of other people is read
 Outcome = Literal["right", "abstained", "wrong"]
 
 
@@ -172,7 +173,7 @@ def _of_people(planner: Planner, quick: bool) -> _Part:
     path = _nouns.find()
     if path is None:
         return _Part(notes=(_data.missing("language"),))
-    nouns = _nouns.measure(_nouns.sentences(path, every=20 if quick else 1), planner)
+    nouns = _nouns.measure(_nouns.sentences(path, every=QUICK_NOUNS if quick else NOUNS), planner)
     shares = ("named", "right", "right_of_named", "answered", "right_of_answered", "relations")
     found = tuple(Metric(f"nouns.{name}", getattr(nouns, name), "share", "higher") for name in shares)
     failed = ", ".join(f"{label} read as {noun} ({n})" for label, noun, n in nouns.failures)

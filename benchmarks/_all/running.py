@@ -1,4 +1,4 @@
-"""Runs every benchmark in a process of its own, and again while time is left.
+"""Runs every benchmark in a process of its own, and those that are timed again while time is left.
 
 A process of its own keeps what one benchmark compiles, caches or allocates out of the figures of the next, and the
 failure of one from the others.
@@ -19,8 +19,12 @@ from .. import _fits, _machine
 from ..harness import Result
 from .repeats import merged
 
-# Seconds for all together, on two cores.
-QUICK, WHOLE = 180.0, 3600.0
+# Seconds for all together, on two cores; drawing the page takes some of the three minutes and of the hour besides.
+QUICK, WHOLE = 165.0, 3000.0
+# Seconds after which one benchmark is stopped, so that a slow machine does not wait for it without end.
+QUICK_LIMIT, LIMIT = 150.0, 1500.0
+# Charted against bytes, timed in seconds of the processor, or without a chart of times: they share the cores.
+TOGETHER = frozenset({"edit", "edits", "files", "layout", "mcp", "restyle", "slim", "stability", "structure"})
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
 LONG = frozenset({"edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure"})
 MOST_REPEATS = 3
@@ -44,7 +48,10 @@ class Measured:
 
 
 def measured(names: Sequence[str], quick: bool, say: Callable[[str], None], seconds: float | None = None) -> Measured:
-    """Run benchmarks one after the other, and the shortest ones again while time is left; quick runs leave out `LONG`.
+    """Run benchmarks once, and the shortest of those that are timed again while time is left.
+
+    Those of `TOGETHER` run first, as many at a time as there are cores; the others one after the other, with the
+    machine to themselves. Quick runs leave out `LONG`.
 
     Args:
         say: gets a sentence about each run.
@@ -55,20 +62,29 @@ def measured(names: Sequence[str], quick: bool, say: Callable[[str], None], seco
     failed: dict[str, str] = {}
     revision = _machine.revision()
     names = [name for name in names if not (quick and name in LONG)]
-    for name in names:
-        outcome = _run(name, quick)
+    for name, outcome in _once(names, quick):
         if isinstance(outcome, Result) and outcome.revision == revision:
             found[name] = [outcome]
             say(f"{name}: {outcome.seconds:.0f} s")
         else:
             failed[name] = _CHANGED if isinstance(outcome, Result) else outcome
             say(f"{name} failed: {failed[name]}")
-    for name in _again(found, until):
+    for name in _again({n: results for n, results in found.items() if n not in TOGETHER}, until):
         outcome = _run(name, quick)
         if isinstance(outcome, Result) and outcome.revision == revision:
             found[name].append(outcome)
             say(f"{name} again: {outcome.seconds:.0f} s")
     return Measured(tuple(merged(found[name]) for name in names if name in found), failed)
+
+
+def _once(names: Sequence[str], quick: bool) -> Iterator[tuple[str, Result | str]]:
+    """Each benchmark with its result or failure, as they end: first those that may share the cores, then the others."""
+    together = [name for name in names if name in TOGETHER]
+    with ThreadPoolExecutor(_machine.cores()) as pool:
+        yield from zip(together, pool.map(lambda name: _run(name, quick), together), strict=True)
+    for name in names:
+        if name not in TOGETHER:
+            yield name, _run(name, quick)
 
 
 def side_by_side(names: Sequence[str], say: Callable[[str], None], surroundings: Mapping[str, str]) -> Measured:
@@ -97,7 +113,11 @@ def _run(name: str, quick: bool, besides: Mapping[str, str] | None = None) -> Re
     """The result of a benchmark in a process of its own, or why there is none."""
     command = [sys.executable, "-m", "scenewright", "bench", name, "--json", *(["--quick"] if quick else [])]
     surroundings = {**({} if quick else _PARTS.get(name, {})), **os.environ, **(besides or {})}
-    ended = subprocess.run(command, capture_output=True, text=True, check=False, env=surroundings)
+    limit = QUICK_LIMIT if quick else LIMIT
+    try:
+        ended = subprocess.run(command, capture_output=True, text=True, check=False, env=surroundings, timeout=limit)
+    except subprocess.TimeoutExpired:
+        return f"it was stopped after {limit:.0f} s; `scenewright bench {name}` runs it without a limit"
     if ended.returncode:
         lines = ended.stderr.strip().splitlines()
         return lines[-1].removeprefix("scenewright: ") if lines else f"it ended with code {ended.returncode}"

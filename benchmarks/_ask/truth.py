@@ -85,7 +85,8 @@ class Thing:
     def covers(self, points: F64, grown: float = 0.0) -> Mask:
         """`[...]` whether points `[..., 2]` lie within its footprint, enlarged by `grown` on all sides."""
         local = (points - self.xy) @ self.axes.T
-        return np.asarray((np.abs(local) <= np.array(self.size[:2]) / 2 + grown).all(axis=-1))
+        within = np.abs(local) <= np.array(self.size[:2]) / 2 + grown
+        return np.asarray(within[..., 0] & within[..., 1])  # as `all` over the last axis, at a fraction of its time
 
 
 @dataclass(frozen=True)
@@ -242,7 +243,7 @@ def fits_turned(table: Table, blocking: Sequence[Thing], width: float, depth: fl
     for angle in np.linspace(0, math.pi / 2, turns, endpoint=False):
         c, s = math.cos(angle), math.sin(angle)
         points = square @ np.array([[c, s], [-s, c]])
-        free = (np.abs(points) <= half).all(axis=-1)
+        free = (np.abs(points[..., 0]) <= half[0]) & (np.abs(points[..., 1]) <= half[1])
         for thing in blocking:
             free &= ~thing.covers(points)
         if largest_fit(free, width, depth):

@@ -24,7 +24,7 @@ from .cases import Case, Part
 from .variants import remembering
 
 EMBEDDED, ASKED = 150_000, 1_000_000  # Gaussians
-VIEWS, SIZE = 24, 256  # pictures that are lifted, and their pixels a side
+VIEWS, QUICK_VIEWS, SIZE = 24, 8, 256  # pictures that are lifted, and their pixels a side
 REPEATS, QUICK_REPEATS = 7, 2
 
 
@@ -67,7 +67,7 @@ def queries(case: Case) -> dict[str, Query]:
 def measure(room: Case, encoder: Encoder, grouped: Callable[[Case], Case], quick: bool) -> Part:
     """All costs, on one furnished room."""
     sized = resized(room, EMBEDDED)
-    eyes = pictures.eyes(sized.scene, VIEWS, SIZE)
+    eyes = pictures.eyes(sized.scene, QUICK_VIEWS if quick else VIEWS, SIZE)
     views = [pictures.true_masks(sized, eye, pictures.Crops(encoder), i).masks for i, eye in enumerate(eyes)]
     known = grouped(sized)
     assert known.scene.language is not None

@@ -86,6 +86,22 @@ def test_every_benchmark_runs_once_and_again_while_there_is_time(processes: list
     assert thrice.failed == {"ask": "no captures"}
 
 
+def test_what_is_not_timed_runs_first_and_is_not_repeated(processes: list[str]) -> None:
+    found = running.measured(["plan", "slim"], True, lambda _: None, seconds=1e6)
+    assert processes == ["slim", "plan", "plan", "plan"]
+    assert [(r.name, r.repeats) for r in found.results] == [("plan", 3), ("slim", 1)]
+    assert set(harness.names()) >= running.TOGETHER
+
+
+def test_a_benchmark_that_takes_too_long_is_stopped_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def run(command: list[str], timeout: float, **_: Any) -> subprocess.CompletedProcess[str]:
+        raise subprocess.TimeoutExpired(command, timeout)
+
+    monkeypatch.setattr(running.subprocess, "run", run)
+    found = running.measured(["plan"], False, lambda _: None)
+    assert "stopped after 1500 s" in found.failed["plan"] and not found.results
+
+
 def test_what_is_of_another_revision_or_unreadable_is_a_failure(processes: list[str]) -> None:
     found = running.measured(["plan", "fit", "edit"], True, lambda _: None, seconds=1e-9)
     assert [r.name for r in found.results] == ["plan"]

@@ -14,7 +14,7 @@ from scenewright.gaussians.world.kinds import narrower, same
 from scenewright.planners import load
 from scenewright.planners.grammar.tagging.spelling import correct_spelling, misspelled_name
 from scenewright.planners.grammar.tagging.words import split
-from scenewright.planners.grammar.vocabulary import lexicon
+from scenewright.planners.grammar.vocabulary import lexicon, quantities
 from scenewright.planners.grammar.vocabulary.unsafe import unsafe_words
 from scenewright.planners.rooms.label_encoder import THRESHOLD, agreement
 
@@ -199,3 +199,8 @@ def test_a_serial_number_that_is_said_tells_twins_apart() -> None:
     assert [p >= THRESHOLD for p in agreement("bed 2", labels)] == [False, True, False]
     assert [p >= THRESHOLD for p in agreement("bed", labels)] == [True, True, False]
     assert [p >= THRESHOLD for p in agreement("coffee table", labels)] == [False, False, True]
+
+
+@pytest.mark.parametrize("words", [[""], ["", "m"], ["about", ""], ["a", "factor", "of", ""]])
+def test_an_empty_word_is_no_amount(words: list[str]) -> None:
+    assert quantities.read(words) is None

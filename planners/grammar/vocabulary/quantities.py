@@ -71,7 +71,7 @@ def read(words: Sequence[str]) -> Quantity | None:
 
 
 def _read(words: Sequence[str]) -> Quantity | None:
-    if not words:
+    if not words or not words[0]:  # what cleaning leaves of a word may be empty
         return None
     if words[0] in _ADVERBS:
         return Quantity("TIMES", _ADVERBS[words[0]], "", 1)
@@ -188,7 +188,7 @@ def _whole(words: Sequence[str]) -> tuple[float, int] | None:
     first = words[0]
     if first in ("minus", "negative") and len(words) > 1 and (positive := _whole(words[1:])):
         return -positive[0], positive[1] + 1
-    if (first[0].isdigit() or (first[0] == "-" and len(first) > 1)) and not first[-1].isalpha():
+    if (first[:1].isdigit() or (first[:1] == "-" and len(first) > 1)) and not first[-1].isalpha():
         value = _digits(first)
         return None if value is None else (value, 1)
     if first not in NUMBERS or first in ("hundred", "dozen"):
