@@ -43,6 +43,12 @@ def command(
     spz_version: Annotated[
         int, typer.Option("--spz-version", min=2, max=4, help="Version of .spz, for older readers.")
     ] = 4,
+    levels: Annotated[
+        int, typer.Option("--levels", min=1, max=12, metavar="N", help="Levels of detail of a .lod folder.")
+    ] = 4,
+    chunk: Annotated[
+        int, typer.Option("--chunk", min=1024, metavar="N", help="Most Gaussians of a file in a .lod folder.")
+    ] = 65_536,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
@@ -51,12 +57,16 @@ def command(
 
     Read and written: INRIA .ply, PlayCanvas .compressed.ply and SOG (.sog; read from a folder with meta.json as well),
     Niantic .spz (version 1 is read only), antimatter15 .splat (which holds no harmonics above the constant colour).
+    A .lod folder (or a lod-meta.json in it) is PlayCanvas' Streamed SOG: levels of detail, each with a quarter of the
+    Gaussians of the one before, merged, not dropped; the finest level is the scene that other verbs read.
     """
     from ...gaussians.files import load_with_report, writer
     from ..output_files import refuse_existing
+    from ..streaming import is_streamed, write_levels
 
     refuse_existing([output], force)
-    writer(output)  # raises if the suffix belongs to no format
+    if not is_streamed(output):
+        writer(output)  # raises if the suffix belongs to no format
     box, ball = _numbers(crop, 6, "--crop"), _numbers(crop_sphere, 4, "--crop-sphere")
     start = time.perf_counter()
     loaded, report = load_with_report(scene)
@@ -64,6 +74,11 @@ def command(
     cut = _cut(loaded, box, ball)
     cameras = _views(cut, views) if views else ()
     smaller = _smaller(cut, sh_degree, max_gaussians, cameras)
+    if is_streamed(output):
+        for note in report.notes:
+            terminal.say(f"note: {note}")
+        write_levels(smaller, output, levels, chunk, force)
+        return
     start = time.perf_counter()
     _save(smaller, output, force, spz_version)
     wrote = time.perf_counter() - start
@@ -197,5 +212,5 @@ def _save(scene: Scene, output: Path, force: bool, spz_version: int) -> None:
 
 def _size(path: Path) -> int:
     """Bytes of a file, or of all files in a folder (or beside a meta.json)."""
-    folder = path if path.is_dir() else path.parent if path.name == "meta.json" else None
-    return path.stat().st_size if folder is None else sum(p.stat().st_size for p in folder.iterdir() if p.is_file())
+    folder = path if path.is_dir() else path.parent if path.name in ("meta.json", "lod-meta.json") else None
+    return path.stat().st_size if folder is None else sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())

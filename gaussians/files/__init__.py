@@ -116,8 +116,10 @@ def writer(path: Path) -> Callable[[Scene, BinaryIO], None]:
         UserError: no writable format has this suffix.
     """
     known = _by_suffix(path)
-    if known is None or known.write is None:
+    if known is None:
         writable = ", ".join(s for f in known_formats() if f.write for s in f.suffixes)
         raise UserError(f"cannot write {path.name}: scenes are written as {writable}")
+    if known.write is None:
+        raise UserError(f"{known.name} needs levels, which only `scenewright convert SCENE {path.name}` makes")
     write, sort = known.write, known.morton_order
     return lambda scene, file: write(morton_sorted(scene) if sort and scene.language is None else scene, file)

@@ -1,12 +1,14 @@
-"""Atomic file writing: the complete file appears or none does, and existing files are only replaced on request."""
+"""Atomic writing of files and folders: the complete one appears or none does, and what exists is replaced on request
+only."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import secrets
+import shutil
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import BinaryIO
 
@@ -43,6 +45,60 @@ def writing(path: str | Path, force: bool = False) -> Iterator[BinaryIO]:
     finally:
         with contextlib.suppress(OSError):  # a folder that cannot be written holds no partial file either
             part.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def writing_folder(path: Path, force: bool, ours: Callable[[Path], bool]) -> Iterator[Path]:
+    """An empty folder that becomes `path` when the block succeeds and is removed when it fails.
+
+    An existing folder is moved aside first and removed last; a crash between leaves it beside `path` under a hidden
+    name that ends in ".old".
+
+    Args:
+        ours: whether a file of an existing folder is of the kind that is written, by its path in that folder. A folder
+            with other files is not replaced, `force` or not.
+
+    Raises:
+        UserError: `path` exists and `force` is not set, is a file, or holds other files.
+        FileError: its parent folder is missing or cannot be written.
+    """
+    target = Path(os.path.realpath(path))
+    _check_folder(target, force, ours)
+    part, old = (target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.{end}") for end in ("part", "old"))
+    try:
+        part.mkdir()
+        yield part
+        for written in (p for p in part.rglob("*") if p.is_file()):
+            with written.open("rb+") as file:
+                os.fsync(file.fileno())
+        _check_folder(target, force, ours)
+        if target.exists():
+            os.rename(target, old)
+        os.rename(part, target)
+        _sync_folder(target.parent)
+    except OSError as error:
+        if old.exists() and not target.exists():
+            os.rename(old, target)
+        raise FileError(f"cannot write {target}: {error.strerror or error}; what is there was not changed") from error
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+        shutil.rmtree(old, ignore_errors=True)
+
+
+def _check_folder(target: Path, force: bool, ours: Callable[[Path], bool]) -> None:
+    if not target.parent.is_dir():
+        raise FileError(f"the folder {target.parent} does not exist; create it first")
+    if not target.exists():
+        return
+    if not force:
+        raise UserError(f"{target} exists; choose another name, or overwrite it with --force (force=True)")
+    if not target.is_dir():
+        raise UserError(f"{target} is a file; choose another name for the folder")
+    strange = [p for p in target.rglob("*") if not p.is_dir() and not ours(p.relative_to(target))]
+    if strange:
+        raise UserError(
+            f"{target} also holds {strange[0].relative_to(target)}, which is not of such a folder; move it away"
+        )
 
 
 def _check_target(target: Path, force: bool) -> None:

@@ -30,8 +30,8 @@ NAME = "SOG version 2"
 META = "meta.json"
 
 # Real scenes need 8 to 20 bytes a Gaussian; a file of constant images compresses without bound.
-_MIN_BYTES_A_GAUSSIAN = 1 / 4
-_FREE_GAUSSIANS = 1 << 18  # allowed for any file size
+MIN_BYTES_A_GAUSSIAN = 1 / 4
+FREE_GAUSSIANS = 1 << 18  # allowed for any file size
 _SPARE_PIXELS = 1 << 16  # writers round the sides of images up
 _META_LIMIT = 1 << 24
 
@@ -159,7 +159,7 @@ def _read_meta(bundle: _Bundle) -> _Meta:
         ) from error
     if meta.count == 0:
         raise FileError(f"{bundle.path}: the file holds zero Gaussians")
-    if meta.count > _FREE_GAUSSIANS + bundle.size / _MIN_BYTES_A_GAUSSIAN:
+    if meta.count > FREE_GAUSSIANS + bundle.size / MIN_BYTES_A_GAUSSIAN:
         raise FileError(f"{bundle.path}: {meta.count:,} Gaussians do not fit into {bundle.size:,} bytes")
     return meta
 

@@ -1,4 +1,4 @@
-"""Writes SOG version 2 (see `sog` for reading): one zip archive of meta.json and lossless WebP images.
+"""Writes SOG version 2 (see `sog` for reading): meta.json and lossless WebP images, in one zip archive.
 
 The specification is developer.playcanvas.com/user-manual/gaussian-splatting/formats/sog.
 """
@@ -14,6 +14,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from ...cloud import GaussianCloud
 from ...errors import FileError
 from ...scene import Scene
 from . import codebooks, values
@@ -29,8 +30,15 @@ Bytes = NDArray[np.uint8]
 
 def write(scene: Scene, file: BinaryIO) -> None:
     """Write the scene in row order: one pixel per Gaussian, row by row of each image."""
-    cloud = values.columns(scene.cloud)
-    count = len(scene.cloud)
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        for name, data in encoded(scene.cloud).items():
+            archive.writestr(zipfile.ZipInfo(name, _DATE), data)
+
+
+def encoded(gaussians: GaussianCloud) -> dict[str, bytes]:
+    """The bytes of meta.json and of the images by name, with the rows in their order."""
+    cloud = values.columns(gaussians)
+    count = len(gaussians)
     meta: dict[str, Any] = {"version": 2, "asset": {"generator": "scenewright"}, "count": count}
     parts: dict[str, Bytes] = {}
     meta["means"] = _means(cloud["means"], parts)
@@ -45,12 +53,10 @@ def write(scene: Scene, file: BinaryIO) -> None:
         book = codebooks.codebook(column, _CODEBOOK_SIZE)
         parts[f"{name}.webp"] = _square(codebooks.nearest(column, book), alpha)
         meta[name] = {"codebook": _padded(book), "files": [f"{name}.webp"]}
-    if scene.cloud.degree:
-        meta["shN"] = _bands(cloud["sh"][:, 1:], scene.cloud.degree, parts)
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(zipfile.ZipInfo("meta.json", _DATE), json.dumps(meta, separators=(",", ":")))
-        for name, pixels in parts.items():
-            archive.writestr(zipfile.ZipInfo(name, _DATE), _webp(pixels))
+    if gaussians.degree:
+        meta["shN"] = _bands(cloud["sh"][:, 1:], gaussians.degree, parts)
+    index = json.dumps(meta, separators=(",", ":")).encode()
+    return {"meta.json": index} | {name: _webp(pixels) for name, pixels in parts.items()}
 
 
 def _means(means: values.Floats, parts: dict[str, Bytes]) -> dict[str, Any]:

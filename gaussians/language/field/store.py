@@ -23,6 +23,7 @@ from pydantic import TypeAdapter
 
 from ...errors import FileError, ScenewrightError, UserError
 from ...files.atomic import writing
+from ...files.formats.streamed_sog import scene_folder
 from ...scene import Frame, Scene
 from .language_field import Group, LanguageField
 from .making import Making
@@ -44,10 +45,11 @@ _FRAME = TypeAdapter(Frame)
 def fingerprint(path: Path) -> str:
     """Hex SHA-256 of the bytes of a scene file; of the names and bytes of all files if the scene is a folder (SOG)."""
     h = hashlib.sha256()
+    path = scene_folder(path)
     try:
-        files = sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]
+        files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
         for file in files:
-            h.update(f"{file.name};".encode() if path.is_dir() else b"")
+            h.update(f"{file.relative_to(path).as_posix()};".encode() if path.is_dir() else b"")
             with file.open("rb") as stream:
                 while block := stream.read(1 << 22):
                     h.update(block)
@@ -57,7 +59,8 @@ def fingerprint(path: Path) -> str:
 
 
 def field_path(scene_path: Path) -> Path:
-    """Path of the field beside a scene file."""
+    """Path of the field beside a scene file or folder."""
+    scene_path = scene_folder(scene_path)
     return scene_path.with_name(scene_path.name + SUFFIX)
 
 

@@ -20,6 +20,7 @@ def test_formats_have_distinct_names_and_suffixes() -> None:
         "SOG version 2",
         "Niantic SPZ",
         "antimatter15 .splat",
+        "Streamed SOG",
     }
     suffixes = [s for f in found for s in f.suffixes]
     assert len(set(suffixes)) == len(suffixes) and all(s == s.lower() and s.startswith(".") for s in suffixes)

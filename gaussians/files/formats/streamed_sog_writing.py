@@ -1,0 +1,150 @@
+"""Writes Streamed SOG version 1 (see `streamed_sog` for reading and the source): the index, and a SOG folder a chunk.
+
+Neighbouring leaves share a chunk; a chunk holds one level. In a leaf the rows follow a Morton curve.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from ...cloud import GaussianCloud
+from ...levels.tree import Node, Tree
+from ...rotations import to_matrix
+from ..atomic import writing_folder
+from . import sog, sog_writing
+from .morton import morton_order
+from .streamed_sog import INDEX, scene_folder
+
+CHUNK_ROWS = 65_536  # most Gaussians of a chunk: about a megabyte
+_DIGITS = 7  # significant ones of bounds, as the format asks for
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+Runs = Sequence[dict[str, dict[str, int]]]  # of each leaf by level
+Progress = Callable[[str, float], None]
+
+
+def save(
+    levels: Sequence[GaussianCloud],
+    tree: Tree,
+    path: Path,
+    force: bool = False,
+    chunk_rows: int = CHUNK_ROWS,
+    progress: Progress | None = None,
+) -> None:
+    """Write a scene as a folder: complete, or not at all.
+
+    Args:
+        levels: the same scene at each level, the finest first.
+        path: of the folder, or of the index in it.
+        force: replace a folder of this kind.
+        chunk_rows: most Gaussians of a chunk; a leaf with more has a chunk of its own.
+        progress: called with the stage and its share.
+
+    Raises:
+        UserError: the folder exists and is not to be replaced, or some rows hold NaN or infinite values.
+        FileError: the folder cannot be written.
+    """
+    with writing_folder(scene_folder(path), force, _ours) as folder:
+        _write(levels, tree, folder, chunk_rows, progress or (lambda stage, share: None))
+
+
+def _ours(path: Path) -> bool:
+    """Whether a file of a folder is of this format, by its path in the folder."""
+    return str(path) == INDEX or (len(path.parts) == 2 and (path.name == sog.META or path.suffix == ".webp"))
+
+
+def _write(levels: Sequence[GaussianCloud], tree: Tree, folder: Path, chunk_rows: int, progress: Progress) -> None:
+    runs: list[dict[str, dict[str, int]]] = [{} for _ in range(tree.leaves)]
+    bounds = np.empty((tree.leaves, 2, 3))
+    bounds[:] = [[np.inf], [-np.inf]]
+    names: list[str] = []
+    total, done = sum(len(cloud) for cloud in levels), 0
+    for level, cloud in enumerate(levels):
+        order, ends = _by_leaf(cloud, tree)
+        cloud = cloud[torch.from_numpy(order)]
+        _widen(bounds, cloud, ends)
+        for number, (first, last) in enumerate(_chunks(ends, chunk_rows)):
+            progress(f"writing level {level}", done / total)
+            start, end = _span(ends, first)[0], _span(ends, last)[1]
+            _write_chunk(folder / f"{level}_{number}", cloud[start:end])
+            for leaf in range(first, last + 1):
+                begin, stop = _span(ends, leaf)
+                if stop > begin:
+                    run = {"file": len(names), "offset": begin - start, "count": stop - begin}
+                    runs[leaf][str(level)] = run
+            names.append(f"{level}_{number}/{sog.META}")
+            done += end - start
+    index = {
+        "version": 1,
+        "asset": {"generator": "scenewright"},
+        "count": total,
+        "counts": [len(cloud) for cloud in levels],
+        "lodLevels": len(levels),
+        "filenames": names,
+        "tree": _node(tree.root, bounds, runs)[0],
+    }
+    (folder / INDEX).write_text(json.dumps(index, separators=(",", ":")))
+
+
+def _by_leaf(cloud: GaussianCloud, tree: Tree) -> tuple[Ints, Ints]:
+    """Row numbers `[N]` sorted by leaf and along a Morton curve within each; and where each leaf ends, `[leaves]`."""
+    means = cloud.means.cpu().numpy()
+    curve = morton_order(means)
+    leaf = tree.leaf_of(means)
+    order = curve[np.argsort(leaf[curve], kind="stable")]
+    return order, np.cumsum(np.bincount(leaf, minlength=tree.leaves))
+
+
+def _span(ends: Ints, leaf: int) -> tuple[int, int]:
+    """Rows of a leaf: the first, and the one after the last."""
+    return int(ends[leaf - 1]) if leaf else 0, int(ends[leaf])
+
+
+def _chunks(ends: Ints, chunk_rows: int) -> list[tuple[int, int]]:
+    """First and last leaf of each chunk, as few as possible; chunks hold at least one Gaussian."""
+    found: list[tuple[int, int]] = []
+    for leaf in range(len(ends)):
+        start, end = _span(ends, leaf)
+        if found and (start == end or end - _span(ends, found[-1][0])[0] <= chunk_rows):
+            found[-1] = (found[-1][0], leaf)
+        else:
+            found.append((leaf, leaf))
+    return found
+
+
+def _widen(bounds: Floats, cloud: GaussianCloud, ends: Ints) -> None:
+    """Widen the boxes `[leaves, 2, 3]` to hold the ellipsoids (one standard deviation) of a cloud sorted by leaf."""
+    spread = (to_matrix(cloud.quats) * cloud.scales[:, None, :]).norm(dim=2)
+    low, high = (cloud.means - spread).cpu().numpy(), (cloud.means + spread).cpu().numpy()
+    for leaf in range(len(ends)):
+        start, end = _span(ends, leaf)
+        if end > start:
+            np.minimum(bounds[leaf, 0], low[start:end].min(axis=0), out=bounds[leaf, 0])
+            np.maximum(bounds[leaf, 1], high[start:end].max(axis=0), out=bounds[leaf, 1])
+
+
+def _write_chunk(folder: Path, cloud: GaussianCloud) -> None:
+    folder.mkdir()
+    for name, data in sog_writing.encoded(cloud).items():
+        (folder / name).write_bytes(data)
+
+
+def _node(node: Node, bounds: Floats, runs: Runs) -> tuple[dict[str, Any], Floats]:
+    """A node of the index, with what is below it, and its box `[2, 3]`."""
+    if not node.children:
+        return {"bound": _bound(bounds[node.leaf]), "lods": runs[node.leaf]}, bounds[node.leaf]
+    (left, a), (right, b) = (_node(child, bounds, runs) for child in node.children)
+    box = np.stack([np.minimum(a[0], b[0]), np.maximum(a[1], b[1])])
+    return {"bound": _bound(box), "children": [left, right]}, box
+
+
+def _bound(box: Floats) -> dict[str, list[float]]:
+    return {name: [float(f"{v:.{_DIGITS}g}") for v in corner] for name, corner in zip(("min", "max"), box, strict=True)}
