@@ -139,7 +139,12 @@ class App:
         self._token = None
         cookie = f"{self._cookie_name}={self._cookie}; HttpOnly; SameSite=Strict; Path=/"
         headers = {**self._always, "set-cookie": cookie, "refresh": "0; url=/"}
-        return Response('<!doctype html><title>Scenewright</title><a href="/">Open</a>', 200, headers, "text/html")
+        return Response(
+            '<!doctype html><title>Scenewright</title><link rel="icon" href="data:,"><a href="/">Open</a>',
+            200,
+            headers,
+            "text/html",
+        )
 
     def _refusal(self, status: int, text: str) -> Response:
         return PlainTextResponse(text, status, self._always)

@@ -1,5 +1,5 @@
-"""The page of `scenewright view` in a real browser, against the real server: a conversation with words and
-clicks, a connection that breaks, keys alone, a box."""
+"""The page of `scenewright view` in a real browser, against the real server: a conversation with words and clicks, both
+themes, a phone's width, keys alone, and what axe finds."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ SWITCHES = [
     "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
 ]  # fmt: skip
-DESK = {"width": 1280, "height": 800}
+DESK, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
+AXE = "axe-core@4"
 PICTURES = os.environ.get("SCENEWRIGHT_PAGE_PICTURES")  # a folder for screenshots, to be looked at
 SECONDS = 60.0  # for any one answer: the machine may be busy
 
@@ -278,6 +279,47 @@ def test_a_conversation_with_words_and_clicks(browser: Any, server: Server) -> N
     page.close()
 
 
+def test_before_and_after_hiding_and_a_second_tab(browser: Any, server: Server) -> None:
+    page = Page(browser, server.address, DESK)
+    sofa = page.thing("sofa")
+    page.tab.click(f"[data-stop=name-{sofa['group']}]")
+    page.until(f"store.state.selection.groups.includes({sofa['group']})")
+    assert page.say("make it red")["ok"]
+    page.tab.locator("#canvas").focus()
+    page.tab.keyboard.press("Escape")
+    page.until("store.state.selection.groups.length === 0")
+    page.settle()
+    now = page.pixels()
+    page.tab.keyboard.press("c")
+    page.until("viewer.comparing")
+    page.tab.locator("#compare-share").fill("1")
+    page.settle()
+    was = page.pixels()
+    assert np.abs(now - was).max() > 60  # the picture before is another
+    page.tab.locator("#compare-share").fill("0")
+    page.settle()
+    assert np.abs(page.pixels() - now).mean() < 1
+    page.tab.locator("#compare-share").fill("0.5")
+    page.settle()
+    page.picture("compare")
+    page.tab.locator("#canvas").focus()
+    page.tab.keyboard.press("c")
+    page.settle()
+
+    page.tab.hover(f"[data-stop=name-{sofa['group']}]")
+    page.tab.click(f"[data-stop=eye-{sofa['group']}]")
+    page.tab.mouse.move(640, 300)
+    page.settle()
+    assert np.abs(page.pixels() - now).max() > 60
+    assert page.thing("sofa") is not None  # hidden, not deleted
+
+    other = page.context.new_page()
+    other.goto(server.address.split("?")[0])
+    other.wait_for_timeout(3000)
+    assert other.evaluate("window.scenewright.store.state.history.length") == 1
+    page.close()
+
+
 def test_a_connection_that_breaks_loses_nothing(browser: Any, server: Server) -> None:
     page = Page(browser, server.address, DESK)
     before = page.pixels()
@@ -341,4 +383,63 @@ def test_a_box_selects_and_text_is_no_html(browser: Any, server: Server) -> None
     assert not said["ok"]
     assert page.tab.locator("#turns b:not(.number), #turns img").count() == 0
     assert page.tab.evaluate("window.broken") is None
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """axe-core's source (MPL-2.0), fetched for this run and kept nowhere."""
+    if shutil.which("npm") is None:
+        pytest.skip("npm is not installed, so axe-core cannot be fetched")
+    folder = tmp_path_factory.mktemp("axe")
+    fetch = ["npm", "install", "--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts", AXE]
+    try:
+        done = subprocess.run(fetch, capture_output=True, text=True, timeout=120)
+    except subprocess.TimeoutExpired:
+        pytest.skip("npm did not fetch axe-core within two minutes")
+    if done.returncode:
+        pytest.skip(f"npm cannot fetch axe-core: {done.stderr.strip()[-200:]}")
+    return (folder / "node_modules" / "axe-core" / "axe.min.js").read_text()
+
+
+RULES = """axe.run(document, {resultTypes: ["violations"]}).then(({violations}) => violations.map(
+  ({id, impact, nodes}) => `${impact}: ${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(" | ")}`))"""
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+def test_axe_finds_nothing_serious(browser: Any, server: Server, axe: str, size: dict[str, int], theme: str) -> None:
+    touch = {"has_touch": True, "is_mobile": True, "device_scale_factor": 2} if size is PHONE else {}
+    page = Page(browser, server.address, size, theme=theme, bypass_csp=True, **touch)
+    page.tab.add_script_tag(content=axe)
+    name = f"{'phone' if size is PHONE else 'desk'}-{theme}"
+
+    def require_no_violations() -> None:
+        found = page.tab.evaluate(RULES)
+        assert not [one for one in found if one.startswith(("serious", "critical"))], found
+
+    require_no_violations()
+    page.picture(f"{name}-start")
+    page.click(page.thing("armchair"))
+    page.until("store.state.selection.groups.length === 1")
+    page.say("make it teal")
+    page.say("remove the chair")
+    page.until("store.state.question !== null")
+    page.tab.locator("#canvas").focus()
+    page.tab.keyboard.press("t")
+    page.settle()
+    require_no_violations()
+    page.picture(f"{name}-question")
+    page.tab.keyboard.press("c")
+    page.tab.wait_for_timeout(800)
+    page.tab.keyboard.press("?")
+    require_no_violations()
+    page.tab.keyboard.press("Escape")
+    if size is PHONE:
+        page.tab.keyboard.press("l")
+        page.tab.tap(".more")
+        require_no_violations()
+        page.tab.wait_for_timeout(400)
+        page.picture(f"{name}-panels")
+        assert page.tab.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
     page.close()
