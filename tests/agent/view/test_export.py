@@ -57,7 +57,7 @@ def test_the_file_shows_the_scene_from_a_disk_and_asks_for_nothing(tmp_path: Pat
         opened.on("console", lambda said: faults.append(said.text) if said.type == "error" else None)
         opened.on("request", lambda request: asked.append(request.url))
         opened.goto(path.as_uri())
-        opened.wait_for_function("window.viewer")
+        opened.wait_for_selector("#told:has-text('Drag')")  # wait_for_function polls by eval, which the page forbids
         opened.evaluate("viewer.idle()")
         opened.add_style_tag(content="header, footer { display: none !important }")
         drawn = _picture(opened)
