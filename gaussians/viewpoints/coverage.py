@@ -8,7 +8,6 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from scipy import ndimage
-from scipy.spatial import cKDTree
 
 from ..camera import Camera
 from ..cloud import GaussianCloud
@@ -161,6 +160,8 @@ def _inside(local: F64, low: F64, high: F64, frame: Frame, size: int) -> list[Ca
 
 def _toward(local: F64, frame: Frame, size: int) -> list[Camera]:
     """Cameras around the densest detail, for captures of one object in a larger room."""
+    from scipy.spatial import cKDTree
+
     above = local[local[:, 2] >= np.quantile(local[:, 2], 0.35)]
     focus = np.median(above, axis=0)
     reach = float(np.median(np.linalg.norm(above - focus, axis=1))) + 1e-9
