@@ -46,6 +46,12 @@ class Result:
 
         return render(self.scene.cloud, camera or self.viewer, background)
 
+    def _repr_png_(self) -> bytes:
+        """The viewer's picture, which notebooks display."""
+        from ..pictures.image_files import encoded_png
+
+        return encoded_png(self.render().to_uint8())
+
     def sentences(self) -> tuple[str, ...]:
         """A sentence for each operation, each followed by its notes; first a note on words that the planner corrected,
         if there are any."""

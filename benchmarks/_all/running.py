@@ -26,7 +26,7 @@ QUICK_LIMIT, LIMIT = 150.0, 1500.0
 # Charted against bytes, timed in seconds of the processor, or without a chart of times: they share the cores.
 TOGETHER = frozenset({"edit", "edits", "files", "layout", "mcp", "restyle", "slim", "stability", "structure"})
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
-LONG = frozenset({"edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure"})
+LONG = frozenset({"edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure", "view"})
 MOST_REPEATS = 3
 _STARTS = 5.0  # seconds that a process takes besides its measurement
 _CHANGED = "the source changed while it was measured; leave it alone until all is measured"

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .agent.session.result import Result
     from .agent.session.session import Session
     from .agent.toolbox.toolbox import Toolbox
+    from .agent.view.show import show
     from .gaussians.assets import Asset, Room, furnish, kinds, make
     from .gaussians.camera import Camera, Render
     from .gaussians.cloud import GaussianCloud
@@ -54,6 +55,7 @@ _HOME = {
     "Toolbox": ".agent.toolbox.toolbox",
     "load": ".gaussians.language.field.loading",
     "save": ".gaussians.files",
+    "show": ".agent.view.show",
     "render": ".gaussians.render",
     "embed": ".gaussians.language.field.embed",
     "kinds": ".gaussians.assets",
@@ -122,6 +124,7 @@ __all__ = [
     "make",
     "render",
     "save",
+    "show",
 ]
 
 
