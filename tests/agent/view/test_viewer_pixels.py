@@ -28,7 +28,7 @@ from scenewright.gaussians.render import render
 from scenewright.gaussians.render.convention import near_plane
 from scenewright.gaussians.scene import Scene
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]  # seconds of a browser's start and of software drawing
 
 CHROMIUM = os.environ.get("SCENEWRIGHT_CHROMIUM", "/usr/bin/chromium")
 SWITCHES = [
