@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import io
 import math
-import os
 import statistics
 import tempfile
 import time
@@ -18,16 +17,11 @@ from PIL import Image
 from ...agent.view.standalone import page
 from ...gaussians.assets.furnishing.furnish import furnish
 from ...gaussians.camera import Camera
-from ...gaussians.errors import BackendError
 from ...gaussians.render import render
 from ...gaussians.scene import Scene
 from ..edit import crowded
+from .browser import chromium
 
-CHROMIUM = Path(os.environ.get("SCENEWRIGHT_CHROMIUM", "/usr/bin/chromium"))
-SWITCHES = [
-    "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
-]  # fmt: skip
 SIZES = ((512, 512), (1280, 720))
 CLICKS, FRAMES = 500, 5
 _SEED = 17
@@ -50,12 +44,6 @@ def measure(quick: bool) -> list[dict[str, Any]]:
     Raises:
         BackendError: there is no browser, or Playwright is not installed.
     """
-    try:
-        from playwright.sync_api import sync_playwright
-    except ModuleNotFoundError as error:
-        raise BackendError("bench view drives a browser; run: pip install playwright") from error
-    if not CHROMIUM.exists():
-        raise BackendError(f"there is no browser at {CHROMIUM}; install chromium, or name one in SCENEWRIGHT_CHROMIUM")
     made = furnish(3, detail=0.3 if quick else 1.0)
     cloud = made.scene.cloud.replace(group=made.truth.ids + 1)  # 0: floor and walls
     crowd = crowded(20_000 if quick else 1_000_000)
@@ -63,12 +51,8 @@ def measure(quick: bool) -> list[dict[str, Any]]:
     scenes = [("room", Scene(cloud), made.scene.cameras[0])]
     scenes += [(f"sh{d}", Scene(crowd.cloud[:20_000].with_degree(d)), above) for d in range(4)]
     scenes += [] if quick else [("million", Scene(crowd.cloud), above)]
-    with sync_playwright() as running:
-        browser = running.chromium.launch(executable_path=CHROMIUM, args=SWITCHES)
-        try:
-            return [_row(browser, *each) for each in scenes]
-        finally:
-            browser.close()
+    with chromium() as browser:
+        return [_row(browser, *each) for each in scenes]
 
 
 def _row(browser: Any, name: str, scene: Scene, camera: Camera) -> dict[str, Any]:

@@ -31,9 +31,7 @@ const connection = new Connection({
   onMessage, onColumns, onStatus, onLost,
 });
 
-function send(message) {
-  return connection.send(message);
-}
+const send = (message) => connection.send(message);
 
 // -- the picture ---------------------------------------------------------------------------------------------------
 

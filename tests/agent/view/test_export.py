@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
 import re
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 import torch
 from PIL import Image
+from real_browser import browser_or_skip
 
 from scenewright.agent.cli import main
 from scenewright.agent.view.standalone import page
@@ -21,11 +21,6 @@ from scenewright.gaussians.files import save
 from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Scene
 
-CHROMIUM = os.environ.get("SCENEWRIGHT_CHROMIUM", "/usr/bin/chromium")
-SWITCHES = [
-    "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
-]  # fmt: skip
 WIDTH, HEIGHT = 240, 180
 CAMERA = Camera.look_at([0, -4, 1], [0, 0, 0], [0, 0, 1], WIDTH, HEIGHT, 45)
 
@@ -42,16 +37,12 @@ def balls(count: int = 1500) -> Scene:
 
 @pytest.mark.browser
 def test_the_file_shows_the_scene_from_a_disk_and_asks_for_nothing(tmp_path: Path) -> None:
-    if not Path(CHROMIUM).exists():
-        pytest.skip(f"there is no browser at {CHROMIUM}; install chromium, or name one in SCENEWRIGHT_CHROMIUM")
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs the package playwright")
     scene, title = balls(), "a </title><script>alert(1)</script> & room"
     path = tmp_path / "room.html"
     path.write_bytes(page(scene, CAMERA, title))
     faults: list[str] = []
     asked: list[str] = []
-    with playwright.sync_playwright() as running:
-        browser = running.chromium.launch(executable_path=CHROMIUM, args=SWITCHES)
+    with browser_or_skip() as browser:
         opened = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT})
         opened.on("pageerror", lambda error: faults.append(str(error)))
         opened.on("console", lambda said: faults.append(said.text) if said.type == "error" else None)
@@ -62,7 +53,6 @@ def test_the_file_shows_the_scene_from_a_disk_and_asks_for_nothing(tmp_path: Pat
         opened.add_style_tag(content="header, footer { display: none !important }")
         drawn = _picture(opened)
         shown = opened.title()
-        browser.close()
     wanted = render(scene.cloud, CAMERA).to_uint8()
     error = np.mean((drawn.astype(float) - wanted) ** 2)
     assert not faults

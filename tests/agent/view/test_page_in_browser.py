@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
+from real_browser import browser_or_skip
 
 from scenewright.gaussians.files import save
 from scenewright.gaussians.language.field.store import save_field
@@ -26,11 +27,6 @@ from scenewright.planners.rooms.node import Node, RoomShape
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-CHROMIUM = os.environ.get("SCENEWRIGHT_CHROMIUM", "/usr/bin/chromium")
-SWITCHES = [
-    "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
-]  # fmt: skip
 DESK, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
 AXE = "axe-core@4"
 PICTURES = os.environ.get("SCENEWRIGHT_PAGE_PICTURES")  # a folder for screenshots, to be looked at
@@ -59,13 +55,8 @@ ROOM = SceneGraph(
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    if not Path(CHROMIUM).exists():
-        pytest.skip(f"there is no browser at {CHROMIUM}; install chromium, or name one in SCENEWRIGHT_CHROMIUM")
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs the package playwright")
-    with playwright.sync_playwright() as running:
-        opened = running.chromium.launch(executable_path=CHROMIUM, args=SWITCHES)
+    with browser_or_skip() as opened:
         yield opened
-        opened.close()
 
 
 @pytest.fixture(scope="module")

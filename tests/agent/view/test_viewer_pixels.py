@@ -16,6 +16,7 @@ import pytest
 import torch
 from numpy.typing import NDArray
 from PIL import Image
+from real_browser import browser_or_skip
 from scipy import ndimage
 
 from scenewright import agent
@@ -30,11 +31,6 @@ from scenewright.gaussians.scene import Scene
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]  # seconds of a browser's start and of software drawing
 
-CHROMIUM = os.environ.get("SCENEWRIGHT_CHROMIUM", "/usr/bin/chromium")
-SWITCHES = [
-    "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
-]  # fmt: skip
 PICTURES = os.environ.get("SCENEWRIGHT_PAGE_PICTURES")  # a folder for pictures, to be looked at: page left, CPU right
 VIEWER = Path(agent.__file__).parent / "view" / "page" / "viewer"
 WIDTH, HEIGHT = 200, 150
@@ -68,21 +64,16 @@ class _Files(http.server.BaseHTTPRequestHandler):
 
 @pytest.fixture(scope="module")
 def page() -> Iterator[Any]:
-    if not Path(CHROMIUM).exists():
-        pytest.skip(f"there is no browser at {CHROMIUM}; install chromium, or name one in SCENEWRIGHT_CHROMIUM")
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs the package playwright")
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), _Files)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    with playwright.sync_playwright() as running:
-        browser = running.chromium.launch(executable_path=CHROMIUM, args=SWITCHES)
+    with browser_or_skip() as browser:
+        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), _Files)
+        threading.Thread(target=server.serve_forever, daemon=True).start()
         opened = browser.new_page(viewport={"width": 320, "height": 240})
         faults: list[str] = []
         opened.on("pageerror", lambda error: faults.append(str(error)))
         opened.goto(f"http://127.0.0.1:{server.server_port}/")
         opened.wait_for_function("window.viewer")
         yield opened
-        browser.close()
-    server.shutdown()
+        server.shutdown()
     assert not faults
 
 
