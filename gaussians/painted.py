@@ -12,7 +12,11 @@ import torch
 from torch import Tensor
 
 from .cloud import GaussianCloud
-from .rows import rows_of_ids
+from .kept import Kept
+from .rows import copied, rows_of_ids
+
+# The harmonics before any paint, by those after it: a column of a million Gaussians has 192 MB and is there already.
+_bare: Kept[Tensor] = Kept(2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +42,15 @@ def unpainted(cloud: GaussianCloud, painted: Painted | None) -> GaussianCloud:
     nothing is known to be painted."""
     if painted is None or painted.after.shape[1:] != cloud.sh.shape[1:]:  # bands were dropped
         return cloud
+    return cloud.replace(sh=_bare.get((cloud.sh, cloud.ids, painted), lambda: _before(cloud, painted)))
+
+
+def _before(cloud: GaussianCloud, painted: Painted) -> Tensor:
+    """The harmonics before the first paint: a column of their own, even where nothing is as it was painted."""
     rows = rows_of_ids(cloud.ids, painted.ids)
     places = torch.searchsorted(painted.ids, cloud.ids[rows])
     still = (cloud.sh[rows] == painted.after[places]).flatten(1).all(dim=1)
-    if not bool(still.any()):
-        return cloud
-    return cloud.replace(sh=cloud.sh.index_copy(0, rows[still], painted.before[places[still]]))
+    return copied(cloud.sh).index_copy_(0, rows[still], painted.before[places[still]])
 
 
 def painted_again(painted: Painted | None, bare: GaussianCloud, now: GaussianCloud, rows: Tensor) -> Painted:
@@ -58,4 +65,6 @@ def painted_again(painted: Painted | None, bare: GaussianCloud, now: GaussianClo
         rows = torch.unique(torch.cat([rows, rows_of_ids(now.ids, painted.ids)]))
     order = now.ids[rows].argsort()
     rows = rows[order]
-    return Painted(now.ids[rows], bare.sh[rows], now.sh[rows])
+    record = Painted(now.ids[rows], bare.sh[rows], now.sh[rows])
+    _bare.get((now.sh, now.ids, record), lambda: bare.sh)
+    return record

@@ -9,11 +9,14 @@ import torch
 from torch import Tensor
 
 from ..gaussians.cloud import GaussianCloud
+from ..gaussians.kept import Kept
 from ..gaussians.language.query.selection import Selection, mask_of
 from ..gaussians.rows import copied, empty, rows_of_ids, rows_where, span_of
 
 _ROWS = 1 << 13  # rows written at a time: intermediates stay in a core's cache, whatever the cloud's size
 _BYTES = 1 << 19  # bytes compared at a time: they stay in a core's cache
+
+_apart: Kept[Tensor] = Kept(4)
 
 
 def rows_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
@@ -142,8 +145,8 @@ def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, rem
         other = getattr(after, name)
         if column is other:
             continue
-        mask = torch.zeros(n, dtype=torch.bool, device=before.device)
-        if mark_changed(column, other, mask, kept):
+        mask = rows_apart(column, other) if kept is None else marked(column, other, kept)
+        if bool(mask.any()):
             changed[name] = mask
             differs |= mask
     where = rows_where(differs)
@@ -155,19 +158,23 @@ def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, rem
     return Difference(lost + outside, tuple(changed), bad_ids, kept, changed)
 
 
-def mark_changed(
-    column: Tensor, other: Tensor, differs: Tensor, kept: Tensor | None = None, others: Tensor | None = None
-) -> bool:
-    """Set `differs` `[K]` where the rows of two columns differ in any bit; return whether any does.
+def rows_apart(column: Tensor, other: Tensor) -> Tensor:
+    """`[K]` bool: in which of its rows a column differs from the first K of another in any bit. Measured once: columns
+    are never written in place, and neither is this."""
+    return _apart.get((column, other), lambda: marked(column, other))
+
+
+def marked(column: Tensor, other: Tensor, kept: Tensor | None = None, others: Tensor | None = None) -> Tensor:
+    """`[K]` bool: where the rows of two columns differ in any bit.
 
     Args:
-        kept: `[K]` int64, the rows of `column` that are compared; None: the first K.
+        kept: `[K]` int64, the rows of `column` that are compared; None: all.
         others: `[K]` int64, the rows of `other` that they are compared with; None: the first K.
     """
+    differs = torch.zeros(len(column) if kept is None else len(kept), dtype=torch.bool, device=column.device)
     if column.shape[1:] != other.shape[1:]:
-        differs.fill_(True)
-        return True
-    found, step = False, max(1, _BYTES // (column.element_size() * max(1, column[0].numel() if len(column) else 1)))
+        return differs.fill_(True)
+    step = max(1, _BYTES // (column.element_size() * max(1, column[0].numel() if len(column) else 1)))
     for start in range(0, len(differs), step):
         end = min(start + step, len(differs))
         a = column[start:end] if kept is None else column.index_select(0, kept[start:end])
@@ -177,9 +184,8 @@ def mark_changed(
             apart = (a != b).reshape(end - start, -1)
             if apart.shape[1] % 8 == 0:  # eight flags at a time
                 apart = apart.view(torch.int64)
-            differs[start:end] |= apart.any(dim=1)
-            found = True
-    return found
+            differs[start:end] = apart.any(dim=1)
+    return differs
 
 
 def _bits(values: Tensor) -> Tensor:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.scene import Scene
-from ...tools.cloud_diff import mark_changed
+from ...tools.cloud_diff import marked, rows_apart
 from .columns import I32, SOURCES, columns_of, owners
 from .slots import EMPTY, I64, Slots
 
@@ -108,12 +108,9 @@ def _differing(old: Side, new: Side, name: str) -> I64:
     (a, kept), (b, others) = ((getattr(cloud, name), rows) for cloud, rows in (old, new))
     if a is b:
         return np.zeros(0, np.int64)
-    differs = torch.zeros(len(b) if others is None else len(others), dtype=torch.bool)
     if kept is None or others is None:
-        mark_changed(a, b, differs)
-    else:
-        mark_changed(a, b, differs, torch.from_numpy(kept), torch.from_numpy(others))
-    return np.flatnonzero(differs.numpy())
+        return np.flatnonzero(rows_apart(a, b).numpy())
+    return np.flatnonzero(marked(a, b, torch.from_numpy(kept), torch.from_numpy(others)).numpy())
 
 
 def _of_bands(column: str, old: Side, new: Side, apart: I64, degree: int) -> I64:
