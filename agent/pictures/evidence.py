@@ -19,6 +19,7 @@ from ...gaussians.world.support import SHELL
 from ...planners.questions.answer import Answer, Line
 from ...planners.rooms.read_scene import RoomFrame
 from ..terminal.thing_names import NAME_THRESHOLD
+from .image_files import encoded_png
 from .marked_views import Drawing, draw_view
 from .marks import INK, Mark, Picture, Placed, color_of, draw_placed, free_place, half_size, outlined, place, visible
 from .plan_view import with_grid, with_scale_bar, with_viewer
@@ -26,6 +27,7 @@ from .plan_view import with_grid, with_scale_bar, with_viewer
 F64 = NDArray[np.float64]
 
 SIZE = (960, 640)  # pixels, by default
+SMALL = (768, 512)  # pixels, beside an answer in a conversation
 ON_FLOOR = 0.15  # metres up to which a line lies on the floor and is shown on a plan
 NEAR = 0.02  # of the scene's extent: lines are cut this far before the eye
 MOST_NAMES = 16  # things up to which names are drawn; more get numbers
@@ -70,6 +72,16 @@ def evidence_picture(
         drawing = Drawing(image, drawing.labels, view.camera)
     reach = float(np.linalg.norm(sights.space.high - sights.space.low))
     return _annotated(drawing, name_marks(scene, groups), ends, lines, NEAR * reach)
+
+
+def has_picture(answer: Answer) -> bool:
+    """Whether an answer rests on things or distances that can be drawn."""
+    return bool(answer.evidence.ids or answer.evidence.lines)
+
+
+def evidence_png(scene: Scene, answer: Answer, viewer: Camera) -> bytes:
+    """`evidence_picture` at `SMALL`, as the bytes of a PNG file."""
+    return encoded_png(evidence_picture(scene, answer, size=SMALL, viewer=viewer))
 
 
 def _groups(scene: Scene, answer: Answer) -> tuple[int, ...]:

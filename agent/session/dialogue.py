@@ -22,6 +22,7 @@ from .refusal import verdict_of
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
     from ...planners.plan import EditPlan
+    from ...planners.questions.answer import Answer
     from .result import Result
     from .session import Session
 
@@ -36,6 +37,7 @@ class Said:
         sure: False for a question that nobody could answer.
         result: of an edit, undo or redo; None of anything else.
         camera: the viewer, if the line moved it.
+        answer: to a question about the scene; None of anything else.
     """
 
     text: str
@@ -43,6 +45,7 @@ class Said:
     sure: bool = True
     result: Result | None = None
     camera: Camera | None = None
+    answer: Answer | None = None
 
 
 @dataclass(frozen=True)
@@ -142,7 +145,7 @@ class Dialogue:
     def _question(self, text: str) -> Said:
         """The answer to a question about the scene."""
         answer = self.session.ask(text)
-        return Said(answer.text, answer.to_json(), sure=answer.answer is not None)
+        return Said(answer.text, answer.to_json(), sure=answer.answer is not None, answer=answer)
 
     def _look(self, text: str) -> Said | None:
         """Move the camera, if that is what the text asks for; None if it does not.

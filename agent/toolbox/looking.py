@@ -16,7 +16,6 @@ from .tool import READS, Desk, Tool, tool
 Side = Annotated[int, Field(ge=32, le=MAX_SIDE, strict=True)]
 
 _VIEWER = ("", "viewer")
-_EVIDENCE = (768, 512)  # pixels
 _MOST_VIOLATIONS = 100
 
 
@@ -111,14 +110,13 @@ def _find_view(desk: Desk, said: FindViewArguments) -> Reply:
 def _ask(desk: Desk, said: AskArguments) -> Reply:
     """Answer a question about the scene: what is there, how many, how large, how far, where, what fits, which way. The
     scene is not changed; "it" then means what the answer is about. An answer of null says that nothing here tells."""
-    from ..pictures.evidence import evidence_picture
-    from ..pictures.image_files import encoded_png
+    from ..pictures.evidence import evidence_png, has_picture
 
     session = desk.session
     answer = session.ask(said.question)
     pictures: tuple[bytes, ...] = ()
-    if said.picture and (answer.evidence.ids or answer.evidence.lines):
-        pictures = (encoded_png(evidence_picture(session.scene, answer, size=_EVIDENCE, viewer=session.viewer)),)
+    if said.picture and has_picture(answer):
+        pictures = (evidence_png(session.scene, answer, session.viewer),)
     return Reply(answer.text, {"verdict": "ok", **answer.to_json()}, pictures)
 
 

@@ -21,10 +21,12 @@ from ..toolbox.saving import SaveArguments, save_scene
 from ..toolbox.tool import Desk
 from .messages import Answer, Asked, Operate, Save, Say, Select, SelectSlots, Step
 from .slots import EMPTY, slots_of
-from .state import camera_json
+from .state import camera_json, numbered
 
 if TYPE_CHECKING:
+    from ...planners.questions.answer import Answer
     from .changes import Shown
+    from .gallery import Gallery
 
 Reply = dict[str, Any]
 
@@ -33,6 +35,7 @@ class Stage(Protocol):
     """The part of the hub that messages use."""
 
     shown: Shown
+    gallery: Gallery
 
     def settle(self) -> None: ...
     def before(self) -> bytes: ...
@@ -88,20 +91,22 @@ class Actions:
     def _typed(self, text: str) -> Reply:
         """A line that was typed. One that is refused or asks back is answered with why."""
         try:
-            return _said(self._dialogue.say(text))
+            return self._said(self._dialogue.say(text))
         except ScenewrightError as error:
             return self._refused(error)
 
     def _refused(self, error: ScenewrightError) -> Reply:
         first, *lines = self._dialogue.refused(error).lines
-        asks = isinstance(error, InstructionError) and self._session.question is not None
-        return {**_ANSWER, "ok": False, "text": first, "lines": lines if not asks else lines[-1:]}
+        question = self._session.question
+        if isinstance(error, InstructionError) and question is not None:
+            first, lines = numbered(first, question.candidates), lines[-1:]  # the picture shows the candidates
+        return {**_ANSWER, "ok": False, "text": first, "lines": lines}
 
     def _stepped(self, step: Step) -> Reply:
         if step.type == "export":
             return self._export()
         result = self._session.undo() if step.type == "undo" else self._session.redo()
-        return _said(self._dialogue.edited(result))
+        return self._said(self._dialogue.edited(result))
 
     def _export(self) -> Reply:
         """The scene as a page of its own, to download."""
@@ -159,7 +164,7 @@ class Actions:
             ops.append(without_confirmation(op))
         plan = EditPlan(instruction=" and ".join(map(operation_words, ops))[:400], ops=tuple(ops), planner="page")
         try:
-            return _said(self._dialogue.edited(self._session.apply(plan)))
+            return self._said(self._dialogue.edited(self._session.apply(plan)))
         except ScenewrightError as error:
             return self._refused(error)
 
@@ -170,16 +175,28 @@ class Actions:
             )
         return {**_ANSWER, "text": save_scene(self._desk, SaveArguments(file=message.name)).text}
 
+    # -- answers -----------------------------------------------------------------------------------------------------
+
+    def _said(self, said: Said) -> Reply:
+        """The answer to what was done, or asked."""
+        first, *lines = said.text.split("\n")
+        receipts = said.result.receipts if said.result is not None else ()
+        rows = [{"name": c.name, "passed": c.passed, "text": c.sentence} for r in receipts for c in r.checks]
+        camera = camera_json(said.camera) if said.camera is not None else None
+        pictures = self._evidence(said.answer) if said.answer is not None else []
+        return {
+            **_ANSWER, "ok": said.sure, "text": first, "lines": lines, "receipt": rows, "camera": camera,
+            "pictures": pictures,
+        }  # fmt: skip
+
+    def _evidence(self, answer: Answer) -> list[str]:
+        """The path of the picture of what an answer rests on; none where there is nothing to draw."""
+        from ..pictures.evidence import evidence_png, has_picture
+
+        scene, viewer = self._session.scene, self._session.viewer
+        return [self._stage.gallery.add(lambda: evidence_png(scene, answer, viewer))] if has_picture(answer) else []
+
 
 _ANSWER: Reply = {
     "type": "said", "ok": True, "text": "", "lines": [], "receipt": [], "pictures": [], "link": None, "camera": None,
 }  # fmt: skip
-
-
-def _said(said: Said) -> Reply:
-    """The answer to what was done."""
-    first, *lines = said.text.split("\n")
-    receipts = said.result.receipts if said.result is not None else ()
-    rows = [{"name": c.name, "passed": c.passed, "text": c.sentence} for r in receipts for c in r.checks]
-    camera = camera_json(said.camera) if said.camera is not None else None
-    return {**_ANSWER, "ok": said.sure, "text": first, "lines": lines, "receipt": rows, "camera": camera}

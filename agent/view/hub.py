@@ -28,6 +28,7 @@ from ..toolbox.folder import Folder
 from . import state, wire
 from .actions import Actions
 from .changes import Changes, Shown, changes
+from .gallery import Gallery
 from .messages import Asked
 from .standalone import page
 
@@ -64,6 +65,7 @@ class Hub:
         shown: what the tabs should show.
         state: the text of the present `state` message.
         made: the name and the bytes of the last page that was made of the scene; None: none was.
+        gallery: the pictures of answers.
     """
 
     def __init__(
@@ -82,6 +84,7 @@ class Hub:
         # Revisions of another run of the server are never those of this one.
         self.shown = Shown.first(session.scene, int(time.time() * 1000))
         self.made: tuple[str, bytes] | None = None
+        self.gallery = Gallery()
         self._state = state.of(session, self.shown)
         self.state = self._told(False)
         self._welcome = state.welcome(session, self.title)
@@ -201,6 +204,8 @@ class Hub:
                 self._alone(job)
             else:
                 self._answer(*job)
+            while self._queue.empty() and self.gallery.draw_next():
+                pass
 
     def _alone(self, job: Callable[[], None]) -> None:
         """Do work that no tab asked for."""

@@ -6,10 +6,12 @@ the WebSocket the right Origin. Files are a fixed table of names.
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 import mimetypes
 import secrets
 from collections.abc import Awaitable, Callable, MutableMapping
+from concurrent.futures import Future
 from http.cookies import CookieError, SimpleCookie
 from pathlib import Path
 from typing import Any
@@ -73,7 +75,8 @@ class App:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "http":
-            await self._answer(scope)(scope, receive, send)
+            answer = await self._answer(scope)
+            await answer(scope, receive, send)
         elif scope["type"] == "websocket":
             await self._serve(scope, receive, send)
         else:
@@ -107,7 +110,7 @@ class App:
 
     # -- files -------------------------------------------------------------------------------------------------------
 
-    def _answer(self, scope: Scope) -> Response:
+    async def _answer(self, scope: Scope) -> Response:
         if not self._for_us(scope):
             return self._refusal(421, f"this server answers at {self._origin} only")
         if scope["method"] not in ("GET", "HEAD"):
@@ -121,12 +124,22 @@ class App:
             name, page = self._hub.made
             there = {"content-disposition": f"attachment; filename*=UTF-8''{quote(name, safe='')}"}
             return Response(page, headers={**self._always, **there}, media_type="text/html")
+        if (picture := self._hub.gallery.at(scope["path"])) is not None:
+            return await self._picture(picture)
         file = self._table.get(scope["path"])
         if file is None:
             return self._refusal(404, "there is no such file")
         kind = mimetypes.guess_type(file.name)[0] or "application/octet-stream"
         kind = "text/javascript" if file.suffix in (".js", ".mjs") else kind
         return Response(file.read_bytes(), headers=self._always, media_type=kind)
+
+    async def _picture(self, picture: Future[bytes]) -> Response:
+        """A picture of an answer, as soon as it is drawn."""
+        try:
+            drawn = await asyncio.shield(asyncio.wrap_future(picture))
+        except Exception:  # why stands in the server's own log
+            return self._refusal(404, "this picture could not be drawn")
+        return Response(drawn, headers=self._always, media_type="image/png")
 
     def _entered(self, query: bytes) -> Response:
         """The answer to the address with the token: the cookie, and on to the page.

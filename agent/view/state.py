@@ -23,6 +23,7 @@ from .slots import ranges_of
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera, Vec3
     from ...gaussians.language.field.language_field import Group, LanguageField
+    from ...gaussians.language.query.selection import Candidate
     from ...gaussians.scene import Scene
     from ...tools.receipt import Receipt
     from ..session.session import Session
@@ -166,7 +167,16 @@ def _question(session: Session) -> dict[str, Any] | None:
     if asked is None or not asked.candidates:
         return None
     candidates = [
-        {"number": i, "group": c.group, "name": c.describe(), "centre": list(c.center)}
+        {"number": i, "group": c.group, "name": c.name, "centre": list(c.center)}
         for i, c in enumerate(asked.candidates, start=1)
     ]
-    return {"kind": asked.selection.verdict, "text": asked.selection.reason, "candidates": candidates}
+    text = numbered(asked.selection.reason, asked.candidates)
+    return {"kind": asked.selection.verdict, "text": text, "candidates": candidates}
+
+
+def numbered(text: str, candidates: Sequence[Candidate]) -> str:
+    """A text that lists candidates, with their numbers in the picture in place of those of their groups."""
+    for number, candidate in enumerate(candidates, start=1):
+        if candidate.group >= 0:
+            text = text.replace(candidate.describe(), f"{candidate.name} ({number})", 1)
+    return text

@@ -54,9 +54,14 @@ class Candidate:
         side = ("on the left", "in the middle", "on the right")[min(int(3 * x / viewer.width), 2)]
         return f"{side} of the view"
 
+    @property
+    def name(self) -> str:
+        """Its colour and label: "white chair"."""
+        return f"{self.color} {self.label}"
+
     def describe(self) -> str:
-        name = f"{self.color} {self.label}"
-        return name if self.group < 0 else f"{name} (group {self.group})"
+        """Its name, and the number of its group: "white chair (group 6)"."""
+        return self.name if self.group < 0 else f"{self.name} (group {self.group})"
 
 
 @dataclass(frozen=True, eq=False)

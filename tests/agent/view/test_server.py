@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from scenewright.agent.session.session import Session
+from scenewright.agent.view.gallery import KEPT, Gallery
 from scenewright.benchmarks._view.client import Page, Server, asked, same, served
 from scenewright.gaussians.scene import Scene
 
@@ -90,7 +94,10 @@ def test_operations_go_to_the_selection_as_one_step(server: Server, page: Page) 
 
 def test_a_question_is_answered_by_a_click(server: Server, page: Page) -> None:
     asked = page.ask("say", text="delete the red thing")
-    assert not asked["ok"] and [c["number"] for c in page.state["question"]["candidates"]] == [1, 2]
+    question = page.state["question"]
+    assert not asked["ok"] and [c["number"] for c in question["candidates"]] == [1, 2]
+    assert [c["name"] for c in question["candidates"]] == ["red box", "red box"]
+    assert "red box (1), red box (2)" in asked["text"] and "red box (1), red box (2)" in question["text"]
     assert page.ask("answer", choice=2)["ok"]
     assert page.state["question"] is None and same(page, server.hub)
 
@@ -145,3 +152,31 @@ def test_the_scene_is_exported_as_a_page_to_download(server: Server, page: Page)
     assert status == 200 and body.startswith(b"<!doctype html>")
     assert headers["content-disposition"] == "attachment; filename*=UTF-8''test.html"
     assert asked(server.port, link)[0] == 403
+
+
+def test_an_answer_shows_what_it_rests_on(server: Server, page: Page) -> None:
+    said = page.ask("say", text="is there a green thing?")
+    assert said["ok"] and len(said["pictures"]) == 1
+    path, cookie = said["pictures"][0], {"Cookie": server.cookie}
+    status, headers, body = asked(server.port, path, cookie)
+    assert status == 200 and headers["content-type"] == "image/png"
+    shown = np.asarray(Image.open(io.BytesIO(body)))
+    assert shown.shape == (512, 768, 3) and len(np.unique(shown.reshape(-1, 3), axis=0)) > 100
+    assert asked(server.port, path)[0] == 403  # only with the cookie
+    assert asked(server.port, "/pictures/2.png", cookie)[0] == 404
+    assert page.ask("say", text="make the green thing blue")["pictures"] == []
+
+
+def test_pictures_are_drawn_when_nothing_waits_and_the_oldest_go() -> None:
+    gallery = Gallery()
+    first = gallery.add(lambda: b"1")
+    waiting = gallery.at(first)
+    assert waiting is not None and not waiting.done()
+    failing = gallery.add(lambda: bytes(-1))
+    while gallery.draw_next():
+        pass
+    assert waiting.result() == b"1"
+    broken = gallery.at(failing)
+    assert broken is not None and isinstance(broken.exception(), ValueError)
+    paths = [gallery.add(lambda: b"") for _ in range(KEPT)]
+    assert gallery.at(first) is None and all(gallery.at(path) is not None for path in paths)
