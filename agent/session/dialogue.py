@@ -61,11 +61,13 @@ class Dialogue:
 
     Attributes:
         home: the first view, whose left and right "from the left" means; None until the camera is moved.
+        planned: the last plan that was carried out.
     """
 
     def __init__(self, session: Session) -> None:
         self.session = session
         self.home: Camera | None = None
+        self.planned: EditPlan | None = None
         self._looked: Looked | None = None  # the last move of the camera
         self._looking = False  # whether nothing was edited since
         self._previous_plan: EditPlan | None = None
@@ -88,6 +90,7 @@ class Dialogue:
     def edited(self, result: Result) -> Said:
         """A result as what a line led to; words about the camera then no longer go on with its last move."""
         self._looking = False
+        self.planned = result.plan or self.planned
         return Said("\n".join(edit_lines(result)), result.to_json(), result=result)
 
     def refused(self, error: ScenewrightError) -> Refused:

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import shlex
 import shutil
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ...gaussians.errors import InstructionError, ScenewrightError
 from ..session.dialogue import Dialogue
@@ -16,14 +17,13 @@ from ..session.history import looks_alike
 from . import slash_commands
 from .halfblocks import depth_of, draw
 from .input_lines import InputLines
-from .tables import coloured
+from .tables import coloured, table
 
 if TYPE_CHECKING:
     from prompt_toolkit.input import Input
     from prompt_toolkit.output import Output
 
     from ...gaussians.language.query.selection import Selection
-    from ...planners.plan import EditPlan
     from ..pictures.scene_pictures import Picture
     from ..session.result import Result
     from ..session.session import Session
@@ -42,17 +42,17 @@ class Chat:
         input, output: prompt_toolkit's, for tests; by default the process's terminal, or its pipe.
 
     Attributes:
-        planned: the last plan that was carried out.
         dialogue: what typed lines mean to the session.
         ended: whether the user ended the chat.
     """
+
+    elsewhere: ClassVar[Mapping[str, str]] = {}
 
     def __init__(
         self, session: Session, terminal: Terminal, input: Input | None = None, output: Output | None = None
     ) -> None:
         self.session = session
         self.terminal = terminal
-        self.planned: EditPlan | None = None
         self.dialogue = Dialogue(session)
         self.ended = False
         self._kept = session.scene
@@ -79,9 +79,11 @@ class Chat:
         """Whether the scene looks other than when it was saved last; undoing all edits makes it as it was."""
         return not looks_alike(self.session.scene.cloud, self._kept.cloud)
 
-    def kept(self) -> None:
-        """Note that the present scene was saved."""
+    def save(self, name: str, force: bool) -> str:
+        """Write the scene to a file; returns what is told of it."""
+        self.session.save(name, force=force)
         self._kept = self.session.scene
+        return f"wrote {name}"
 
     def _leave(self) -> bool:
         """Whether the chat may end although the scene is not saved. A person is asked for a file; a pipe is told."""
@@ -125,7 +127,6 @@ class Chat:
 
     def show_result(self, result: Result) -> None:
         """Print the result and, on an interactive terminal, a picture."""
-        self.planned = result.plan or self.planned
         said = self.dialogue.edited(result)
         self.tell(said.text, said.data, "green")
         if self._lines.interactive:
@@ -139,11 +140,27 @@ class Chat:
         if doubted is not None and doubted.verdict == "unconfirmed" and self._lines.interactive:
             self.show_picture(doubted)
 
+    def file(self, name: str) -> Path:
+        """The file that a command names."""
+        return Path(name)
+
+    def end(self) -> None:
+        """End the chat after this line."""
+        self.ended = True
+
     # -- output -----------------------------------------------------------------------------------------------------
 
     def tell(self, text: str, data: dict[str, Any], style: str = "default") -> None:
         """Print an answer, its first line in the colour `style`."""
         self.terminal.result(coloured(text, style, self.terminal.out), data)
+
+    def note(self, text: str) -> None:
+        """Print a remark."""
+        self.terminal.say(f"note: {text}")
+
+    def table(self, columns: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+        """Rows under the names of their columns, as text."""
+        return table(columns, rows)
 
     def show_picture(self, doubted: Selection | None = None) -> None:
         """Print the current view, at most 100 columns by 40 rows and no larger than the terminal.

@@ -1,22 +1,21 @@
-"""The slash commands of the chat: `SLASH_COMMANDS` has each command's help line and the function that runs it."""
+"""The slash commands of the chat and of the page: each one's help line, and the function that runs it."""
 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from ...gaussians.errors import UserError
 from ..session.plan_report import format_usage, plan_lines, selection_json, usage_lines
-from .tables import table
 
 if TYPE_CHECKING:
-    from ...planners.plan import EditPlan
+    from pathlib import Path
+
     from ..pictures.scene_pictures import Picture
     from ..session.dialogue import Dialogue
     from ..session.result import Result
     from ..session.session import Session
-    from .output import Terminal
 
 STEP = 0.05  # metres, default distance by which a selection grows or shrinks
 _EXAMPLES = (
@@ -28,19 +27,25 @@ _EXAMPLES = (
 
 
 class Conversation(Protocol):
-    """The part of `chat.Chat` that commands use."""
+    """Where commands are typed: the chat on a terminal, or the page in a browser.
 
+    Attributes:
+        elsewhere: what to do instead of the commands that do not work here, by their names.
+    """
+
+    elsewhere: ClassVar[Mapping[str, str]]
     session: Session
-    terminal: Terminal
-    planned: EditPlan | None
     dialogue: Dialogue
-    ended: bool
 
-    def tell(self, text: str, data: dict[str, Any], style: str = "default") -> None: ...
+    def tell(self, text: str, data: dict[str, Any]) -> None: ...
+    def note(self, text: str) -> None: ...
+    def table(self, columns: Sequence[str], rows: Sequence[Sequence[object]]) -> str: ...
     def show_result(self, result: Result) -> None: ...
     def show_picture(self) -> None: ...
     def show_image(self, image: Picture) -> None: ...
-    def kept(self) -> None: ...
+    def file(self, name: str) -> Path: ...
+    def save(self, name: str, force: bool) -> str: ...
+    def end(self) -> None: ...
 
 
 class SlashCommand(NamedTuple):
@@ -60,15 +65,17 @@ def run_command(chat: Conversation, line: str) -> None:
     name, _, rest = line.partition(" ")
     if (command := SLASH_COMMANDS.get(name.lower())) is None:
         raise UserError(f"there is no command {name}; /help lists them")
+    if (instead := chat.elsewhere.get(name.lower())) is not None:
+        raise UserError(instead)
     command.run(chat, rest.strip())
 
 
 def _help(chat: Conversation, _: str) -> None:
     from ...tools.registry import describe
 
-    help_lines = {name: command.help for name, command in SLASH_COMMANDS.items()}
-    operations = table(("operation", "for example"), [(name, words) for name, _, words, _ in describe()])
-    commands = table(("command", "does"), list(help_lines.items()))
+    help_lines = {name: command.help for name, command in SLASH_COMMANDS.items() if name not in chat.elsewhere}
+    operations = chat.table(("operation", "for example"), [(name, words) for name, _, words, _ in describe()])
+    commands = chat.table(("command", "does"), list(help_lines.items()))
     examples = "\n".join(["Say what to do, for example:", *(f"  {e}" for e in _EXAMPLES)])
     chat.tell(f"{examples}\n\n{operations}\n\n{commands}", {"commands": help_lines})
 
@@ -80,9 +87,9 @@ def _plan(chat: Conversation, text: str) -> None:
         lines = [*planned, *result.sentences(), *usage_lines(result.plan), "(not done)"]
         chat.tell("\n".join(lines), result.to_json())
         return
-    if chat.planned is None:
+    if chat.dialogue.planned is None:
         raise UserError("nothing was planned yet; /plan TEXT shows what an instruction would do")
-    chat.tell("\n".join(plan_lines(chat.planned)), chat.planned.model_dump(mode="json"))
+    chat.tell("\n".join(plan_lines(chat.dialogue.planned)), chat.dialogue.planned.model_dump(mode="json"))
 
 
 def _preview(chat: Conversation, text: str) -> None:
@@ -146,7 +153,7 @@ def _things(chat: Conversation, _: str) -> None:
     rows = [(g.id, f"{name_of(g.lab)} {name_of_thing(g)}", g.count) for g in language.objects() if g.count]
     data = {"things": [{"group": i, "name": name, "gaussians": n} for i, name, n in rows]}
     shown = [(i, name, f"{n:,}") for i, name, n in rows]
-    chat.tell(table(("group", "thing", "Gaussians"), shown), data)
+    chat.tell(chat.table(("group", "thing", "Gaussians"), shown), data)
 
 
 def _planner(chat: Conversation, spec: str) -> None:
@@ -183,7 +190,7 @@ def _reference(chat: Conversation, arguments: str) -> None:
             raise UserError("say /reference FILE, or /reference FILE METRES for how wide the place is") from None
         if len(words) > 2:
             raise UserError("say /reference FILE, or /reference FILE METRES for how wide the place is")
-        chat.session.add_reference(words[0], width)
+        chat.session.add_reference(chat.file(words[0]), width)
     known = list(chat.session.references)
     told = f"photographs: {', '.join(known)}" if known else "no photograph was given; /reference FILE gives one"
     chat.tell(told, {"references": known})
@@ -209,27 +216,23 @@ def _replay(chat: Conversation, which: str) -> None:
     chat.tell(f"replayed {chosen.describe()}", {"verdict": "ok", "session": chosen.to_json()})
     for done in replayed:
         if done.note:
-            chat.terminal.say(f"note: {done.note}")
+            chat.note(done.note)
         if done.result is not None:
             chat.show_result(done.result)
 
 
 def _save(chat: Conversation, arguments: str) -> None:
     name, force = _file_of(arguments, "/save")
-    chat.session.save(name, force=force)
-    chat.kept()
-    chat.tell(f"wrote {name}", {"verdict": "ok", "path": name})
+    chat.tell(chat.save(name, force), {"verdict": "ok", "path": name})
 
 
 def _export(chat: Conversation, arguments: str) -> None:
-    from pathlib import Path
-
     from ...gaussians.assets.exporting import export
 
     name, force = _file_of(arguments, "/export")
     if chat.session.last is None:
         raise UserError("nothing is selected; say for example /select the red chair")
-    export(chat.session.scene, chat.session.last.ids, Path(name), force)
+    export(chat.session.scene, chat.session.last.ids, chat.file(name), force)
     chat.tell(f"wrote {name}: {len(chat.session.last):,} Gaussians", {"verdict": "ok", "path": name})
 
 
@@ -246,7 +249,7 @@ def _file_of(arguments: str, command: str) -> tuple[str, bool]:
 
 
 def _quit(chat: Conversation, _: str) -> None:
-    chat.ended = True
+    chat.end()
 
 
 SLASH_COMMANDS: dict[str, SlashCommand] = {

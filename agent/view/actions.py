@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -19,12 +20,15 @@ from ..toolbox.limits import check_arguments
 from ..toolbox.operations import operation_words
 from ..toolbox.saving import SaveArguments, save_scene
 from ..toolbox.tool import Desk
-from .messages import Answer, Asked, Operate, Save, Say, Select, SelectSlots, Step
+from . import messages
+from .commands import PageCommands
+from .messages import Asked, Operate, Save, Say, Select, SelectSlots, Step
 from .slots import EMPTY, slots_of
 from .state import camera_json, numbered
 
 if TYPE_CHECKING:
     from ...planners.questions.answer import Answer
+    from ..session.result import Result
     from .changes import Shown
     from .gallery import Gallery
 
@@ -57,6 +61,7 @@ class Actions:
         self._dialogue = dialogue
         self._session = dialogue.session
         self._desk = Desk(dialogue.session, folder, keep_field)
+        self._commands = PageCommands(self._desk, dialogue, stage.gallery)
 
     def do(self, message: Asked) -> Reply | bytes:
         """The answer to a message, without its number; bytes go as they are.
@@ -67,7 +72,7 @@ class Actions:
         if isinstance(message, Say):
             self._look(message)
             return self._typed(message.text)
-        if isinstance(message, Answer):
+        if isinstance(message, messages.Answer):
             return self._typed(str(message.choice))
         if isinstance(message, Select | SelectSlots):
             return self._select(message)
@@ -91,9 +96,18 @@ class Actions:
     def _typed(self, text: str) -> Reply:
         """A line that was typed. One that is refused or asks back is answered with why."""
         try:
+            if text.startswith("/"):
+                return self._command(text)
             return self._said(self._dialogue.say(text))
         except ScenewrightError as error:
             return self._refused(error)
+
+    def _command(self, line: str) -> Reply:
+        """A slash command, and what it shows."""
+        self._dialogue.begin()
+        told = self._commands.run(line)
+        said = Said("\n".join(told.texts), camera=told.camera)
+        return {**self._said(said), "receipt": _receipt(told.results), "pictures": told.pictures}
 
     def _refused(self, error: ScenewrightError) -> Reply:
         first, *lines = self._dialogue.refused(error).lines
@@ -180,8 +194,7 @@ class Actions:
     def _said(self, said: Said) -> Reply:
         """The answer to what was done, or asked."""
         first, *lines = said.text.split("\n")
-        receipts = said.result.receipts if said.result is not None else ()
-        rows = [{"name": c.name, "passed": c.passed, "text": c.sentence} for r in receipts for c in r.checks]
+        rows = _receipt([said.result] if said.result is not None else [])
         camera = camera_json(said.camera) if said.camera is not None else None
         pictures = self._evidence(said.answer) if said.answer is not None else []
         return {
@@ -200,3 +213,9 @@ class Actions:
 _ANSWER: Reply = {
     "type": "said", "ok": True, "text": "", "lines": [], "receipt": [], "pictures": [], "link": None, "camera": None,
 }  # fmt: skip
+
+
+def _receipt(results: Sequence[Result]) -> list[dict[str, Any]]:
+    """What was checked of results, a row for each check."""
+    checks = [check for result in results for receipt in result.receipts for check in receipt.checks]
+    return [{"name": c.name, "passed": c.passed, "text": c.sentence} for c in checks]

@@ -80,11 +80,11 @@ class Hub:
         self.session = session
         self.title = title
         self._dialogue = Dialogue(session)
+        self.gallery = Gallery()
         self._actions = Actions(self, self._dialogue, folder, keep_field)
         # Revisions of another run of the server are never those of this one.
         self.shown = Shown.first(session.scene, int(time.time() * 1000))
         self.made: tuple[str, bytes] | None = None
-        self.gallery = Gallery()
         self._state = state.of(session, self.shown)
         self.state = self._told(False)
         self._welcome = state.welcome(session, self.title)

@@ -18,6 +18,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
 from ...agent.session.session import Session
+from ...agent.toolbox.folder import Folder
 from ...agent.view import wire
 from ...agent.view.columns import columns_of, width
 from ...agent.view.hub import Hub
@@ -57,9 +58,9 @@ class Server:
 
 
 @contextmanager
-def served(session: Session) -> Iterator[Server]:
-    """A session that is served until the context ends."""
-    made = Server(Hub(session, "test.ply", None))
+def served(session: Session, folder: Folder | None = None) -> Iterator[Server]:
+    """A session that is served until the context ends; its scenes are saved in a folder, or nowhere."""
+    made = Server(Hub(session, "test.ply", folder))
     try:
         yield made
     finally:
