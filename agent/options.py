@@ -180,12 +180,20 @@ Effort = Annotated[
         "options win.",
     ),
 ]  # fmt: skip
+LOD_PIXELS = 1.0  # what --lod alone means: `gaussians.levels.choosing.PIXELS`
+Lod = Annotated[
+    float | None,
+    typer.Option(
+        "--lod", metavar="[PIXELS]", min=0.0,
+        help="Draw a .lod with levels of detail: parts as coarse as moves nothing by more than so many pixels (1).",
+    ),
+]  # fmt: skip
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Random seed; the same seed gives the same bytes.")]
 
 
 def with_values(arguments: Sequence[str]) -> list[str]:
-    """The arguments with the values of a `--judge` and an `--infill` that stand alone; what follows them is then no
-    value of theirs."""
+    """The arguments with the values of a `--judge`, an `--infill` and a `--lod` that stand alone; what follows them is
+    then no value of theirs."""
     from .session.judge import JUDGES
 
     given = list(arguments)
@@ -194,6 +202,16 @@ def with_values(arguments: Sequence[str]) -> list[str]:
             break
         if word == "--infill" and (k + 1 == len(given) or given[k + 1].startswith("-")):
             given[k] = "--infill=scene"
+        if word == "--lod" and not _is_number(given[k + 1 : k + 2]):
+            given[k] = f"--lod={LOD_PIXELS}"
         if word == "--judge" and given[k + 1 : k + 2] not in ([[j] for j in (*JUDGES, "off")]):
             given[k] = f"--judge={JUDGE}"
     return given
+
+
+def _is_number(words: Sequence[str]) -> bool:
+    """Whether the only one of these words is a number, which may be below zero: then it is refused as one."""
+    try:
+        return len([float(word) for word in words]) == 1
+    except ValueError:
+        return False

@@ -1,15 +1,21 @@
-"""`convert SCENE NAME.lod`: a scene written in levels of detail, and what each level takes and loses."""
+"""Levels of detail on the command line: a `.lod` written by `convert`, told by `info`, and drawn by `render --lod`."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import asdict
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .terminal.output import terminal
 
 if TYPE_CHECKING:
+    from ..gaussians.camera import Camera
+    from ..gaussians.cloud import GaussianCloud
+    from ..gaussians.files.formats.streamed_sog import Streamed
+    from ..gaussians.levels.making import Level
     from ..gaussians.scene import Scene
 
 HELD_OUT = 8  # views that measure
@@ -21,7 +27,7 @@ def is_streamed(path: Path) -> bool:
 
 
 def write_levels(scene: Scene, output: Path, levels: int, chunk_rows: int, force: bool) -> None:
-    """Write the scene in levels and print them."""
+    """Write the scene in levels, with what each keeps, and print them."""
     from ..gaussians.files.formats import streamed_sog_writing
     from ..gaussians.levels.making import make, measure
     from ..gaussians.levels.tree import LEAF_ROWS
@@ -30,18 +36,111 @@ def write_levels(scene: Scene, output: Path, levels: int, chunk_rows: int, force
     start = time.perf_counter()
     terminal.progress("choosing views", 0.0)
     views = choose_views(scene)
-    made, tree = make(scene, levels, views.ranking, min(LEAF_ROWS, chunk_rows), terminal.progress)
-    streamed_sog_writing.save(made, tree, output, force, chunk_rows, terminal.progress)
-    wrote = time.perf_counter() - start
-    found = measure(scene, output, views.held_out[:: -(-len(views.held_out) // HELD_OUT)])
+    made = make(scene, levels, views.ranking, min(LEAF_ROWS, chunk_rows), terminal.progress)
+    with streamed_sog_writing.replacing(output, force) as folder:
+        streamed_sog_writing.write(made, folder, chunk_rows, terminal.progress)
+        terminal.progress("measuring", 0.99)
+        found = measure(scene, folder, views.held_out[:: -(-len(views.held_out) // HELD_OUT)])
+        known = [(f.psnr, f.psnr_least) for f in found if f.psnr is not None and f.psnr_least is not None]
+        streamed_sog_writing.annotate(folder, scene, known)
+    seconds = time.perf_counter() - start
     terminal.clear()
+    data = {"path": str(output), "levels": _rows(found), "leaves": made.tree.leaves}
     total = sum(level.bytes for level in found)
-    lines = [f"{output}: {len(found)} levels, {tree.leaves} leaves, {total:,} bytes, written in {wrote:.1f} s"]
-    for k, level in enumerate(found):
-        to = "the original" if k == 0 else "level 0"
-        lines.append(
-            f"  level {k}: {level.gaussians:,} Gaussians, {level.bytes:,} bytes, {level.psnr:.1f} dB PSNR to {to} from "
-            f"held-out views, {level.psnr_least:.1f} dB at worst"
-        )
-    data = {"path": str(output), "levels": [asdict(level) for level in found], "leaves": tree.leaves}
-    terminal.result("\n".join(lines), data | {"bytes": total, "seconds": wrote})
+    head = f"{output}: {len(found)} levels, {made.tree.leaves} leaves, {total:,} bytes, written and measured in "
+    terminal.result("\n".join([f"{head}{seconds:.1f} s", *_lines(found)]), data | {"bytes": total, "seconds": seconds})
+
+
+def levels_of(path: Path) -> tuple[list[str], list[dict[str, Any]]]:
+    """Lines and rows that tell the levels of a scene; none if it has none."""
+    from ..gaussians.files.formats import streamed_sog
+    from ..gaussians.levels.making import described
+
+    if not streamed_sog.recognises(path, b""):
+        return [], []
+    found = described(streamed_sog.Streamed.open(path))
+    return _lines(found), _rows(found)
+
+
+def _rows(levels: Sequence[Level]) -> list[dict[str, Any]]:
+    from dataclasses import asdict
+
+    return [asdict(level) for level in levels]
+
+
+def _lines(levels: Sequence[Level]) -> list[str]:
+    lines = []
+    for k, level in enumerate(levels):
+        line = f"  level {k}: {level.gaussians:,} Gaussians, {level.bytes:,} bytes"
+        if level.psnr is not None and level.psnr_least is not None:
+            to = "the original" if k == 0 else "level 0"
+            line += f", {level.psnr:.1f} dB PSNR to {to} from held-out views, {level.psnr_least:.1f} dB at worst"
+        lines.append(line)
+    return lines
+
+
+@dataclass(eq=False)
+class Drawn:
+    """A `.lod` from which each picture takes the levels that suffice for it.
+
+    Attributes:
+        streamed: the levels.
+        pixels: by which Gaussians may move on the screen.
+        gaussians: of the pictures so far.
+        leaves: how often a leaf was drawn at each level.
+    """
+
+    streamed: Streamed
+    pixels: float
+    gaussians: list[int] = field(default_factory=list)
+    leaves: Counter[int] = field(default_factory=Counter)
+
+    @classmethod
+    def of(cls, path: Path, pixels: float) -> Drawn:
+        """Open a scene.
+
+        Raises:
+            UserError: it has no levels.
+            FileError: it cannot be read.
+        """
+        from ..gaussians.errors import FileError, UserError
+        from ..gaussians.files.formats import streamed_sog
+
+        if not path.exists():
+            raise FileError(f"no such file or folder: {path}")
+        if not streamed_sog.recognises(path, b""):
+            raise UserError(
+                f"{path.name} has no levels of detail; write them with `scenewright convert {path.name} "
+                f"{path.stem}.lod`, or leave out --lod"
+            )
+        return cls(streamed_sog.Streamed.open(path), pixels)
+
+    def scene(self, whole: bool) -> Scene:
+        """The scene that cameras are chosen by: its finest level, or else the coarsest, which is read at once."""
+        if whole:
+            return self.streamed.scene()[0]
+        from ..gaussians.scene import Scene
+
+        last = max(k for k, count in enumerate(self.streamed.counts) if count)
+        return Scene(self.streamed.level(last)[0], self.streamed.frame, self.streamed.cameras)
+
+    def cloud(self, camera: Camera) -> GaussianCloud:
+        """What a picture from this camera is drawn of."""
+        from ..gaussians.levels.choosing import choose
+
+        levels = choose(self.streamed, camera, self.pixels)
+        cloud = self.streamed.chosen(levels)
+        self.gaussians.append(len(cloud))
+        self.leaves.update(levels)
+        return cloud
+
+    def data(self) -> dict[str, Any]:
+        """What was drawn: Gaussians of a picture on average, of the finest level, and leaves by level."""
+        mean = round(sum(self.gaussians) / max(len(self.gaussians), 1))
+        leaves = [self.leaves[k] for k in range(self.streamed.levels)]
+        return {"gaussians": mean, "gaussians_finest": max(self.streamed.counts), "leaves": leaves}
+
+    def text(self) -> str:
+        told = self.data()
+        leaves = ", ".join(f"{count} at level {k}" for k, count in enumerate(told["leaves"]) if count)
+        return f"{told['gaussians']:,} of {told['gaussians_finest']:,} Gaussians a picture; leaves: {leaves}"

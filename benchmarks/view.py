@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import statistics
+from typing import Any
 
 from ..gaussians.errors import BackendError
-from ._view import drawing, faults, words
+from ._view import drawing, faults, levels, words
 from .harness import Metric, Result
 
 GOAL_PSNR, GOAL_RIGHT, GOAL_CLICK_MS, GOAL_WORDS_SECONDS, GOAL_BYTES = 30.0, 0.95, 100.0, 0.5, 1.2
+GOAL_OVER_DROPPING = 1.0
 
 
 def run(quick: bool) -> Result:
@@ -37,6 +39,8 @@ def run(quick: bool) -> Result:
         Metric("words.seconds", seconds, "s", "lower", 0.4, GOAL_WORDS_SECONDS),
         Metric("words.bytes", max(row["bytes_over_changed"] for row in said), "x", "lower", 0.05, GOAL_BYTES),
     ]
+    leveled, missing = levels.measure(quick)
+    metrics += [metric for row in leveled for metric in (_level if "level" in row else _lod)(row)]
     rows = faults.measure(quick)
     bad = [row for row in rows if row.get("changed") or not all(row.get(k, True) for k in _HOLD)]
     metrics.append(Metric("faults.wrong", len(bad), "count", "lower", 0, 0))
@@ -50,9 +54,39 @@ def run(quick: bool) -> Result:
             "opened: from the address of an exported file to its first whole picture.",
             "frame: projecting, blending and presenting; the sort is a worker's and not in it.",
             "words.seconds: to the last byte of the change at a client, without the browser.",
+            "level: PSNR to the scene before writing; over_dropping: against leaving out the least visible of it.",
+            "lod: drawn as render --lod does, against the finest level; draw: processor time of a picture.",
+            *missing,
             *(f"wrong: {row}" for row in bad),
         ),
     )
+
+
+def _level(row: dict[str, Any]) -> list[Metric]:
+    """A level as it is on disk; nothing is left out at the finest one, so it is not compared."""
+    key = f"{row['scene']}.level{row['level']}"
+    found = [
+        Metric(f"{key}.gaussians", row["gaussians"], "count"),
+        Metric(f"{key}.bytes", row["bytes"], "B", "lower", 0.03),
+        Metric(f"{key}.draw", row["draw"], "ms", "lower", 0.4),
+        Metric(f"{key}.psnr", row["psnr"], "dB", "higher", 0.02),
+    ]
+    if row["level"]:
+        gain = row["psnr"] - row["dropped"]
+        found.append(Metric(f"{key}.over_dropping", gain, "dB", "higher", 0.1, GOAL_OVER_DROPPING))
+    return found
+
+
+def _lod(row: dict[str, Any]) -> list[Metric]:
+    """Pictures drawn with levels."""
+    key = f"{row['scene']}.lod.{row['view']}"
+    return [
+        Metric(f"{key}.gaussians", row["share"], "share", "lower", 0.05),
+        Metric(f"{key}.draw", row["draw"], "ms", "lower", 0.4),
+        Metric(f"{key}.draw_finest", row["draw_finest"], "ms"),
+        Metric(f"{key}.psnr", row["psnr"], "dB", "higher", 0.02),
+        Metric(f"{key}.psnr_least", row["psnr_least"], "dB", "higher", 0.03),
+    ]
 
 
 _HOLD = ("same", "log_whole", "refused")

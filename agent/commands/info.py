@@ -28,7 +28,8 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Print the contents of a scene file: format, Gaussians, frame, cameras, repairs, and things if it is embedded.
+    """Print the contents of a scene file: format, Gaussians, frame, cameras, repairs, and things if it is embedded;
+    of a .lod also its levels.
 
     With --budget, what each part of its model buys: harmonics, Gaussians, things, views and the language field, with
     the bytes that dropping it saves and the PSNR or names that are left; --capture gives the views for it.
@@ -38,6 +39,7 @@ def command(
     from ...gaussians.errors import UserError
     from ...gaussians.files import load_with_report
     from ...gaussians.language.field.store import load_field
+    from ..streaming import levels_of
     from ..terminal.thing_names import describe_things
 
     if capture is not None and not budget:
@@ -55,6 +57,7 @@ def command(
         return
     cloud, frame, language = loaded.cloud, loaded.frame, loaded.language
     low, high = (getattr(cloud.means, f)(dim=0).values.tolist() for f in ("min", "max"))
+    levels_text, levels = levels_of(scene)
     data: dict[str, Any] = {
         "path": str(scene),
         "format": report.format,
@@ -67,6 +70,7 @@ def command(
         "metres_per_unit": [frame.metres_per_unit, frame.scale_source],
         "cameras": [{"name": c.name, "size": [c.width, c.height]} for c in loaded.cameras],
         "notes": list(report.notes),
+        "levels": levels,
         "language": None,
     }
     things_text = "  not embedded yet: run `scenewright embed`"
@@ -80,7 +84,7 @@ def command(
         }  # fmt: skip
         made = [f"embedded with {language.encoder}"] if making is None else making.lines()
         things_text = "\n".join(f"  {line}" for line in (describe_things(shown), *made))
-    terminal.result("\n".join([*_lines(data), things_text]), data)
+    terminal.result("\n".join([*_lines(data), *levels_text, things_text]), data)
 
 
 def _show_budget(loaded: Scene, capture: Path | None) -> None:

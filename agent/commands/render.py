@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Debug, Force, Json, SceneFile, Size, View
+from ..options import Debug, Force, Json, Lod, SceneFile, Size, View
 from ..output_files import refuse_existing
 from ..pictures.named_cameras import PICTURE, choose_view, parse_size
 from ..terminal.output import terminal
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ...gaussians.camera import Camera, Render
     from ...gaussians.scene import Scene
     from ..pictures.shots import Shots
+    from ..streaming import Drawn
 
 Timing = tuple[float | None, float | None]  # seconds of a film, pictures a second
 
@@ -57,15 +58,21 @@ def command(
         bool, typer.Option("--depth", help="16-bit PNGs of depth in thousandths of a scene unit, 0 for background.")
     ] = False,
     backend: Annotated[str, typer.Option(help="Renderer: 'auto', 'cpu', 'reference' or 'cuda'.")] = "auto",
+    lod: Lod = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Render a scene from a camera, or a film: around it, from a capture's cameras, or along a path."""
+    """Render a scene from a camera, or a film: around it, from a capture's cameras, or along a path.
+
+    A .lod is drawn at its finest level. With --lod each of its parts is drawn at the coarsest level that moves its
+    Gaussians by at most so many pixels, and only the files of these levels are read.
+    """
     from ...gaussians.color import parse
     from ...gaussians.files import load
     from ...gaussians.render import render
     from ..pictures.film import is_film
+    from ..streaming import Drawn
 
     film = is_film(output)
     options = {"--view": view != "auto", "--orbit": orbit is not None, "--cameras": cameras is not None}
@@ -76,15 +83,20 @@ def command(
     finish = _transparent if alpha else _thousandths if depth else lambda drawn: drawn.to_uint8()
 
     def draw(camera: Camera) -> Any:
-        return finish(render(loaded.cloud, camera, behind, backend))
+        return finish(render(loaded.cloud if leveled is None else leveled.cloud(camera), camera, behind, backend))
 
     if not film:
         refuse_existing([output], force)
-    loaded = load(scene)
-    if film:
-        _film(draw, _shots(loaded, orbit, cameras, path, (seconds, fps), size, output), output, force)
+    leveled = None if lod is None else Drawn.of(scene, lod)
+    if leveled is None:
+        loaded = load(scene)
     else:
-        _still(draw, choose_view(loaded, view, size), output, force)
+        chosen = (view == "auto" and not leveled.streamed.cameras) if not film else cameras is None or bool(orbit)
+        loaded = leveled.scene(whole=chosen)  # all of it where it says which views there are, as without levels
+    if film:
+        _film(draw, _shots(loaded, orbit, cameras, path, (seconds, fps), size, output), output, force, leveled)
+    else:
+        _still(draw, choose_view(loaded, view, size), output, force, leveled)
 
 
 def _check_options(given: list[str], output: Path, film: bool) -> None:
@@ -113,7 +125,7 @@ def _check_channels(alpha: bool, depth: bool, output: Path) -> None:
         raise UserError(f"{'--alpha' if alpha else '--depth'} needs PNGs; write a folder instead of {output.name}")
 
 
-def _still(draw: Callable[[Camera], Any], camera: Camera, output: Path, force: bool) -> None:
+def _still(draw: Callable[[Camera], Any], camera: Camera, output: Path, force: bool, leveled: Drawn | None) -> None:
     from ..pictures.image_files import save_png
 
     started = time.perf_counter()
@@ -121,7 +133,15 @@ def _still(draw: Callable[[Camera], Any], camera: Camera, output: Path, force: b
     seconds = round(time.perf_counter() - started, 3)
     save_png(picture, output, force)
     data = {"path": str(output), "size": [camera.width, camera.height], "view": camera.name, "seconds": seconds}
-    terminal.result(f"{output}: {camera.width}x{camera.height}, drawn in {seconds} s", data)
+    text = f"{output}: {camera.width}x{camera.height}, drawn in {seconds} s"
+    _tell(text, data, leveled)
+
+
+def _tell(text: str, data: dict[str, Any], leveled: Drawn | None) -> None:
+    """Print the result, with what was drawn of which levels."""
+    if leveled is not None:
+        text, data = f"{text}\n  {leveled.text()}", data | {"lod": leveled.data()}
+    terminal.result(text, data)
 
 
 def _shots(
@@ -140,7 +160,7 @@ def _shots(
     return shots.capture_shots(cameras, given, *timing)
 
 
-def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool) -> None:
+def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool, leveled: Drawn | None) -> None:
     from ..pictures import film
 
     sizes = {(camera.width, camera.height) for camera in shots.cameras}
@@ -162,7 +182,7 @@ def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool
     of = f" of {width}x{height}" if width else ""
     lasts = "" if film.picture_paths(output, shots.names) else f", {shots.seconds:.1f} s at {shots.fps:g} a second"
     pictures = "1 picture" if count == 1 else f"{count} pictures"
-    terminal.result(f"{output}: {pictures}{of}{lasts}, {size / 1e6:.1f} MB, drawn in {spent} s", data)
+    _tell(f"{output}: {pictures}{of}{lasts}, {size / 1e6:.1f} MB, drawn in {spent} s", data, leveled)
 
 
 def _transparent(drawn: Render) -> Any:

@@ -1,5 +1,5 @@
 """Merges Gaussians into fewer ones of the same mass: levels of detail, and scenes with fewer Gaussians."""
 
-from .pairwise import Merged, merge, merged_by, visibility
+from .pairwise import Merged, masses, merge, merged_by, visibility
 
-__all__ = ["Merged", "merge", "merged_by", "visibility"]
+__all__ = ["Merged", "masses", "merge", "merged_by", "visibility"]

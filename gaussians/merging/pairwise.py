@@ -110,6 +110,11 @@ def visibility(cloud: GaussianCloud, cameras: Sequence[Camera]) -> F64:
     return np.clip(seen / well, FAINT, 1.0) if well > 0 else np.ones(len(cloud))
 
 
+def masses(cloud: GaussianCloud) -> F64:
+    """`[N]`, opacity times mean projected area (in units of 2 pi): what merging keeps."""
+    return _State.of(cloud, np.zeros(len(cloud), np.int64), None).mass
+
+
 def merged_by(cloud: GaussianCloud, rows: I64) -> GaussianCloud:
     """The cloud `[M]` in which the rows with equal `rows` `[N]`, numbers 0 to M - 1, are one Gaussian each.
 

@@ -4,6 +4,12 @@ The specification is developer.playcanvas.com/user-manual/gaussian-splatting/for
 space; each leaf has a run of rows at each level, in chunks that are SOG folders of their own (`sog`). Level 0 is the
 finest, and what `read` gives; `Streamed` gives any level of any leaf. Writing is in `streamed_sog_writing`.
 The index is untrusted: chunks outside its folder, and counts that fit neither leaves, chunks nor bytes are refused.
+
+What the format has no field for stands in fields that other programs skip: of a run, `moved`; of the index,
+
+    "extras": {"scenewright": {"comments": [...], "psnr": [[mean, least], ...]}}
+
+with frame and cameras as the comments of a .ply (`comments`), and what each level keeps, in dB. Both may be missing.
 """
 
 from __future__ import annotations
@@ -11,17 +17,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 import torch
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from ...camera import Camera
 from ...cloud import GaussianCloud, concat
 from ...errors import FileError
-from ...scene import Scene
+from ...scene import Frame, Scene
 from ..format import Format, Report
-from . import sog
+from . import comments, sog
 
 NAME = "Streamed SOG"
 SUFFIX = ".lod"  # of the folder, by our own convention: the format names only the index
@@ -29,9 +36,12 @@ INDEX = "lod-meta.json"
 
 _INDEX_LIMIT = 1 << 26  # bytes; a leaf of ten thousand Gaussians takes some 400
 _MOST_LEVELS = 32
+_MOST_COMMENTS = 100_000
 
 ChunkName = Annotated[str, Field(pattern=r"^([^/\\:\x00]+/)*[^/\\:\x00]+$", max_length=1024)]
 Count = Annotated[int, Field(ge=0, le=1 << 40)]
+Length = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class _Part(BaseModel):
@@ -39,11 +49,17 @@ class _Part(BaseModel):
 
 
 class Run(_Part):
-    """Rows `offset` to `offset + count` of chunk number `file`."""
+    """Rows `offset` to `offset + count` of chunk number `file`.
+
+    Attributes:
+        moved: how far the Gaussians of level 0 are from those that stand for them here (see `levels.levels.Levels`),
+            scene units; None in files of other programs.
+    """
 
     file: Count
     offset: Count
     count: Count
+    moved: Length | None = None
 
 
 class _Bound(_Part):
@@ -63,7 +79,15 @@ class _Index(_Part):
     levels: Annotated[int, Field(alias="lodLevels", ge=1, le=_MOST_LEVELS)]
     filenames: Annotated[tuple[ChunkName, ...], Field(min_length=1, max_length=1 << 20)]
     environment: ChunkName | None = None
+    extras: Any = None
     tree: _Node
+
+
+class _Extras(_Part):
+    """What this program writes into `extras`."""
+
+    comments: Annotated[tuple[str, ...], Field(max_length=_MOST_COMMENTS)] = ()
+    psnr: Annotated[tuple[tuple[Finite, Finite], ...], Field(max_length=_MOST_LEVELS)] = ()
 
 
 @dataclass(frozen=True)
@@ -110,7 +134,10 @@ class Streamed:
         chunks: by the numbers that runs name.
         leaves: in the order of the tree.
         environment: rows that belong to no level (sky); none or one chunk.
-        notes: what was repaired in the chunks read so far.
+        frame, cameras: of the scene that was written; the format itself has neither.
+        psnr: of each level in dB, mean and least of the views it was measured from when it was written; empty if the
+            file does not say it.
+        notes: what was repaired in the index and in the chunks read so far.
     """
 
     folder: Path
@@ -118,6 +145,9 @@ class Streamed:
     chunks: tuple[Chunk, ...]
     leaves: tuple[Leaf, ...]
     environment: tuple[Chunk, ...] = ()
+    frame: Frame = field(default_factory=Frame)
+    cameras: tuple[Camera, ...] = ()
+    psnr: tuple[tuple[float, float], ...] = ()
     notes: list[str] = field(default_factory=list)
     _clouds: dict[Path, tuple[GaussianCloud, int]] = field(default_factory=dict, repr=False)
     _room: float = sog.FREE_GAUSSIANS  # Gaussians that chunks may claim besides what their bytes allow
@@ -133,7 +163,12 @@ class Streamed:
         index = _read_index(folder)
         leaves = tuple(_leaves(index.tree))
         environment = () if index.environment is None else (Chunk(_inside(folder, index.environment), None),)
-        found = cls(folder, index.levels, _chunks(folder, index, leaves), leaves, environment)
+        extras, notes = _extras(index)
+        frame, cameras, unusable = comments.parse(extras.comments)
+        found = cls(
+            folder, index.levels, _chunks(folder, index, leaves), leaves, environment, frame, cameras, extras.psnr,
+            [*notes, *unusable],
+        )  # fmt: skip
         if index.counts is not None and index.counts != found.counts:
             raise FileError(f"{folder}: {INDEX} says {index.counts} Gaussians a level, its leaves {found.counts}")
         if not any(found.counts):
@@ -162,6 +197,15 @@ class Streamed:
             parts.append(cloud.replace(ids=cloud.ids + base))
             base += rows
         return concat(parts), base
+
+    def scene(self) -> tuple[Scene, int]:
+        """The finest level that holds anything, as a scene, and its number of rows as `level` counts them.
+
+        Raises:
+            FileError: as `level`.
+        """
+        cloud, rows = self.level(next(k for k, count in enumerate(self.counts) if count))
+        return Scene(cloud, self.frame, self.cameras, path=self.folder), rows
 
     def chosen(self, levels: Sequence[int]) -> GaussianCloud:
         """The Gaussians of each leaf at its level of `levels`, leaf by leaf, and the environment. Ids are row numbers
@@ -213,6 +257,19 @@ def _read_index(folder: Path) -> _Index:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"][-4:]) or "the text"
         raise FileError(f"{path}: not a {NAME} index of version 1: {where}: {first['msg']}") from error
+
+
+def _extras(index: _Index) -> tuple[_Extras, tuple[str, ...]]:
+    """What this program wrote into the index, and a note if it cannot be used: pictures do not need it."""
+    ours = index.extras.get("scenewright", {}) if isinstance(index.extras, dict) else {}
+    try:
+        found = _Extras.model_validate(ours)
+    except ValidationError as error:
+        where = ".".join(str(part) for part in error.errors()[0]["loc"][:1]) or "extras"
+        return _Extras(), (f"frame, cameras and PSNR in {INDEX} were ignored: {where}: {error.errors()[0]['msg']}",)
+    if len(found.psnr) not in (0, index.levels):
+        return found.model_copy(update={"psnr": ()}), (f"the PSNR in {INDEX} was ignored: it is not of each level",)
+    return found, ()
 
 
 def _inside(folder: Path, name: str) -> Path:
@@ -275,9 +332,8 @@ def read(path: Path) -> tuple[Scene, Report]:
         FileError: the index or a chunk of this level is missing, damaged, or contradicts another.
     """
     streamed = Streamed.open(path)
-    finest = next(k for k, count in enumerate(streamed.counts) if count)
-    cloud, rows = streamed.level(finest)
-    return Scene(cloud, path=path), Report(NAME, rows, len(cloud), tuple(streamed.notes))
+    scene, rows = streamed.scene()
+    return scene.replace(path=path), Report(NAME, rows, len(scene.cloud), tuple(streamed.notes))
 
 
 FORMAT = Format(NAME, (SUFFIX,), recognises, read)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,12 @@ import torch
 from numpy.typing import NDArray
 
 from ...cloud import GaussianCloud
+from ...levels.levels import Levels
 from ...levels.tree import Node, Tree
 from ...rotations import to_matrix
+from ...scene import Scene
 from ..atomic import writing_folder
-from . import sog, sog_writing
+from . import comments, sog, sog_writing
 from .morton import morton_order
 from .streamed_sog import INDEX, scene_folder
 
@@ -27,33 +30,30 @@ _DIGITS = 7  # significant ones of bounds, as the format asks for
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
-Runs = Sequence[dict[str, dict[str, int]]]  # of each leaf by level
+Run = dict[str, int | float]
+Runs = Sequence[dict[str, Run]]  # of each leaf by level
 Progress = Callable[[str, float], None]
 
 
-def save(
-    levels: Sequence[GaussianCloud],
-    tree: Tree,
-    path: Path,
-    force: bool = False,
-    chunk_rows: int = CHUNK_ROWS,
-    progress: Progress | None = None,
-) -> None:
-    """Write a scene as a folder: complete, or not at all.
+def save(levels: Levels, path: Path, force: bool = False, chunk_rows: int = CHUNK_ROWS) -> None:
+    """Write a scene in levels as a folder: complete, or not at all.
 
     Args:
-        levels: the same scene at each level, the finest first.
         path: of the folder, or of the index in it.
         force: replace a folder of this kind.
         chunk_rows: most Gaussians of a chunk; a leaf with more has a chunk of its own.
-        progress: called with the stage and its share.
 
     Raises:
         UserError: the folder exists and is not to be replaced, or some rows hold NaN or infinite values.
         FileError: the folder cannot be written.
     """
-    with writing_folder(scene_folder(path), force, _ours) as folder:
-        _write(levels, tree, folder, chunk_rows, progress or (lambda stage, share: None))
+    with replacing(path, force) as folder:
+        write(levels, folder, chunk_rows)
+
+
+def replacing(path: Path, force: bool = False) -> AbstractContextManager[Path]:
+    """An empty folder that takes its place when the block succeeds; arguments and errors as of `save`."""
+    return writing_folder(scene_folder(path), force, _ours)
 
 
 def _ours(path: Path) -> bool:
@@ -61,24 +61,33 @@ def _ours(path: Path) -> bool:
     return str(path) == INDEX or (len(path.parts) == 2 and (path.name == sog.META or path.suffix == ".webp"))
 
 
-def _write(levels: Sequence[GaussianCloud], tree: Tree, folder: Path, chunk_rows: int, progress: Progress) -> None:
-    runs: list[dict[str, dict[str, int]]] = [{} for _ in range(tree.leaves)]
+def write(levels: Levels, folder: Path, chunk_rows: int = CHUNK_ROWS, progress: Progress | None = None) -> None:
+    """Write chunks and index into an empty folder; `progress` is called with the stage and its share.
+
+    Raises:
+        UserError: some rows hold NaN or infinite values.
+    """
+    tree, clouds, moved = levels.tree, levels.clouds, levels.moved
+    runs: list[dict[str, Run]] = [{} for _ in range(tree.leaves)]
     bounds = np.empty((tree.leaves, 2, 3))
     bounds[:] = [[np.inf], [-np.inf]]
     names: list[str] = []
-    total, done = sum(len(cloud) for cloud in levels), 0
-    for level, cloud in enumerate(levels):
+    total, done = sum(len(cloud) for cloud in clouds), 0
+    for level, cloud in enumerate(clouds):
         order, ends = _by_leaf(cloud, tree)
         cloud = cloud[torch.from_numpy(order)]
         _widen(bounds, cloud, ends)
         for number, (first, last) in enumerate(_chunks(ends, chunk_rows)):
-            progress(f"writing level {level}", done / total)
+            if progress is not None:
+                progress(f"writing level {level}", done / total)
             start, end = _span(ends, first)[0], _span(ends, last)[1]
             _write_chunk(folder / f"{level}_{number}", cloud[start:end])
             for leaf in range(first, last + 1):
                 begin, stop = _span(ends, leaf)
                 if stop > begin:
-                    run = {"file": len(names), "offset": begin - start, "count": stop - begin}
+                    run: Run = {"file": len(names), "offset": begin - start, "count": stop - begin}
+                    if moved is not None and level > 0:
+                        run["moved"] = _rounded(moved[leaf, level])
                     runs[leaf][str(level)] = run
             names.append(f"{level}_{number}/{sog.META}")
             done += end - start
@@ -86,11 +95,23 @@ def _write(levels: Sequence[GaussianCloud], tree: Tree, folder: Path, chunk_rows
         "version": 1,
         "asset": {"generator": "scenewright"},
         "count": total,
-        "counts": [len(cloud) for cloud in levels],
-        "lodLevels": len(levels),
+        "counts": [len(cloud) for cloud in clouds],
+        "lodLevels": len(clouds),
         "filenames": names,
         "tree": _node(tree.root, bounds, runs)[0],
     }
+    _write_index(folder, index)
+
+
+def annotate(folder: Path, scene: Scene, psnr: Sequence[tuple[float, float]]) -> None:
+    """Add the frame and the cameras of a scene to a written index, and the PSNR (mean and least) of each level."""
+    index = json.loads((folder / INDEX).read_text())
+    told = {"comments": list(comments.describe(scene)), "psnr": [[round(v, 3) for v in pair] for pair in psnr]}
+    tree = index.pop("tree")  # stays last, so that a reader of text sees the rest
+    _write_index(folder, index | {"extras": {"scenewright": told}, "tree": tree})
+
+
+def _write_index(folder: Path, index: dict[str, Any]) -> None:
     (folder / INDEX).write_text(json.dumps(index, separators=(",", ":")))
 
 
@@ -147,4 +168,8 @@ def _node(node: Node, bounds: Floats, runs: Runs) -> tuple[dict[str, Any], Float
 
 
 def _bound(box: Floats) -> dict[str, list[float]]:
-    return {name: [float(f"{v:.{_DIGITS}g}") for v in corner] for name, corner in zip(("min", "max"), box, strict=True)}
+    return {name: [_rounded(v) for v in corner] for name, corner in zip(("min", "max"), box, strict=True)}
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")

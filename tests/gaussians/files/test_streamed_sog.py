@@ -20,6 +20,7 @@ from scenewright.gaussians.files.formats import streamed_sog, streamed_sog_writi
 from scenewright.gaussians.files.formats.morton import morton_sorted
 from scenewright.gaussians.files.formats.streamed_sog import Streamed
 from scenewright.gaussians.language.field.store import fingerprint
+from scenewright.gaussians.levels.levels import Levels
 from scenewright.gaussians.levels.tree import Tree, build
 from scenewright.gaussians.rotations import to_matrix
 from scenewright.gaussians.scene import Scene
@@ -44,8 +45,7 @@ def tree(whole: GaussianCloud) -> Tree:
 
 def write(path: Path, degree: int = 1, chunk_rows: int = 300, force: bool = False) -> Path:
     whole = cloud(degree)
-    levels = [whole[:count] for count in LEVELS]
-    streamed_sog_writing.save(levels, tree(whole), path, force, chunk_rows)
+    streamed_sog_writing.save(Levels(tuple(whole[:count] for count in LEVELS), tree(whole)), path, force, chunk_rows)
     return path
 
 
@@ -78,7 +78,7 @@ def test_each_level_comes_back_with_the_precision_of_sog(tmp_path: Path, degree:
 def test_one_leaf_is_the_same_as_a_sog_file(tmp_path: Path) -> None:
     """A scene that fits one leaf and one chunk loses exactly what the same scene loses as .sog."""
     whole = cloud()
-    streamed_sog_writing.save([whole], build(whole.means.numpy()), tmp_path / "a.lod")
+    streamed_sog_writing.save(Levels((whole,), build(whole.means.numpy())), tmp_path / "a.lod")
     files.save(Scene(whole), tmp_path / "a.sog")
     assert files.load(tmp_path / "a.lod").cloud.digest() == files.load(tmp_path / "a.sog").cloud.digest()
 
@@ -150,7 +150,7 @@ def test_the_index_says_what_the_specification_asks(tmp_path: Path) -> None:
 
 def test_runs_follow_a_morton_curve(tmp_path: Path) -> None:
     whole = cloud()
-    streamed_sog_writing.save([whole], build(whole.means.numpy()), tmp_path / "a.lod")
+    streamed_sog_writing.save(Levels((whole,), build(whole.means.numpy())), tmp_path / "a.lod")
     got = files.load(tmp_path / "a.lod").cloud.means
     assert torch.allclose(got, morton_sorted(Scene(whole)).cloud.means, atol=2e-4)
 
@@ -198,7 +198,7 @@ def test_a_failed_writing_leaves_nothing(tmp_path: Path) -> None:
     before = fingerprint(path)
     for target, force in ((path, True), (tmp_path / "b.lod", False)):
         with pytest.raises(UserError, match="NaN"):
-            streamed_sog_writing.save([whole, broken], tree(whole), target, force)
+            streamed_sog_writing.save(Levels((whole, broken), tree(whole)), target, force)
     assert fingerprint(path) == before and [p.name for p in tmp_path.iterdir()] == ["a.lod"]
 
 
@@ -206,7 +206,7 @@ def test_a_field_is_bound_to_all_chunks(tmp_path: Path) -> None:
     """Colours change no count and no bound, so the index alone would be the same."""
     whole = cloud()
     for name, colours in (("a.lod", whole.sh), ("b.lod", whole.sh + 0.5)):
-        streamed_sog_writing.save([whole.replace(sh=colours)], tree(whole), tmp_path / name)
+        streamed_sog_writing.save(Levels((whole.replace(sh=colours),), tree(whole)), tmp_path / name)
     a, b = tmp_path / "a.lod", tmp_path / "b.lod"
     assert (a / "lod-meta.json").read_bytes() == (b / "lod-meta.json").read_bytes()
     assert fingerprint(a) != fingerprint(b) and fingerprint(a) == fingerprint(a / "lod-meta.json")

@@ -36,12 +36,12 @@ def test_many_at_one_place_end_the_division(share: float) -> None:
 def test_levels_stay_in_their_leaves_and_beat_dropping(tmp_path: Path) -> None:
     scene = furnish(3).scene
     views = choose_views(scene, size=128)
-    levels, tree = make(scene, 3, views.ranking[:12], 4096)
-    counts = [len(cloud) for cloud in levels]
+    levels = make(scene, 3, views.ranking[:12], 4096)
+    counts = [len(cloud) for cloud in levels.clouds]
     assert counts == [len(scene.cloud), len(scene.cloud) // 4, len(scene.cloud) // 16]
-    for cloud in levels:  # a mean of positions in a box lies in it, so the tree finds the same leaf
-        assert (torch.from_numpy(tree.leaf_of(cloud.means.numpy())) == cloud.group).all()
-    streamed_sog_writing.save(levels, tree, tmp_path / "a.lod")
+    for cloud in levels.clouds:  # a mean of positions in a box lies in it, so the tree finds the same leaf
+        assert (torch.from_numpy(levels.tree.leaf_of(cloud.means.numpy())) == cloud.group).all()
+    streamed_sog_writing.save(levels, tmp_path / "a.lod")
     held_out = views.held_out[:4]
     found = measure(scene, tmp_path / "a.lod", held_out)
     assert [level.gaussians for level in found] == counts
