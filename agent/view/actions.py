@@ -187,7 +187,7 @@ class Actions:
             raise UserError(
                 f"{message.name!r} is not the name of a file; it is saved beside the scene, without a folder"
             )
-        return {**_ANSWER, "text": save_scene(self._desk, SaveArguments(file=message.name)).text}
+        return {**_ANSWER, "text": save_scene(self._desk, SaveArguments(file=message.name, force=message.force)).text}
 
     # -- answers -----------------------------------------------------------------------------------------------------
 

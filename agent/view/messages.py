@@ -135,6 +135,7 @@ class Save(Asked):
 
     type: Literal["save"]
     name: Annotated[str, Field(min_length=1, max_length=200)]
+    force: bool = False
 
 
 AnyMessage = Annotated[

@@ -2,22 +2,26 @@
 
 import {byId, el} from "./dom.js";
 
-/** Asks for a file name; `save(name)` is called with it. */
+/** Asks for a file name; `save(name, force)` is called with it, and whether a file of that name may be replaced. */
 export function saveDialog(save) {
   const dialog = byId("save");
   const name = el("input", {type: "text", name: "name", id: "save-name", required: true, maxlength: "120", pattern: "[^\\/\\\\]+", spellcheck: "false", autocomplete: "off"});
+  const force = el("input", {type: "checkbox", id: "save-force"});
   const form = el(
-    "form", {method: "dialog", on: {submit: () => save(name.value.trim())}},
+    "form", {method: "dialog", on: {submit: () => save(name.value.trim(), force.checked)}},
     el("h2", {id: "save-title"}, "Save the scene"),
     el("label", {for: "save-name"}, "File name, beside the scene’s own file"), name,
+    el("label", {class: "check"}, force, "Replace a file of this name"),
     el("p", {class: "quiet"}, "The ending chooses the format: .ply, .compressed.ply, .sog, .spz or .splat."),
     el("div", {class: "actions"}, el("button", {type: "button", on: {click: () => dialog.close()}}, "Cancel"), el("button", {type: "submit", class: "primary"}, "Save")),
   );
   dialog.append(form);
-  return (suggested) => {
-    name.value = suggested;
+  return (title) => {
+    const [, stem, ending = ".ply"] = title.match(/^(.*?)(\.compressed\.ply|\.ply|\.sog|\.spz|\.splat)?$/i);
+    name.value = `${stem}-edited${ending}`;
+    force.checked = false;
     dialog.showModal();
-    name.setSelectionRange(0, suggested.indexOf(".") < 0 ? suggested.length : suggested.indexOf("."));
+    name.setSelectionRange(0, stem.length + "-edited".length);
   };
 }
 

@@ -49,7 +49,7 @@ function makeViewer() {
 function blind() {
   const nothing = () => null;
   const camera = {position: [0, -5, 1.6], forward: [0, 1, 0], up: [0, 0, 1], fov_y: 50};
-  return {camera, controls: {}, decode: nothing, setBefore: nothing, pick: nothing, pickBox: () => [], pickBrush: () => [], project: nothing, unproject: nothing, png: nothing};
+  return {camera, controls: {}, splats: {slots: 0}, decode: nothing, setBefore: nothing, pick: nothing, pickBox: () => [], pickBrush: () => [], project: nothing, unproject: nothing, png: nothing};
 }
 
 /** The camera as the server wants it. */
@@ -88,9 +88,9 @@ function onWelcome(scene) {
 }
 
 function onState(state) {
-  const {things, selection, question, history, can_undo, can_redo, embedded, busy} = state;
+  const {digest, things, selection, question, history, can_undo, can_redo, embedded, busy} = state;
   if (!waiting(store.state)) takeHistory(store, history, store.state.history.length);
-  store.update({things, selection, question, history, canUndo: can_undo, canRedo: can_redo, embedded, busy});
+  store.update({digest, things, selection, question, history, canUndo: can_undo, canRedo: can_redo, embedded, busy});
   if (!busy) store.update({progress: null});
 }
 
@@ -173,7 +173,7 @@ const colours = theme((told) => {
   const button = document.querySelector('[data-command="theme"]');
   if (button) button.title = `${told} (k)`;
 });
-const askName = saveDialog((name) => addTurn(store, `Save as ${name}`, send({type: "save", name})));
+const askName = saveDialog((name, force) => addTurn(store, `Save as ${name}`, send({type: "save", name, force})));
 const compare = slider({store, viewer, ask: () => send({type: "before"})});
 const gizmo = new Gizmo({store, viewer, operate});
 layers.push(gizmo, new Candidates({store, viewer, answer, point}));

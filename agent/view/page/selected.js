@@ -11,5 +11,6 @@ export function selectedBar(store, commands) {
   store.watch(["selection", "tool"], ({selection}) => {
     place.hidden = !selection.groups.length && !selection.ranges.length;
     told.textContent = selection.text;
+    told.title = selection.text;
   });
 }

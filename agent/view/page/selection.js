@@ -1,6 +1,7 @@
 // Selecting in the picture: a click takes a thing, a second one its part; a box and a brush take Gaussians.
 
 import {byId, el, setAttributes, svg} from "./dom.js";
+import {inBox, joined, selectedIn, underBrush} from "./region.js";
 
 const STILL = 5; // CSS pixels that a click may wander
 const LONG = 450; // ms after which a still finger counts as a click with Shift
@@ -87,12 +88,12 @@ function strokes(store, drawn, viewer, send) {
   });
   drawn.addEventListener("pointerup", (event) => {
     if (!points) return;
-    const [[x0, y0], [x1, y1]] = [points[0], points.at(-1)];
-    const ranges = brushing()
-      ? viewer.pickBrush(points, store.state.brush)
-      : viewer.pickBox(Math.min(x0, x1), Math.min(y0, y1), Math.max(x0, x1), Math.max(y0, y1));
-    end();
+    const [from, to, {brush, selection}] = [points[0], points.at(-1), store.state];
     const mode = modeOf(store, event);
+    const inside = brushing() ? underBrush(points, brush) : inBox(from, to);
+    let ranges = brushing() ? viewer.pickBrush(points, brush) : viewer.pickBox(...from, ...to);
+    if (mode === "remove") ranges = joined(ranges, selectedIn(viewer, selection, inside)); // what is covered goes too
+    end();
     if (ranges.length) send({type: "select_slots", mode, ranges});
     else if (mode === "set") send({type: "select", mode: "clear"});
   });

@@ -19,7 +19,7 @@ export function slider({store, viewer, ask}) {
     }
     viewer.compare = compare;
   });
-  store.watch(["revision", "canUndo"], ({compare, canUndo}) => {
+  store.watch(["digest", "canUndo"], ({compare, canUndo}) => {
     if (compare === null) return;
     if (canUndo) ask();
     else store.update({compare: null});

@@ -43,6 +43,7 @@ export function initialState() {
     loaded: 0, // share of the scene that has come
     scene: null, // the server's `welcome`
     revision: null,
+    digest: "", // of the scene: changes with what it looks like, and comes after its Gaussians
     things: [],
     selection: {groups: [], ranges: [], text: "", box: null},
     question: null,
