@@ -31,6 +31,15 @@ class LoggedSession:
     @property
     def edits(self) -> list[Record]:
         """The `do` records that were not undone, or were redone; oldest first."""
+        return self._steps()[0]
+
+    @property
+    def undone(self) -> list[Record]:
+        """The `do` records that were undone and can be redone; the one that is redone first comes first."""
+        return self._steps()[1][::-1]
+
+    def _steps(self) -> tuple[list[Record], list[Record]]:
+        """The `do` records that hold, and those that were undone, each in the order in which that happened."""
         done: list[Record] = []
         undone: list[Record] = []
         for record in self.records:
@@ -41,7 +50,7 @@ class LoggedSession:
                 undone.append(done.pop())
             elif record["kind"] == "redo" and undone:
                 done.append(undone.pop())
-        return done
+        return done, undone
 
     def describe(self) -> str:
         """The session in words: "session 2 (1f00c0de, 3 edits)"."""

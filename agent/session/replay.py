@@ -83,18 +83,20 @@ def logged_edits(log: str | Path, session: int | str) -> list[LoggedEdit]:
         FileError: the log cannot be read.
         UserError: it holds no such session.
     """
-    return [
-        LoggedEdit(
-            str(r["text"]),
-            read_plan(r, log),
-            r.get("before"),
-            tuple(r.get("it") or ()),
-            r.get("after"),
-            viewer_of(r),
-            r.get("it_ids"),
-        )
-        for r in logged_session(log, session).edits
-    ]
+    return [edit_of(record, log) for record in logged_session(log, session).edits]
+
+
+def edit_of(record: Record, log: str | Path) -> LoggedEdit:
+    """The edit of a `do` record of a log; raises FileError if this version cannot read its plan."""
+    return LoggedEdit(
+        str(record["text"]),
+        read_plan(record, log),
+        record.get("before"),
+        tuple(record.get("it") or ()),
+        record.get("after"),
+        viewer_of(record),
+        record.get("it_ids"),
+    )
 
 
 class Edited(Protocol):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...gaussians.errors import ScenewrightError
 from .log import Record, read_log
 from .log_sessions import LoggedSession, sessions_of
-from .replay import point_again
+from .replay import edit_of, point_again, replay_edits
 
 if TYPE_CHECKING:
     from .session import Session
@@ -33,12 +33,13 @@ def unfinished(log: str | Path) -> LoggedSession | None:
         begins = own.records[0]
         if not session.begins_with({"digest": begins.get("digest")}) or _saved(session):
             return None
-        return session if session.edits or selection_of(session) is not None else None
+        return session if session.edits or session.undone or selection_of(session) is not None else None
     return None
 
 
 def restore(session: Session, earlier: LoggedSession, note: Callable[[str], None]) -> None:
-    """Make the edits of an earlier session of the log again, with what "it" referred to; tells how that went.
+    """Make the edits of an earlier session of the log again, with what can be redone and what "it" referred to; tells
+    how that went.
 
     Edits that cannot be made again are left out, and told; they stay in the log.
     """
@@ -51,12 +52,27 @@ def restore(session: Session, earlier: LoggedSession, note: Callable[[str], None
     for done in made:
         if done.note:
             note(done.note)
+    if not failed:
+        _redoable(session, earlier, note)
     if (last := selection_of(earlier)) is not None and not failed:
         _select(session, last)
     session.note_restoring(None)
     count = len(made) - len(failed)
     if count:
         note(f"made {count} unsaved edit{'s' if count > 1 else ''} of {earlier.describe()} again; undo takes them back")
+
+
+def _redoable(session: Session, earlier: LoggedSession, note: Callable[[str], None]) -> None:
+    """Make what was undone at the end of an earlier session again, and undo it, so that it can be redone."""
+    assert session.log_path is not None
+    log = session.log_path
+    try:
+        again = replay_edits(session, [edit_of(record, log) for record in earlier.undone], skip_failed=False)
+    except ScenewrightError as error:  # those before it were made and undone
+        note(f"what was undone cannot all be redone ({error})")
+        return
+    for _ in again:
+        session.undo()
 
 
 def selection_of(session: LoggedSession) -> Record | None:

@@ -140,7 +140,39 @@ def test_the_log_makes_the_work_again_after_a_crash(boxes: Scene, encoder: Any, 
     notes: list[str] = []
     restore(again, earlier, notes.append)
     assert again.digest == digest and again.last is not None and again.last.groups == (2,), notes
-    assert len(again.done) == 1
+    assert len(again.done) == 1 and again.redoable
+    again.redo()  # what was undone can be redone after the crash, too
+    assert again.done[-1] == "delete the green thing" and not again.redoable
+    again.undo()
+    assert again.digest == digest
+    again.close()
+
+
+def test_what_was_all_undone_can_be_redone_after_a_crash(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
+    from scenewright.agent.session.restoring import restore, unfinished
+
+    log = tmp_path / "log.jsonl"
+    first = Session(boxes, encoder=encoder, log=log)
+    first.do("make the green thing blue")
+    first.do("delete the blue thing")
+    first.undo()
+    first.undo()
+    first.close()
+    for _ in range(2):  # and after the next one
+        again = Session(boxes, encoder=encoder, log=log)
+        earlier = unfinished(log)
+        assert earlier is not None and not earlier.edits
+        restore(again, earlier, lambda note: None)
+        assert not again.done and again.redoable
+        again.close()
+    again = Session(boxes, encoder=encoder, log=log)
+    earlier = unfinished(log)
+    assert earlier is not None
+    restore(again, earlier, lambda note: None)
+    again.redo()
+    again.redo()
+    assert again.done == ("make the green thing blue", "delete the blue thing") and not again.redoable
+    assert len(again.scene.cloud) == len(boxes.cloud) - 343
     again.close()
 
 
