@@ -29,6 +29,14 @@ def require_folder(path: Path) -> None:
         raise FileError(f"the folder {path.absolute().parent} does not exist; create it first")
 
 
+def folder_of(scene: Path) -> Path:
+    """The folder that a session writes to: where the scene lies. A scene that is a folder itself (SOG, levels of
+    detail) stays as it is: files in it would make it another scene, whose language field is no longer its own."""
+    from ..gaussians.files.formats.streamed_sog import scene_folder
+
+    return scene_folder(scene.absolute()).parent
+
+
 def make_folder(path: Path) -> None:
     """Make a folder and its parents, if it does not exist.
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..gaussians.scene import Scene
 
 HELD_OUT = 8  # views that measure
+Sizes = tuple[int | None, int | None]  # levels, and most Gaussians of a chunk; None: as many as usual
 
 
 def is_streamed(path: Path) -> bool:
@@ -26,23 +27,25 @@ def is_streamed(path: Path) -> bool:
     return path.suffix.lower() == ".lod" or path.name == "lod-meta.json"
 
 
-def write_levels(scene: Scene, output: Path, levels: int, chunk_rows: int, force: bool) -> None:
-    """Write the scene in levels, with what each keeps, and print them."""
+def write_levels(scene: Scene, output: Path, sizes: Sizes, measured: int, force: bool) -> None:
+    """Write the scene in levels, with what each keeps in so many held-out views, and print them."""
     from ..gaussians.files.formats import streamed_sog_writing
-    from ..gaussians.levels.making import make, measure
+    from ..gaussians.files.formats.streamed_sog import Streamed
+    from ..gaussians.levels.making import LEVELS, described, make, measure
     from ..gaussians.levels.tree import LEAF_ROWS
     from ..gaussians.slim.views import choose_views
 
     start = time.perf_counter()
     terminal.progress("choosing views", 0.0)
     views = choose_views(scene)
+    levels, chunk_rows = sizes[0] or LEVELS, sizes[1] or streamed_sog_writing.CHUNK_ROWS
     made = make(scene, levels, views.ranking, min(LEAF_ROWS, chunk_rows), terminal.progress)
     with streamed_sog_writing.replacing(output, force) as folder:
         streamed_sog_writing.write(made, folder, chunk_rows, terminal.progress)
         terminal.progress("measuring", 0.99)
-        found = measure(scene, folder, views.held_out[:: -(-len(views.held_out) // HELD_OUT)])
-        known = [(f.psnr, f.psnr_least) for f in found if f.psnr is not None and f.psnr_least is not None]
-        streamed_sog_writing.annotate(folder, scene, known)
+        held_out = views.held_out[:: -(-len(views.held_out) // measured)] if measured else ()
+        streamed_sog_writing.annotate(folder, scene, measure(scene, folder, held_out) if held_out else ())
+        found = described(Streamed.open(folder))
     seconds = time.perf_counter() - start
     terminal.clear()
     data = {"path": str(output), "levels": _rows(found), "leaves": made.tree.leaves}

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ...gaussians.camera import Camera
     from ...gaussians.scene import Scene
 
+VIEWS = 4  # to measure the loss from
 VIEW_SIZE = 384  # pixels a side of the pictures that are compared
 PRUNE_SIZE = 160  # pixels a side of the views that say which Gaussians matter
 PRUNE_VIEWS = 64
@@ -38,17 +39,21 @@ def command(
         str | None, typer.Option("--crop-sphere", metavar="x,y,z,r", help="Keep the Gaussians in this sphere.")
     ] = None,
     views: Annotated[
-        int, typer.Option("--views", min=0, max=24, help="Number of views to measure the loss from; 0 for none.")
-    ] = 4,
+        int | None,
+        typer.Option(
+            "--views", min=0, max=24, help="Number of views to measure the loss from (4; 8 of a .lod); 0: none."
+        ),
+    ] = None,
     spz_version: Annotated[
         int, typer.Option("--spz-version", min=2, max=4, help="Version of .spz, for older readers.")
     ] = 4,
     levels: Annotated[
-        int, typer.Option("--levels", min=1, max=12, metavar="N", help="Levels of detail of a .lod folder.")
-    ] = 4,
+        int | None, typer.Option("--levels", min=1, max=12, metavar="N", help="Levels of detail of a .lod folder (4).")
+    ] = None,
     chunk: Annotated[
-        int, typer.Option("--chunk", min=1024, metavar="N", help="Most Gaussians of a file in a .lod folder.")
-    ] = 65_536,
+        int | None,
+        typer.Option("--chunk", min=1024, metavar="N", help="Most Gaussians of a file in a .lod folder (65536)."),
+    ] = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
@@ -62,22 +67,26 @@ def command(
     """
     from ...gaussians.files import load_with_report, writer
     from ..output_files import refuse_existing
-    from ..streaming import is_streamed, write_levels
+    from ..streaming import HELD_OUT, is_streamed, write_levels
 
     refuse_existing([output], force)
-    if not is_streamed(output):
+    streamed = is_streamed(output)
+    if not streamed:
         writer(output)  # raises if the suffix belongs to no format
+        _refuse_levels(output, {"--levels": levels, "--chunk": chunk})
+    if views is None:
+        views = HELD_OUT if streamed else VIEWS
     box, ball = _numbers(crop, 6, "--crop"), _numbers(crop_sphere, 4, "--crop-sphere")
     start = time.perf_counter()
     loaded, report = load_with_report(scene)
     read, size = time.perf_counter() - start, _size(scene)
     cut = _cut(loaded, box, ball)
-    cameras = _views(cut, views) if views else ()
+    cameras = _views(cut, views) if views and not streamed else ()
     smaller = _smaller(cut, sh_degree, max_gaussians, cameras)
-    if is_streamed(output):
+    if streamed:
         for note in report.notes:
             terminal.say(f"note: {note}")
-        write_levels(smaller, output, levels, chunk, force)
+        write_levels(smaller, output, (levels, chunk), views, force)
         return
     start = time.perf_counter()
     _save(smaller, output, force, spz_version)
@@ -143,6 +152,15 @@ class _Report:
                 f"pictures: {mean:.1f} dB PSNR to the original over {views} views, {min(self.psnr):.1f} dB at worst"
             )
         return "\n".join([*lines, f"time: read {self.seconds[0]:.2f} s, written {self.seconds[1]:.2f} s"])
+
+
+def _refuse_levels(output: Path, given: dict[str, int | None]) -> None:
+    """Check that nothing is asked of levels that this file does not have. Raises UserError otherwise."""
+    from ...gaussians.errors import UserError
+
+    for option, value in given.items():
+        if value is not None:
+            raise UserError(f"{option} is for levels of detail; write {output.stem}.lod, or leave it out")
 
 
 def _numbers(text: str | None, count: int, option: str) -> list[float] | None:

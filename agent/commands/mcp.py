@@ -64,6 +64,7 @@ def command(
     """
     from ...gaussians.errors import BackendError
     from ...planners.grammar.planner import make_tables
+    from ..output_files import folder_of
     from ..session.opening import SessionOptions, open_session
     from ..toolbox.progress import Progress
     from ..toolbox.toolbox import Toolbox
@@ -85,7 +86,7 @@ def command(
         ),
         progress,
     )  # fmt: skip
-    folder = scene if scene.is_dir() else scene.absolute().parent
+    folder = folder_of(scene)
     make_tables()
     server = SceneServer(Toolbox(session, folder, keep_field=embedded, progress=progress))
     try:

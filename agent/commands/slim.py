@@ -104,6 +104,11 @@ def named(output: Path, format: str | None) -> Path:
     """
     from ...gaussians.errors import UserError
 
+    if output.suffix.lower() == ".lod":
+        raise UserError(
+            f"{output.name} would hold levels, which only `scenewright convert` makes: slim to {output.stem}.ply, then "
+            f"`scenewright convert {output.stem}.ply {output.name}`"
+        )
     known = next((suffix for suffix in FORMATS if output.name.lower().endswith(suffix)), None)
     if known is not None:
         if format is not None and known != f".{format}":

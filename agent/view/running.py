@@ -7,6 +7,7 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
+from ..output_files import folder_of
 from ..session.opening import SessionOptions, open_session
 from ..session.restoring import restore, unfinished
 from ..session.session import Progress
@@ -33,8 +34,7 @@ def run(options: SessionOptions, *, port: int, open_page: bool, anew: bool) -> N
         session.point(None)  # the log then holds something that is later than those edits
         earlier = None
     begin = None if earlier is None else lambda: restore(session, earlier, lambda note: terminal.say(f"note: {note}"))
-    folder = options.path if options.path.is_dir() else options.path.absolute().parent
-    hub = Hub(session, options.path.name, Folder(folder), keep_field=embedded, begin=begin)
+    hub = Hub(session, options.path.name, Folder(folder_of(options.path)), keep_field=embedded, begin=begin)
     relay.to = hub.progress
     serve(hub, port, open_page=open_page)
     if log is not None and session.done and any(s.scene.cloud is not session.scene.cloud for s in session.states):

@@ -120,6 +120,9 @@ def writer(path: Path) -> Callable[[Scene, BinaryIO], None]:
         writable = ", ".join(s for f in known_formats() if f.write for s in f.suffixes)
         raise UserError(f"cannot write {path.name}: scenes are written as {writable}")
     if known.write is None:
-        raise UserError(f"{known.name} needs levels, which only `scenewright convert SCENE {path.name}` makes")
+        raise UserError(
+            f"{known.name} needs levels, which only `scenewright convert SCENE {path.name}` makes: write the scene to "
+            f"{path.stem}.ply first"
+        )
     write, sort = known.write, known.morton_order
     return lambda scene, file: write(morton_sorted(scene) if sort and scene.language is None else scene, file)

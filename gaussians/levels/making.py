@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -83,20 +83,20 @@ def _moved(fine: GaussianCloud, coarse: GaussianCloud, rows: NDArray[np.int64], 
     return root
 
 
-def measure(scene: Scene, path: Path, views: Sequence[View]) -> tuple[Level, ...]:
-    """The levels of a written folder, measured from held-out views.
+def measure(scene: Scene, path: Path, views: Sequence[View]) -> tuple[tuple[float, float], ...]:
+    """PSNR in dB of each level of a written folder, mean and least of held-out views, as `Level` has it.
 
     Raises:
         FileError: the folder cannot be read.
     """
     streamed = Streamed.open(path)
     cameras = [view.camera for view in views]
-    truth, found = scene.cloud, list[Level]()
-    for level, plain in enumerate(described(streamed)):
+    truth, found = scene.cloud, list[tuple[float, float]]()
+    for level in range(streamed.levels):
         cloud = streamed.level(level)[0]
         loss = psnr(truth, cloud, cameras)
         truth = cloud if level == 0 else truth
-        found.append(replace(plain, psnr=sum(loss) / len(loss), psnr_least=min(loss)))
+        found.append((sum(loss) / len(loss), min(loss)))
     return tuple(found)
 
 

@@ -11,7 +11,8 @@ import torch
 from scenewright.gaussians.assets import furnish
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.files.formats import streamed_sog_writing
-from scenewright.gaussians.levels.making import make, measure
+from scenewright.gaussians.files.formats.streamed_sog import Streamed
+from scenewright.gaussians.levels.making import described, make, measure
 from scenewright.gaussians.levels.tree import build
 from scenewright.gaussians.reduce import prune, psnr
 from scenewright.gaussians.slim.views import choose_views
@@ -44,12 +45,16 @@ def test_levels_stay_in_their_leaves_and_beat_dropping(tmp_path: Path) -> None:
     streamed_sog_writing.save(levels, tmp_path / "a.lod")
     held_out = views.held_out[:4]
     found = measure(scene, tmp_path / "a.lod", held_out)
-    assert [level.gaussians for level in found] == counts
-    assert found[0].psnr > found[1].psnr > found[2].psnr and found[0].bytes > found[1].bytes > found[2].bytes
+    streamed_sog_writing.annotate(tmp_path / "a.lod", scene, found)
+    told = described(Streamed.open(tmp_path / "a.lod"))
+    assert [level.gaussians for level in told] == counts
+    assert all(mean >= least for mean, least in found) and found[0] > found[1] > found[2]
+    assert told[0].bytes > told[1].bytes > told[2].bytes
+    assert np.allclose([(level.psnr, level.psnr_least) for level in told], found, atol=1e-3)
     cameras = [view.camera for view in held_out]
-    for level in found[1:]:
-        dropped = prune(scene, level.gaussians, [view.camera for view in views.ranking[:12]])
-        assert level.psnr > np.mean(psnr(scene.cloud, dropped.cloud, cameras)) + 1
+    for count, (mean, _) in zip(counts[1:], found[1:], strict=True):
+        dropped = prune(scene, count, [view.camera for view in views.ranking[:12]])
+        assert mean > np.mean(psnr(scene.cloud, dropped.cloud, cameras)) + 1
 
 
 def test_no_levels_are_refused() -> None:
