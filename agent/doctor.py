@@ -79,6 +79,7 @@ def examine() -> list[Finding]:
         _distribution("masks sam:PATH", "masks by a Segment Anything model (embed --masks sam:PATH)", "transformers"),
         _distribution("transformers", "local language and vision models"),
         _distribution("pycolmap", "poses of photographs that come without (fit)", fix='pip install "scenewright[sfm]"'),
+        _distribution("xatlas", "textures of meshes (mesh)", fix='pip install "scenewright[mesh]"'),
         _distribution("mcp", "serving a scene to MCP clients (mcp)", fix='pip install "scenewright[mcp]"'),
         _webp(),
         _distribution("matplotlib", "charts of `scenewright bench`", fix='pip install "scenewright[bench]"'),

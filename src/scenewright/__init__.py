@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from .gaussians.language.field.loading import load
     from .gaussians.language.query.query import Query, Relation
     from .gaussians.language.query.selection import Selection
+    from .gaussians.meshing import Mesh, mesh
     from .gaussians.render import render
     from .gaussians.scene import Frame, Scene
     from .planners.compose.api import compose
@@ -58,6 +59,8 @@ _HOME = {
     "show": ".agent.view.show",
     "render": ".gaussians.render",
     "embed": ".gaussians.language.field.embed",
+    "mesh": ".gaussians.meshing",
+    "Mesh": ".gaussians.meshing",
     "kinds": ".gaussians.assets",
     "make": ".gaussians.assets",
     "furnish": ".gaussians.assets",
@@ -102,6 +105,7 @@ __all__ = [
     "GaussianCloud",
     "InstructionError",
     "LanguageField",
+    "Mesh",
     "Query",
     "Receipt",
     "Relation",
@@ -122,6 +126,7 @@ __all__ = [
     "kinds",
     "load",
     "make",
+    "mesh",
     "render",
     "save",
     "show",

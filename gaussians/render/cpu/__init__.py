@@ -6,7 +6,7 @@ into tiles, `blend` computes pixels. The same input gives the same bytes on any 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +21,7 @@ from ...cloud import GaussianCloud
 from .. import convention
 from ..shares import Split, sum_pairs
 from . import blend, order, project, shares
+from . import surface_depth as surface
 
 Array = NDArray[Any]
 
@@ -108,6 +109,28 @@ def split(cloud: GaussianCloud, camera: Camera, labels: Array) -> Split:
         parts.append(part)
     rows, of, weights = (np.concatenate(column) for column in zip(*parts, strict=True))
     return sum_pairs(len(cloud), rows, of, weights)
+
+
+def surface_depth(
+    cloud: GaussianCloud, cameras: Sequence[Camera], level: float = 0.5
+) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:
+    """For each camera the surface where the light along a pixel's ray falls to the share `level`, on the Gaussian that
+    takes it there.
+
+    Yields:
+        depth: `[H, W]` camera z, scene units; infinite where the light stays above the share.
+        slant: `[H, W]` distance from that Gaussian's plane that a step of 1 in depth along the ray covers: the cosine
+            between ray and normal times the ray's length at depth 1; 1 where there is no surface.
+    """
+    columns, count = _columns(cloud), compiled.workers()
+    shapes, rays = surface.make_shapes(*columns[:3]), np.empty((count, surface.MOST, 4), np.float32)
+    for camera in cameras:
+        depth, slant = (np.empty((camera.height, camera.width), np.float32) for _ in range(2))
+        for top, bottom, bins in _strips(columns, camera, count, 0, camera.height):
+            sorted_ = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
+            rest = np.float32(level), rays, (depth[top:bottom], slant[top:bottom]), _counter()
+            compiled.run(surface.draw, count, *sorted_, shapes, bins.view, *rest)
+        yield depth, slant
 
 
 def _columns(cloud: GaussianCloud) -> tuple[Array, ...]:
