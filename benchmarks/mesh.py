@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -137,7 +138,7 @@ def foreign(path: Path) -> Thing:
     size = np.array(imported.natural_size(path))
     w, d, h = (size / size.max()).tolist()
     asset = imported.read(path, (w, d, h), path.stem)
-    loaded = trimesh.load(path, force="mesh", process=False)
+    loaded: Any = trimesh.load(path, force="mesh", process=False)
     corners = np.asarray(loaded.triangles, dtype=np.float64) @ imported.FROM_Y_UP.T
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     foot = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])

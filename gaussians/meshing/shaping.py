@@ -103,7 +103,7 @@ def shape_of(cloud: GaussianCloud, cameras: Sequence[Camera], grid: Grid, level:
 
 def _pixels_per_cell(cameras: Sequence[Camera], grid: Grid) -> float:
     middle = grid.low + grid.step * np.array(grid.shape) / 2
-    return float(np.median([c.fx * grid.step / max(np.linalg.norm(c.position - middle), 1e-9) for c in cameras]))
+    return float(np.median([c.fx * grid.step / max(float(np.linalg.norm(c.position - middle)), 1e-9) for c in cameras]))
 
 
 def settled(shape: Shape, sight: Sight, step: float) -> Shape:

@@ -90,6 +90,7 @@ def _display(of_16_bits: Any) -> Any:
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 
 
+@pytest.mark.slow
 def test_a_scene_with_another_up_gives_the_same_upright_mesh(letter: Scene, made: Mesh) -> None:
     turn = torch.tensor([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # z up becomes y up
     cloud = letter.cloud
@@ -111,11 +112,13 @@ def test_in_place_keeps_the_origin_of_the_scene(letter: Scene) -> None:
     assert high == pytest.approx([5.25, 2.5, -2.5], abs=0.03)
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_bytes(letter: Scene, made: Mesh) -> None:
     again = mesh(letter, letter.cloud.ids, texture=0, cells=CELLS, watertight=True)
     assert again.encode() == made.encode()
 
 
+@pytest.mark.slow
 def test_faces_are_at_most_what_is_asked_for_and_the_mesh_stays_closed(letter: Scene) -> None:
     few = mesh(letter, letter.cloud.ids, texture=0, cells=CELLS, faces=60, watertight=True)
     assert len(few.faces) <= 60
@@ -137,11 +140,12 @@ def test_the_file_follows_gltf(made: Mesh) -> None:
     assert all(view["byteOffset"] % 4 == 0 for view in document["bufferViews"])
 
 
+@pytest.mark.slow
 def test_a_wall_is_a_thin_sheet(letter: Scene) -> None:
     wall = box((0, 0, 0), (2, 0.0005, 1.5), GREEN)
     made = mesh(Scene(wall), wall.ids, texture=0, cells=CELLS, watertight=True)
     width, height, depth = made.size
-    assert (width, height) == pytest.approx((2, 1.5), abs=2 * made.cell)  # a cell at each end
+    assert (width, height) == pytest.approx((2, 1.5), abs=2.5 * made.cell)  # its rim grows
     assert 0 < depth < 1.5 * made.cell
     assert _loaded(made).is_watertight
 
@@ -157,6 +161,7 @@ def test_one_gaussian_is_an_ellipsoid() -> None:
     assert _loaded(made).is_watertight
 
 
+@pytest.mark.slow
 def test_a_floater_neither_widens_the_grid_nor_is_in_the_mesh(letter: Scene, made: Mesh) -> None:
     far = box((60, 60, 60), (60.1, 60.1, 60.1), RED, across=1)
     near = box((11.2, 5.2, 4.6), (11.22, 5.22, 4.62), RED, across=1)
@@ -165,11 +170,11 @@ def test_a_floater_neither_widens_the_grid_nor_is_in_the_mesh(letter: Scene, mad
     assert with_floaters.size == pytest.approx(made.size, abs=0.03)
 
 
-def test_what_no_view_sees_is_left_out_unless_asked_for() -> None:
-    """A bowl with a narrow mouth: most of its inside is hidden, and the mesh is solid there."""
+@pytest.mark.slow
+def test_a_hollow_thing_is_filled() -> None:
     cube = box((0, 0, 0), (1, 1, 1), BLUE)
     made = mesh(Scene(cube), cube.ids, texture=0, cells=CELLS, watertight=True)
-    assert _loaded(made).volume == pytest.approx(1.0, rel=0.05)  # filled, though its Gaussians are hollow
+    assert _loaded(made).volume == pytest.approx(1.0, rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -213,6 +218,7 @@ def test_a_missing_extra_says_what_to_install(letter: Scene, monkeypatch: pytest
 
 
 @needs_xatlas
+@pytest.mark.slow
 def test_a_texture_has_the_colours_of_the_splats_and_the_same_bytes_each_time(letter: Scene) -> None:
     def make() -> Mesh:
         return mesh(letter, letter.cloud.ids, texture=128, cells=CELLS, watertight=True)
