@@ -13,7 +13,7 @@ PYTEST_ARGS ?=
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check $(PIP_ARGS)
 
-.PHONY: demo test lint format picture clean
+.PHONY: demo test lint format picture page-picture clean
 
 demo: $(VENV)/.ready
 	$(BIN)/scenewright demo -o $(DEMO) --seed $(SEED) --force
@@ -33,6 +33,12 @@ picture: $(VENV)/.ready
 	$(BIN)/python -c "from PIL import Image; i = Image.open('$(DEMO)/contact_sheet.png').convert('RGB'); \
 	  i = i.resize((1000, round(i.height * 1000 / i.width)), Image.Resampling.LANCZOS); \
 	  i.quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save('docs/demo.png', optimize=True)"
+
+# The picture of the page in the README and in docs/view.md, as its test makes it in a browser; with fewer colours.
+page-picture: $(VENV)/.ready-dev
+	SCENEWRIGHT_PAGE_PICTURES=docs $(BIN)/python -m pytest -n 0 -m slow tests/agent/view/test_picture_of_the_page.py
+	$(BIN)/python -c "from PIL import Image; i = Image.open('docs/view.png').convert('RGB'); \
+	  i.quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save('docs/view.png', optimize=True)"
 
 format: $(VENV)/.ready-dev
 	$(BIN)/ruff check --fix .

@@ -55,7 +55,7 @@ function answerElement({ok, wrong = false, text, lines = [], receipt = [], pictu
   return el(
     "div", {class: `answer${ok ? "" : " refused"}${wrong ? " wrong" : ""}`},
     ...told.map((line, i) => el("p", {class: i ? "quiet" : ""}, line)),
-    ...pictures.map((address, i) => pictureButton(address, `Evidence ${pictures.length > 1 ? i + 1 : ""}`.trim())),
+    ...pictures.map((address) => pictureButton(address, `What the answer rests on: ${text}`)),
     receipt.length ? receiptOf(receipt) : null,
     link ? el("a", {class: "download", href: link, download: true}, icon("save"), "Download the page") : null,
   );
@@ -68,7 +68,9 @@ function pictureButton(address, told) {
     dialog.replaceChildren(el("img", {src: address, alt: told}), el("div", {class: "actions"}, close));
     dialog.showModal();
   };
-  return el("button", {type: "button", class: "evidence", on: {click: show}}, el("img", {src: address, alt: `${told}; opens larger`}));
+  const gone = () => button.remove(); // the server keeps the last pictures only
+  const button = el("button", {type: "button", class: "evidence", on: {click: show}}, el("img", {src: address, alt: `${told}; opens larger`, on: {error: gone}}));
+  return button;
 }
 
 function drawProgress(element, {progress, connection}) {

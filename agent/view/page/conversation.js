@@ -1,7 +1,26 @@
 // What was said: turns of the person and the answers to them. A turn is
 // {key, id, text, typed, answer: null | {ok, wrong, text, lines, receipt, pictures, link}, kind: "said" | "earlier" | "note"}.
 
+const KEY = "scenewright-turns";
+const KEPT = 100; // turns
 let key = 0;
+
+/** What this tab said before it was loaded again: `{turns, told}`; nothing in a new tab. */
+export function keptTurns() {
+  try {
+    const {turns, told} = JSON.parse(sessionStorage.getItem(KEY));
+    return {turns: turns.map((turn) => ({...turn, key: key++, id: null})), told};
+  } catch {
+    return {};
+  }
+}
+
+/** Keeps what was said and answered for when the tab is loaded again. */
+export function keepTurns(store) {
+  store.watch(["turns", "told"], ({turns, told}) => {
+    sessionStorage.setItem(KEY, JSON.stringify({turns: turns.filter((turn) => turn.answer).slice(-KEPT), told}));
+  });
+}
 
 /** Adds what the person said or did; `id` is the number of the message that was sent, `typed` tells words from clicks. */
 export function addTurn(store, text, id, typed = false) {

@@ -5,7 +5,7 @@
 import {Candidates} from "./candidates.js";
 import {chat} from "./chat.js";
 import {Connection} from "./connection.js";
-import {addNote, addTurn, answerTurn, takeHistory, waiting} from "./conversation.js";
+import {addNote, addTurn, answerTurn, keepTurns, keptTurns, takeHistory, waiting} from "./conversation.js";
 import {download, saveDialog} from "./dialogs.js";
 import {byId, el} from "./dom.js";
 import {Gizmo} from "./gizmo.js";
@@ -23,7 +23,7 @@ import {commandsOf, fill, fillHelp} from "./toolbar.js";
 import {add, dot, norm, scale} from "./viewer/camera.js";
 import {SplatViewer} from "./viewer/viewer.js";
 
-const store = new Store(initialState());
+const store = new Store({...initialState(), ...keptTurns()});
 const layers = []; // what is drawn over the picture, and again with each move of the camera
 const viewer = makeViewer();
 const connection = new Connection({
@@ -89,8 +89,8 @@ function onWelcome(scene) {
 
 function onState(state) {
   const {digest, things, selection, question, history, can_undo, can_redo, embedded, busy} = state;
-  if (!waiting(store.state)) takeHistory(store, history, store.state.history.length);
-  store.update({digest, things, selection, question, history, canUndo: can_undo, canRedo: can_redo, embedded, busy});
+  if (!waiting(store.state)) takeHistory(store, history, store.state.told);
+  store.update({told: history.length, digest, things, selection, question, history, canUndo: can_undo, canRedo: can_redo, embedded, busy});
   if (!busy) store.update({progress: null});
 }
 
@@ -168,7 +168,7 @@ function clear() {
   store.update({gizmo: null});
 }
 
-const around = panels();
+const around = panels(store);
 const colours = theme((told) => {
   const button = document.querySelector('[data-command="theme"]');
   if (button) button.title = `${told} (k)`;
@@ -209,10 +209,11 @@ fill(byId("tools"), ["select", "box", "brush", "|", "move", "rotate", "scale"], 
 fill(byId("views"), ["orbit", "fly", "walk", "|", "frame"], commands, store);
 fillHelp(commands, [
   [["Drag"], "Look around"], [["Wheel"], "Nearer, farther"], [["Click"], "Select a thing; again: its part"],
-  [["Shift+click"], "Add to the selection"], [["Alt+drag"], "With the box or brush: take away"], [["1 to 9"], "Answer with a numbered candidate"],
+  [["Shift+click", "Long touch"], "Add to the selection"], [["Alt+drag"], "With the box or brush: take away"], [["1 to 9"], "Answer with a numbered candidate"],
 ]);
 
 notice(store);
+keepTurns(store);
 chat({store, say, answer, point});
 things({store, point, select: (group, mode) => send({type: "select", mode, group})});
 selection({store, viewer, send, answer});

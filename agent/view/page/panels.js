@@ -7,7 +7,8 @@ import {icon} from "./icons.js";
 const phone = matchMedia("(max-width: 720px)");
 const KEY = "scenewright-things";
 
-export function panels() {
+/** The panels of the page; a question that is asked makes room for the picture, where its numbers are. */
+export function panels(store) {
   const {body} = document;
   const set = (name, on) => {
     body.classList.toggle(name, on);
@@ -25,6 +26,13 @@ export function panels() {
     if (!phone.matches) return;
     set("sheet-up", false);
     set("things-shown", false);
+  });
+  let asked = null;
+  store.watch(["question"], ({question}) => {
+    const text = question?.text ?? null;
+    body.classList.toggle("asking", text !== null);
+    if (text !== null && text !== asked) set("sheet-up", false);
+    asked = text;
   });
   return {
     toggleThings() {

@@ -48,6 +48,7 @@ export function initialState() {
     selection: {groups: [], ranges: [], text: "", box: null},
     question: null,
     history: [],
+    told: 0, // how many steps of it the conversation tells
     canUndo: false,
     canRedo: false,
     embedded: false,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
-from served_page import DESK, Page, Server
+from served_page import DESK, PHONE, Page, Server
 
 from scenewright.gaussians.files import load
 
@@ -308,3 +308,44 @@ def test_long_work_tells_its_stage_and_a_second_click_takes_a_part(
         page.close()
     finally:
         server.close()
+
+
+def test_a_tab_that_is_loaded_again_keeps_its_conversation(page: Page) -> None:
+    assert page.say("how many chairs are there?")["ok"]
+    assert page.say("make the sofa red")["ok"]
+    page.say("remove the chair")
+    before = page.turns()
+    page.tab.reload()
+    page.until("store.state.connection === 'ready' && store.state.question !== null")
+    assert page.turns() == before
+    page.until("document.querySelector('#turns .evidence img').naturalWidth === 768")
+    page.tab.locator("#numbers .number").first.click()
+    assert page.answered()["ok"]
+    assert len(page.turns()) == len(before) + 1
+    other = page.context.new_page()  # a new tab is told the steps
+    other.goto(page.tab.url)
+    other.wait_for_selector("#turns .earlier")
+    other.wait_for_timeout(300)
+    assert other.locator("#turns .earlier").count() == 2
+
+
+def test_a_phone_asks_with_the_picture_in_sight(browser: Any, server: Server) -> None:
+    page = Page(browser, server.address, PHONE, has_touch=True, is_mobile=True)
+    page.tab.locator("#chat-handle").tap()
+    page.until("document.body.classList.contains('sheet-up')")
+    page.say("remove the chair")
+    page.until("store.state.question !== null && !document.body.classList.contains('sheet-up')")
+    page.tab.wait_for_timeout(300)
+    page.settle()
+    for number in page.tab.locator("#numbers .number").all():
+        place = number.bounding_box()
+        assert place is not None and place["width"] >= 30
+        middle = [place["x"] + place["width"] / 2, place["y"] + place["height"] / 2]
+        top = page.tab.evaluate("(at) => document.elementFromPoint(...at).className", middle)
+        assert top == "number"  # nothing lies over it
+    page.picture("phone-question")
+    page.tab.locator("#numbers .number").first.tap()
+    assert page.answered()["ok"], page.turns()
+    page.until("store.state.question === null")
+    assert not page.faults
+    page.close()
