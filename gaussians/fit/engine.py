@@ -12,10 +12,10 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..camera import Camera
+from ..camera import Camera, Vec3
 from ..render.cpu import gradient
 from .densify import Strategy
-from .loss import BLACK, photometric
+from .loss import BLACK, Slope, photometric
 from .parameters import Parameters, parameter_gradients
 
 F32 = NDArray[np.float32]
@@ -29,6 +29,16 @@ class Engine(Protocol):
 
         Args:
             means_lr: learning rate of means, scene units.
+        """
+        ...
+
+    def learn(self, camera: Camera, background: Vec3, slope: Slope, means_lr: float) -> float:
+        """Train on one view by a loss of any kind. Returns the loss before the step.
+
+        Args:
+            background: display-space RGB behind everything.
+            slope: gives the loss of the drawn picture, and its gradient.
+            means_lr: as in `train_step`.
         """
         ...
 
@@ -57,9 +67,13 @@ class CpuEngine:
 
     def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
         """See `Engine`."""
+        return self.learn(camera, BLACK, lambda rgb: photometric(rgb, photo, self._ssim_lambda), means_lr)
+
+    def learn(self, camera: Camera, background: Vec3, slope: Slope, means_lr: float) -> float:
+        """See `Engine`."""
         columns = self._parameters.columns()
-        drawn = gradient.draw(columns, camera, BLACK)
-        loss, d_rgb = photometric(drawn.rgb, photo, self._ssim_lambda)
+        drawn = gradient.draw(columns, camera, background)
+        loss, d_rgb = slope(drawn.rgb)
         found = gradient.draw_backward(drawn, d_rgb, np.zeros(d_rgb.shape[:2], np.float32))
         gradients = parameter_gradients(found, columns[2], columns[3])
         self._strategy.regularise(gradients, columns[2], columns[3])

@@ -7,6 +7,7 @@ rounding.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -18,7 +19,7 @@ from ..camera import Camera, Vec3
 from ..cloud import SH_BANDS
 from .adam import BETAS, EPSILON, Adam
 from .densify import Strategy
-from .loss import BLACK, reference
+from .loss import BLACK, Slope, reference
 from .parameters import SHN_LR, Parameters, learning_rates
 
 F32 = NDArray[np.float32]
@@ -81,25 +82,44 @@ class TorchEngine:
 
     def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
         """See `Engine`."""
+
+        def learnt(rgb: Tensor) -> float:
+            # A window's variance is a small difference of large sums. TF32, torch's default for convolutions on GPUs,
+            # has a mantissa of ten bits and would lose it.
+            with torch.backends.cudnn.flags(enabled=True, deterministic=True, allow_tf32=False):
+                loss = reference(rgb, torch.from_numpy(photo).to(self._device), self._ssim_lambda)
+                loss.backward()  # type: ignore[no-untyped-call]
+            return loss.item()
+
+        return self._step(camera, BLACK, learnt, means_lr)
+
+    def learn(self, camera: Camera, background: Vec3, slope: Slope, means_lr: float) -> float:
+        """See `Engine`."""
+
+        def learnt(rgb: Tensor) -> float:
+            loss, d_rgb = slope(_array(rgb))
+            rgb.backward(torch.from_numpy(d_rgb).to(self._device))  # type: ignore[no-untyped-call]
+            return loss
+
+        return self._step(camera, background, learnt, means_lr)
+
+    def _step(self, camera: Camera, background: Vec3, learnt: Callable[[Tensor], float], means_lr: float) -> float:
+        """Draw, run backward through `learnt`, which returns the loss, and step."""
         if self._host is not None:
             self._upload(self._host)
         leaves = {name: values.detach().requires_grad_() for name, values in self._values.items()}
         scales, opacities = leaves["log_scales"].exp(), leaves["logit_opacities"].sigmoid()
         centers = torch.zeros(len(scales), 2, device=self._device, requires_grad=True)
-        columns, target = (leaves["means"], leaves["quats"], scales, opacities, leaves["sh"]), torch.from_numpy(photo)
-        rgb, _ = self._draw(*columns, camera, BLACK, centers)
-        # A window's variance is a small difference of large sums. TF32, torch's default for convolutions on GPUs, has a
-        # mantissa of ten bits and would lose it.
-        with torch.backends.cudnn.flags(enabled=True, deterministic=True, allow_tf32=False):
-            loss = reference(rgb, target.to(self._device), self._ssim_lambda)
-            loss.backward()  # type: ignore[no-untyped-call]
+        columns = (leaves["means"], leaves["quats"], scales, opacities, leaves["sh"])
+        rgb, _ = self._draw(*columns, camera, background, centers)
+        loss = learnt(rgb)
         with torch.no_grad():
             gradients = {n: torch.zeros_like(x) if x.grad is None else x.grad for n, x in leaves.items()}
             self._strategy.regularise(gradients, scales.detach(), opacities.detach())
             self._adam_step(gradients, means_lr)
             d_centers = torch.zeros_like(centers) if centers.grad is None else centers.grad
             self._strategy.after_step_torch(self._values, d_centers, (camera.width, camera.height), means_lr)
-        return loss.item()
+        return loss
 
     def _adam_step(self, gradients: dict[str, Tensor], means_lr: float) -> None:
         """One step of Adam, as `adam.Adam`."""

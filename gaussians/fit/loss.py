@@ -7,6 +7,7 @@ the same in torch.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -20,6 +21,7 @@ from ..compiled import exact, exact_helper
 
 F32 = NDArray[np.float32]
 Array = NDArray[Any]
+Slope = Callable[[F32], tuple[float, F32]]  # of a picture [H, W, 3], not clipped: a loss, and its gradient by it
 
 BLACK = (0.0, 0.0, 0.0)  # background of the renders that are compared with photographs
 RADIUS = 5  # px on each side of a window's centre

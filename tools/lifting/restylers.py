@@ -7,9 +7,10 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from ...gaussians.diffusion import pipeline_in
 from ...gaussians.errors import BackendError
 from .inpainters import F32, Shot, checked
-from .inpainters.diffusers import fitted_to, pipeline_in
+from .inpainters.diffusers import fitted_to
 from .inpainters.sizes import bytes_of
 
 _STEPS = 30

@@ -36,12 +36,14 @@ def shiny(strength: float) -> GaussianCloud:
 
 
 def test_a_band_stays_where_colours_change_with_the_view_and_not_where_they_do_not() -> None:
-    settings = Settings(steps=1000, max_gaussians=300, gain=0.3)
+    # The last band costs 0.24 to 0.36 dB where no colour changes, and 0.75 to 1.2 dB where all do, whatever the seed.
+    gain = 0.5
+    settings = Settings(steps=1000, max_gaussians=300, gain=gain)
     dull, bright = (fit(shown(shiny(strength)), settings) for strength in (0.0, 0.9))
     assert dull.scene.cloud.degree == 0 < bright.scene.cloud.degree
     for done in (dull, bright):
         bands = [c for c in done.choices if c.what == "degree"]
-        assert [c.taken for c in bands] == [c.psnr[0] - c.psnr[1] < 0.3 for c in bands]
+        assert [c.taken for c in bands] == [c.psnr[0] - c.psnr[1] < gain for c in bands]
         assert all(c.taken for c in bands[:-1])  # a band below one that is worth its place is not asked
         assert done.scene.cloud.degree == 3 - sum(c.taken for c in bands)
 

@@ -216,7 +216,7 @@ def test_diffusers_is_optional(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     with pytest.raises(BackendError, match=r"it has no model_index\.json"):
         load(f"diffusers:{tmp_path}")
     monkeypatch.setitem(sys.modules, "diffusers", None)
-    with pytest.raises(BackendError, match="pip install diffusers"):
+    with pytest.raises(BackendError, match=r"scenewright\[diffusion\]"):
         load(f"diffusers:{_pipeline_folder(tmp_path)}")
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ....gaussians.diffusion import pipeline_in
 from ....gaussians.errors import BackendError
 from . import F32, Shot, checked
 from .sizes import Fitted, bytes_of
@@ -71,34 +70,3 @@ def load(argument: str) -> Diffusers:
         BackendError: the folder holds no pipeline, diffusers is not installed, or the pipeline cannot be loaded.
     """
     return Diffusers(f"diffusers:{argument}", pipeline_in(argument, "AutoPipelineForInpainting", "--infill"))
-
-
-def pipeline_in(argument: str, kind: str, option: str) -> Any:
-    """The pipeline in a folder, on the GPU if there is one.
-
-    Args:
-        kind: the class of diffusers that loads it.
-        option: of the command line, for messages.
-
-    Raises:
-        BackendError: as `load`.
-    """
-    folder = Path(argument).expanduser()
-    if not (folder / "model_index.json").is_file():
-        raise BackendError(
-            f"{folder} is no folder of a diffusers pipeline: it has no model_index.json; download a model into it, or "
-            "save one with save_pretrained"
-        )
-    try:
-        library = importlib.import_module("diffusers")
-    except ImportError as error:
-        raise BackendError(f"{option} diffusers: needs the package diffusers; run: pip install diffusers") from error
-    import torch
-
-    try:
-        pipeline = getattr(library, kind).from_pretrained(str(folder), local_files_only=True)
-        pipeline = pipeline.to("cuda" if torch.cuda.is_available() else "cpu")
-        pipeline.set_progress_bar_config(disable=True)
-    except Exception as error:  # missing weights, unknown classes, broken files: each library its own
-        raise BackendError(f"cannot load the pipeline in {folder}: {error}; download it again") from error
-    return pipeline

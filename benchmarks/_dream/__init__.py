@@ -1,0 +1,1 @@
+"""What bench dream and the tests of dreams share."""
