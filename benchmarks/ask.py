@@ -6,11 +6,13 @@ judged by what people wrote down (`_ask/written.py`). Each other measure is a mo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from statistics import fmean, median
 
 from ..gaussians.language import encoders
+from ..gaussians.language.encoders import Encoder
 from . import _ask, _ask_judge
 from ._ask import generated, rooms, routing, sight, speed, stability, views, vision_loop, written
 from ._ask.question import Judged
@@ -48,46 +50,57 @@ FULL = Plan(
 QUICK = Plan((7801,), 60, 4, 7830, 60, 0.4, steady_graphs=1, watched=(7824,))
 
 
-def run(quick: bool = False) -> Result:
-    """All measures, in the order of the table that they answer."""
+PARTS = ("geometry", "written", "stability", "routing", "views", "vision", "sight", "judge", "speed")
+
+
+def run(quick: bool = False, parts: Sequence[str] = PARTS) -> Result:
+    """The measures `parts`, in the order of the table that they answer."""
     plan, encoder = QUICK if quick else FULL, encoders.load("auto")
-    graphs = generated.graph_rooms(plan.graphs, plan.graph_seed)
-    on_graphs = generated.asked(graphs, generated.every_kind(), plan.graph_questions)
-    reworded = generated.asked(graphs, generated.every_kind(), plan.graph_questions, held=True)
-    known = generated.gaussian_rooms(plan.rooms, encoder, plan.detail)
-    in_rooms = generated.asked(known, generated.shown_kinds(encoder), plan.questions)
-    bound = generated.asked([rooms.without_faults(k) for k in known], generated.shown_kinds(encoder), plan.questions)
-    parts = [
-        Part(tuple(generated.metrics(in_rooms, "gaussians")), (_point(in_rooms, "rooms of Gaussians", known, True),)),
-        Part(tuple(generated.metrics(bound, "gaussians_true_table", by_kind=False))),
-        Part(tuple(generated.metrics(on_graphs, "graphs")), (_point(on_graphs, "scene graphs", graphs, False),)),
-        Part(tuple(generated.metrics(reworded, "graphs_held_wordings", by_kind=False))),
-        _written(),
-        Part(
-            (
-                *stability.of_graphs(plan.steady_graphs, plan.graph_seed),
-                *stability.in_rooms(plan.steady, encoder, plan.detail),
-            )
-        ),
-        routing.measure(quick),
-        views.measure(plan.watched, encoder, plan.detail, quick),
-        vision_loop.measure(quick),
-        sight.measure(quick),
-        Part(tuple(_ask_judge.measure(quick))),
-        Part(tuple(speed.measure(known[0], encoder, plan.detail, quick))),
-    ]
+
+    @cache
+    def known() -> list[Known]:
+        return generated.gaussian_rooms(plan.rooms if "geometry" in parts else plan.rooms[:1], encoder, plan.detail)
+
+    measures: dict[str, Callable[[], Iterable[Part]]] = {
+        "geometry": lambda: _geometry(plan, known(), encoder),
+        "written": lambda: [_written()],
+        "stability": lambda: [Part((
+            *stability.of_graphs(plan.steady_graphs, plan.graph_seed),
+            *stability.in_rooms(plan.steady, encoder, plan.detail),
+        ))],
+        "routing": lambda: [routing.measure(quick)],
+        "views": lambda: [views.measure(plan.watched, encoder, plan.detail, quick)],
+        "vision": lambda: [vision_loop.measure(quick)],
+        "sight": lambda: [sight.measure(quick)],
+        "judge": lambda: [Part(tuple(_ask_judge.measure(quick)))],
+        "speed": lambda: [Part(tuple(speed.measure(known()[0], encoder, plan.detail, quick)))],
+    }  # fmt: skip
+    found = [part for name in PARTS if name in parts for part in measures[name]()]
     return Result(
         title="questions answered",
         accuracy="share right",
-        metrics=tuple(m for part in parts for m in part.metrics),
-        points=tuple(p for part in parts for p in part.points),
-        notes=(*_ask.NOTES, *(n for part in parts for n in part.notes)),
+        metrics=tuple(m for part in found for m in part.metrics),
+        points=tuple(p for part in found for p in part.points),
+        notes=(*_ask.NOTES, *(n for part in found for n in part.notes)),
         seeds=(*plan.rooms, *plan.steady, *plan.watched, *range(plan.graph_seed, plan.graph_seed + plan.graphs)),
     )
 
 
+def _geometry(plan: Plan, known: Sequence[Known], encoder: Encoder) -> Iterator[Part]:
+    """Generated questions: in rooms of Gaussians, with their true table, in graphs, and in wordings held back."""
+    in_rooms = generated.asked(known, generated.shown_kinds(encoder), plan.questions)
+    yield Part(tuple(generated.metrics(in_rooms, "gaussians")), (_point(in_rooms, "rooms of Gaussians", known, True),))
+    bound = generated.asked([rooms.without_faults(k) for k in known], generated.shown_kinds(encoder), plan.questions)
+    yield Part(tuple(generated.metrics(bound, "gaussians_true_table", by_kind=False)))
+    graphs = generated.graph_rooms(plan.graphs, plan.graph_seed)
+    on_graphs = generated.asked(graphs, generated.every_kind(), plan.graph_questions)
+    yield Part(tuple(generated.metrics(on_graphs, "graphs")), (_point(on_graphs, "scene graphs", graphs, False),))
+    reworded = generated.asked(graphs, generated.every_kind(), plan.graph_questions, held=True)
+    yield Part(tuple(generated.metrics(reworded, "graphs_held_wordings", by_kind=False)))
+
+
 def _point(judged: Sequence[Judged], setting: str, known: Sequence[Known], default: bool) -> Point:
-    """Share right against seconds an answer."""
+    """Share right against seconds of the processor an answer."""
     size = fmean(k.case.field_bytes for k in known if k.case is not None) if default else 0.0
     seconds = median(j.seconds for j in judged)  # the first question of a room also measures its floor
     return Point("geometry", setting, seconds, fmean(j.right for j in judged), int(size), default)

@@ -10,6 +10,7 @@ import json
 import math
 import pkgutil
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, Self
@@ -220,11 +221,14 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(name for name in found if not name.startswith("_") and name != "harness"))
 
 
-def run(name: str, quick: bool = False) -> Result:
+def run(name: str, quick: bool = False, parts: Sequence[str] = ()) -> Result:
     """Run a benchmark and add the machine, versions and revision to its result. `quick`: faster and less precise.
 
+    Args:
+        parts: some names of the module's `PARTS`, to run these alone; none: the whole benchmark.
+
     Raises:
-        UserError: no benchmark has this name.
+        UserError: no benchmark has this name, or it has no such parts.
         BackendError: a package that it needs is not installed.
     """
     if name not in names():
@@ -235,8 +239,12 @@ def run(name: str, quick: bool = False) -> Result:
         module = importlib.import_module(f".{name}", __package__)
     except ImportError as error:
         raise BackendError(f"benchmark {name} cannot start ({error}); try: pip install 'scenewright[bench]'") from error
+    known = tuple(getattr(module, "PARTS", ()))
+    if unknown := [part for part in parts if part not in known]:
+        choice = f"choose {', '.join(known)}" if known else "it runs as a whole"
+        raise UserError(f"benchmark {name} has no part {', '.join(map(repr, unknown))}; {choice}")
     start = time.perf_counter()
-    result: Result = module.run(quick)
+    result: Result = module.run(quick, parts) if parts else module.run(quick)
     return replace(
         result,
         name=name,

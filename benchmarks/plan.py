@@ -20,10 +20,10 @@ from ..planners import load
 from ..planners.plan import EditPlan, Planner
 from ..tools import registry
 from . import _cascade, _data, _nouns, _spoiled, _written
-from .harness import Metric, Result
+from .harness import Metric, Point, Result
 
 CASES = Path(__file__).resolve().parent.parent / "tests" / "planners" / "instructions.jsonl"
-NOUNS, QUICK_NOUNS = 4, 40  # every such sentence of other people is read
+NOUNS, QUICK_NOUNS = 8, 40  # every such sentence of other people is read
 Outcome = Literal["right", "abstained", "wrong"]
 
 
@@ -99,18 +99,35 @@ def loading() -> float:
     return float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout)
 
 
-def run(quick: bool = False) -> Result:
-    """The grammar planner on the written set, with and without the instruction before.
+PARTS = ("timed", "nouns")
+
+
+def run(quick: bool = False, parts: Sequence[str] = PARTS) -> Result:
+    """The grammar planner on the written sets, with what a model adds ("timed"), and on sentences of other people.
 
     Raises:
         FileError: the set is not there.
     """
-    todo = cases()
     planner = load("grammar")
+    measures = {"timed": lambda: _timed(planner, quick), "nouns": lambda: _of_people(planner, quick)}
+    found = [measures[name]() for name in PARTS if name in parts]
+    return Result(
+        "plans of written instructions",
+        "share right",
+        tuple(m for part in found for m in part.metrics),
+        tuple(p for part in found for p in part.points),
+        tuple(n for part in found for n in part.notes),
+        (_cascade.SEED,),
+    )
+
+
+def _timed(planner: Planner, quick: bool) -> _Part:
+    """The written instructions, with and without the instruction before."""
+    todo = cases()
     repeat = 1 if quick else 5
     told = measure(planner, todo, repeat)
     untold = measure(planner, [{k: v for k, v in c.items() if k != "previous"} for c in todo], repeat)
-    rooms, nouns = _on_rooms(planner), _of_people(planner, quick)
+    rooms = _on_rooms(planner)
     compared, points, how = _cascade.measure(quick)
     spoiled, of_spoiled = _spoiled.measure(quick)
     alone = Metric("right.without_context", share(untold, "right"), "share", "higher")
@@ -128,10 +145,9 @@ def run(quick: bool = False) -> Result:
         "sentences.",
         *how,
         *of_spoiled,
-        *nouns.notes,
     )
-    found = (*metrics(told), alone, *rooms.metrics, *compared, *spoiled, *nouns.metrics, start)
-    return Result("plans of written instructions", "share right", found, points, notes, (_cascade.SEED,))
+    found = (*metrics(told), alone, *rooms.metrics, *compared, *spoiled, start)
+    return _Part(found, tuple(points), notes)
 
 
 @dataclass(frozen=True)
@@ -139,6 +155,7 @@ class _Part:
     """What one set adds to the result."""
 
     metrics: tuple[Metric, ...] = ()
+    points: tuple[Point, ...] = ()
     notes: tuple[str, ...] = ()
 
 

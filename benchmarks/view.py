@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+from collections.abc import Sequence
 from typing import Any
 
 from ..gaussians.errors import BackendError
@@ -13,15 +14,38 @@ GOAL_PSNR, GOAL_RIGHT, GOAL_CLICK_MS, GOAL_WORDS_SECONDS, GOAL_BYTES = 30.0, 0.9
 GOAL_OVER_DROPPING = 1.0
 
 
-def run(quick: bool) -> Result:
+PARTS = ("browser", "words", "levels", "faults")
+
+
+def run(quick: bool, parts: Sequence[str] = PARTS) -> Result:
     """Measure all of it; where no browser can be driven, all but the rows of drawing, and say so."""
+    measures = {"browser": _browser, "words": _words, "levels": _levels, "faults": _faults}
+    found = [measures[name](quick) for name in PARTS if name in parts]
+    return Result(
+        title="the page in a browser with software WebGL, and its server",
+        accuracy="",
+        metrics=tuple(m for metrics, _ in found for m in metrics),
+        points=(),
+        notes=(
+            *(note for _, notes in found for note in notes),
+            "opened: from the address of an exported file to its first whole picture.",
+            "frame: projecting, blending and presenting; the sort is a worker's and not in it.",
+            "words.seconds: to the last byte of the change at a client, without the browser.",
+            "level: PSNR to the scene before writing; over_dropping: against leaving out the least visible of it.",
+            "lod: drawn as render --lod does, against the finest level; draw: processor time of a picture.",
+        ),
+    )
+
+
+_Found = tuple[list[Metric], list[str]]  # figures, and notes
+
+
+def _browser(quick: bool) -> _Found:
     metrics: list[Metric] = []
-    left_out: list[str] = []
     try:
         drawn = drawing.measure(quick)
     except BackendError as error:
-        drawn = []
-        left_out.append(f"the rows of drawing (room, sh0 to sh3, million) were left out: {error}.")
+        return [], [f"the rows of drawing (room, sh0 to sh3, million) were left out: {error}."]
     for row in drawn:
         name = row["scene"]
         metrics += [
@@ -33,33 +57,27 @@ def run(quick: bool) -> Result:
         metrics += [
             Metric(f"{name}.{key}", value, "ms", "lower", 0.4) for key, value in row.items() if key.startswith("frame_")
         ]
+    return metrics, []
+
+
+def _words(quick: bool) -> _Found:
     said = words.measure(quick)
     seconds = statistics.median(row["seconds"] for row in said)
-    metrics += [
+    return [
         Metric("words.seconds", seconds, "s", "lower", 0.4, GOAL_WORDS_SECONDS),
         Metric("words.bytes", max(row["bytes_over_changed"] for row in said), "x", "lower", 0.05, GOAL_BYTES),
-    ]
+    ], []
+
+
+def _levels(quick: bool) -> _Found:
     leveled, missing = levels.measure(quick)
-    metrics += [metric for row in leveled for metric in (_level if "level" in row else _lod)(row)]
+    return [metric for row in leveled for metric in (_level if "level" in row else _lod)(row)], list(missing)
+
+
+def _faults(quick: bool) -> _Found:
     rows = faults.measure(quick)
     bad = [row for row in rows if row.get("changed") or not all(row.get(k, True) for k in _HOLD)]
-    metrics.append(Metric("faults.wrong", len(bad), "count", "lower", 0, 0))
-    return Result(
-        title="the page in a browser with software WebGL, and its server",
-        accuracy="",
-        metrics=tuple(metrics),
-        points=(),
-        notes=(
-            *left_out,
-            "opened: from the address of an exported file to its first whole picture.",
-            "frame: projecting, blending and presenting; the sort is a worker's and not in it.",
-            "words.seconds: to the last byte of the change at a client, without the browser.",
-            "level: PSNR to the scene before writing; over_dropping: against leaving out the least visible of it.",
-            "lod: drawn as render --lod does, against the finest level; draw: processor time of a picture.",
-            *missing,
-            *(f"wrong: {row}" for row in bad),
-        ),
-    )
+    return [Metric("faults.wrong", len(bad), "count", "lower", 0, 0)], [f"wrong: {row}" for row in bad]
 
 
 def _level(row: dict[str, Any]) -> list[Metric]:

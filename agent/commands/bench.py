@@ -22,6 +22,12 @@ def command(
         typer.Argument(metavar="NAME", help="Benchmark, 'all', 'guard' or 'calibrate'; without it, list them."),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Much faster and less precise.")] = False,
+    part: Annotated[
+        list[str] | None, typer.Option("--part", metavar="PART", help="Measure this part of the benchmark alone.")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="'all' takes what it has already measured at this revision.")
+    ] = False,
     chart: Annotated[
         Path | None, typer.Option("--chart", metavar="FILE", help="Draw time against accuracy (.png, .svg, .pdf).")
     ] = None,
@@ -65,22 +71,26 @@ def command(
         terminal.result("\n".join(harness.names()), {"benchmarks": list(harness.names())})
         return
     if name == "all":
-        _all(quick, output, against, force)
+        _all(quick, output, against, force, resume)
         return
     if name == "guard":
         _guard(force)
         return
     refuse_existing([chart] if chart else [], force)
     earlier = _read(against) if against else None
-    result = harness.run(name, quick)
+    if earlier is not None:
+        _refuse_other_form(earlier, quick)
+    result = harness.run(name, quick, part or ())
     if chart is not None:
         terminal.say(f"chart: {_chart.draw(result, chart)}")
     terminal.result(result.to_markdown(), json.loads(result.to_json()))
     _tell(result.regressions(earlier) if earlier is not None else ())
 
 
-def _all(quick: bool, folder: Path, against: Path | None, force: bool) -> None:
+def _all(quick: bool, folder: Path, against: Path | None, force: bool, resume: bool) -> None:
     """Run every benchmark and write the page of all."""
+    import shutil
+
     from ...benchmarks import harness
     from ...benchmarks._all import page, running
     from ..output_files import make_folder, refuse_existing
@@ -88,7 +98,12 @@ def _all(quick: bool, folder: Path, against: Path | None, force: bool) -> None:
     refuse_existing([folder / page.PAGE], force)
     make_folder(folder)
     earlier = [_read(path) for path in sorted(against.glob("*.json"))] if against else []
-    found = running.measured(harness.names(), quick, terminal.say)
+    for result in earlier:
+        _refuse_other_form(result, quick)
+    kept = running.kept_folder(quick)
+    if kept is not None and not resume:
+        shutil.rmtree(kept, ignore_errors=True)
+    found = running.measured(harness.names(), quick, terminal.say, kept=kept)
     made = page.write(folder, found.results, found.failed)
     told = {
         "page": str(made[-1]),
@@ -145,6 +160,23 @@ def _read(path: Path) -> Result:
         return harness.Result.from_json(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise FileError(f"cannot read {path}: {error.strerror}") from error
+
+
+def _refuse_other_form(earlier: Result, quick: bool) -> None:
+    """Quick and whole runs measure different sizes, so that their figures do not compare.
+
+    Raises:
+        UserError: the earlier result is of the other form.
+    """
+    from ...gaussians.errors import UserError
+
+    if earlier.quick != quick:
+        forms = ("quick", "whole") if earlier.quick else ("whole", "quick")
+        how = "add --quick" if earlier.quick else "leave out --quick"
+        raise UserError(
+            f"the earlier result of {earlier.name or 'the benchmark'} is of a {forms[0]} run and cannot be compared "
+            f"with a {forms[1]} one: {how}, or give a result of the same form"
+        )
 
 
 def _tell(worse: Sequence[str]) -> None:

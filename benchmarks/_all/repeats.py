@@ -1,4 +1,4 @@
-"""Merges repeated results of one benchmark: the median of each figure, with the least and the greatest."""
+"""Merges results of one benchmark: of repeats the median of each figure, of parts all that they have."""
 
 from __future__ import annotations
 
@@ -29,6 +29,26 @@ def merged(results: Sequence[Result]) -> Result:
         points=points if all(_same(first, r) for r in results) else first.points,
         seconds=sum(r.seconds for r in results),
         repeats=len(results),
+    )
+
+
+def joined(parts: Sequence[Result]) -> Result:
+    """One result of several parts of a benchmark, in their order; a note that several have stands once.
+
+    Raises:
+        ValueError: there is none, or they are of different benchmarks, forms or revisions, or share a figure.
+    """
+    first = parts[0]
+    if {(r.name, r.quick, r.revision) for r in parts} != {(first.name, first.quick, first.revision)}:
+        raise ValueError(f"parts of one benchmark are joined, not of {sorted({r.name for r in parts})}")
+    return replace(
+        first,
+        metrics=tuple(m for r in parts for m in r.metrics),
+        points=tuple(p for r in parts for p in r.points),
+        rows=tuple(row for r in parts for row in r.rows),
+        notes=tuple(dict.fromkeys(n for r in parts for n in r.notes)),
+        seeds=tuple(dict.fromkeys(s for r in parts for s in r.seeds)),
+        seconds=sum(r.seconds for r in parts),
     )
 
 

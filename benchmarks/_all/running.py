@@ -1,7 +1,8 @@
-"""Runs every benchmark in a process of its own, and those that are timed again while time is left.
+"""Runs every benchmark in processes of its own, and those that are timed again while time is left.
 
 A process of its own keeps what one benchmark compiles, caches or allocates out of the figures of the next, and the
-failure of one from the others.
+failure of one from the others. Whole runs divide long benchmarks into jobs by their parts. Each finished job is kept
+until the revision changes, so that a run that was stopped, or in which one job failed, goes on with the others.
 """
 
 from __future__ import annotations
@@ -11,27 +12,61 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from ...gaussians.errors import FileError
+from ...gaussians.files import writing
 from .. import _fits, _machine
 from ..harness import Result
-from .repeats import merged
+from .repeats import joined, merged
 
 # Seconds for all together, on two cores; drawing the page takes some of the three minutes and of the hour besides.
 QUICK, WHOLE = 165.0, 3000.0
-# Seconds after which one benchmark is stopped, so that a slow machine does not wait for it without end.
+# Seconds after which one job is stopped, so that a slow machine does not wait for it without end.
 QUICK_LIMIT, LIMIT = 150.0, 1500.0
 # Charted against bytes, timed in seconds of the processor, or without a chart of times: they share the cores.
-TOGETHER = frozenset({"edit", "edits", "files", "layout", "mcp", "restyle", "slim", "stability", "structure"})
+TOGETHER = frozenset(
+    {"edit", "edits", "files", "fill", "fit_sizes", "layout", "mcp", "restyle", "slim", "stability", "structure"}
+)
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
 LONG = frozenset({"edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure", "view"})
+# How whole runs divide benchmarks: parts that share the cores, a job each, and parts that are timed by the clock.
+SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
+    "select": (
+        ("captures",), ("composed",), ("chart",), ("masks", "views"), ("floaters", "floor"),
+        ("names", "thresholds", "finer"), ("attributes", "relations"), ("meshes", "vectors"),
+    ),
+    "ask": (("geometry",), ("written", "stability", "routing", "views", "vision", "sight", "judge")),
+    "plan": (("nouns",),),
+    "view": (("faults",),),
+}  # fmt: skip
+TIMED_PARTS: Mapping[str, tuple[str, ...]] = {
+    "select": ("costs",), "ask": ("speed",), "plan": ("timed",), "view": ("browser", "words")
+}  # fmt: skip
+# The longest first, so that no core waits for a long job at the end.
+LONGEST = ("stability", "edits", "select captures", "fit_sizes", "slim", "ask geometry")
 MOST_REPEATS = 3
 _STARTS = 5.0  # seconds that a process takes besides its measurement
 _CHANGED = "the source changed while it was measured; leave it alone until all is measured"
 # What long benchmarks measure here, so that all fit the time; each alone does more.
-_PARTS = {"fit": {_fits.ONLY: "default-5,classic-5"}}
+_LESS = {"fit": {_fits.ONLY: "default-5"}}
+_ONE_THREAD = {key: "1" for key in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
+
+
+@dataclass(frozen=True)
+class Job:
+    """One process: a benchmark, or some of its parts; `shares` the cores, with one thread, or has them to itself."""
+
+    name: str
+    parts: tuple[str, ...] = ()
+    shares: bool = False
+
+    @property
+    def title(self) -> str:
+        """Its name for people and files."""
+        return " ".join((self.name, *self.parts))
 
 
 @dataclass(frozen=True)
@@ -39,52 +74,102 @@ class Measured:
     """What was measured.
 
     Attributes:
-        results: of the benchmarks that succeeded, repeats merged.
-        failed: the others, with the reason.
+        results: of the benchmarks of which something succeeded, parts joined and repeats merged.
+        failed: jobs that failed, with the reason.
     """
 
     results: tuple[Result, ...]
     failed: Mapping[str, str] = field(default_factory=dict)
 
 
-def measured(names: Sequence[str], quick: bool, say: Callable[[str], None], seconds: float | None = None) -> Measured:
+def jobs(names: Sequence[str], quick: bool) -> list[Job]:
+    """What is run, in the order in which it starts: first jobs that share the cores, the longest of them first."""
+    found = list[Job]()
+    for name in names:
+        if quick or name not in SHARED_PARTS:
+            found.append(Job(name, (), name in TOGETHER))
+            continue
+        found += [Job(name, parts, True) for parts in SHARED_PARTS[name]]
+        found.append(Job(name, TIMED_PARTS[name]))
+    last = len(LONGEST)
+    return sorted(found, key=lambda j: (not j.shares, LONGEST.index(j.title) if j.title in LONGEST else last))
+
+
+def measured(
+    names: Sequence[str],
+    quick: bool,
+    say: Callable[[str], None],
+    seconds: float | None = None,
+    kept: Path | None = None,
+) -> Measured:
     """Run benchmarks once, and the shortest of those that are timed again while time is left.
 
-    Those of `TOGETHER` run first, as many at a time as there are cores; the others one after the other, with the
+    Jobs that share the cores run first, as many at a time as there are cores; the others one after the other, with the
     machine to themselves. Quick runs leave out `LONG`.
 
     Args:
         say: gets a sentence about each run.
         seconds: for all of it; each benchmark runs once even if that takes longer.
+        kept: a folder of results of the jobs of this revision: read instead of measuring anew, and written.
     """
     until = time.perf_counter() + (seconds or (QUICK if quick else WHOLE))
-    found: dict[str, list[Result]] = {}
+    found: dict[Job, list[Result]] = {}
     failed: dict[str, str] = {}
     revision = _machine.revision()
     names = [name for name in names if not (quick and name in LONG)]
-    for name, outcome in _once(names, quick):
+    for job, outcome in _once(jobs(names, quick), quick, kept):
         if isinstance(outcome, Result) and outcome.revision == revision:
-            found[name] = [outcome]
-            say(f"{name}: {outcome.seconds:.0f} s")
+            found[job] = [outcome]
+            say(f"{job.title}: {outcome.seconds:.0f} s")
         else:
-            failed[name] = _CHANGED if isinstance(outcome, Result) else outcome
-            say(f"{name} failed: {failed[name]}")
-    for name in _again({n: results for n, results in found.items() if n not in TOGETHER}, until):
-        outcome = _run(name, quick)
-        if isinstance(outcome, Result) and outcome.revision == revision:
-            found[name].append(outcome)
-            say(f"{name} again: {outcome.seconds:.0f} s")
-    return Measured(tuple(merged(found[name]) for name in names if name in found), failed)
+            failed[job.title] = _CHANGED if isinstance(outcome, Result) else outcome
+            say(f"{job.title} failed: {failed[job.title]}")
+    for job in _again({j: results for j, results in found.items() if not j.shares}, until):
+        again = _run(job, quick)
+        if isinstance(again, Result) and again.revision == revision:
+            found[job].append(again)
+            say(f"{job.title} again: {again.seconds:.0f} s")
+    return Measured(tuple(_joined(name, found) for name in names if any(j.name == name for j in found)), failed)
 
 
-def _once(names: Sequence[str], quick: bool) -> Iterator[tuple[str, Result | str]]:
-    """Each benchmark with its result or failure, as they end: first those that may share the cores, then the others."""
-    together = [name for name in names if name in TOGETHER]
+def _joined(name: str, found: Mapping[Job, Sequence[Result]]) -> Result:
+    """The result of a benchmark from those of its jobs: first the parts timed alone, as they are few."""
+    own = sorted((job for job in found if job.name == name), key=lambda j: j.shares)
+    parts = [merged(found[job]) for job in own]
+    return joined(parts) if len(parts) > 1 else parts[0]
+
+
+def _once(todo: Sequence[Job], quick: bool, kept: Path | None) -> Iterator[tuple[Job, Result | str]]:
+    """Each job with its result or failure, as they end: first those that share the cores, then the others."""
     with ThreadPoolExecutor(_machine.cores()) as pool:
-        yield from zip(together, pool.map(lambda name: _run(name, quick), together), strict=True)
-    for name in names:
-        if name not in TOGETHER:
-            yield name, _run(name, quick)
+        under_way = {pool.submit(_kept_or_run, job, quick, kept): job for job in todo if job.shares}
+        for done in as_completed(under_way):
+            yield under_way[done], done.result()
+    for job in todo:
+        if not job.shares:
+            yield job, _kept_or_run(job, quick, kept)
+
+
+def _kept_or_run(job: Job, quick: bool, kept: Path | None) -> Result | str:
+    """The kept result of a job, or a new one, which is then kept."""
+    path = None if kept is None else kept / f"{job.title.replace(' ', '-')}.json"
+    if path is not None and path.is_file():
+        return Result.from_json(path.read_text(encoding="utf-8"))
+    outcome = _run(job, quick)
+    if path is not None and isinstance(outcome, Result):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with writing(path, force=True) as file:
+            file.write(outcome.to_json().encode())
+    return outcome
+
+
+def kept_folder(quick: bool) -> Path | None:
+    """Where results of this revision are kept, in the user's cache; None if the source has changes or no revision."""
+    revision = _machine.revision()
+    if revision is None or revision.endswith("-dirty"):
+        return None
+    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return root / "scenewright" / "bench" / "all" / f"{revision}{'-quick' if quick else ''}"
 
 
 def side_by_side(names: Sequence[str], say: Callable[[str], None], surroundings: Mapping[str, str]) -> Measured:
@@ -96,28 +181,30 @@ def side_by_side(names: Sequence[str], say: Callable[[str], None], surroundings:
     """
     say(f"measuring {', '.join(names)}")
     with ThreadPoolExecutor(_machine.cores()) as pool:
-        outcomes = dict(zip(names, pool.map(lambda name: _run(name, True, surroundings), names), strict=True))
+        outcomes = dict(zip(names, pool.map(lambda name: _run(Job(name), True, surroundings), names), strict=True))
     results = tuple(o for o in outcomes.values() if isinstance(o, Result))
     return Measured(results, {name: o for name, o in outcomes.items() if isinstance(o, str)})
 
 
-def _again(found: Mapping[str, Sequence[Result]], until: float) -> Iterator[str]:
-    """Names to repeat, the shortest first, each for as long as it is likely to end in time."""
+def _again(found: Mapping[Job, Sequence[Result]], until: float) -> Iterator[Job]:
+    """Jobs to repeat, the shortest first, each for as long as it is likely to end in time."""
     for _ in range(MOST_REPEATS - 1):
-        for name in sorted(found, key=lambda n: found[n][0].seconds):
-            if time.perf_counter() + _STARTS + found[name][0].seconds < until:
-                yield name
+        for job in sorted(found, key=lambda j: found[j][0].seconds):
+            if time.perf_counter() + _STARTS + found[job][0].seconds < until:
+                yield job
 
 
-def _run(name: str, quick: bool, besides: Mapping[str, str] | None = None) -> Result | str:
-    """The result of a benchmark in a process of its own, or why there is none."""
-    command = [sys.executable, "-m", "scenewright", "bench", name, "--json", *(["--quick"] if quick else [])]
-    surroundings = {**({} if quick else _PARTS.get(name, {})), **os.environ, **(besides or {})}
+def _run(job: Job, quick: bool, besides: Mapping[str, str] | None = None) -> Result | str:
+    """The result of a job in a process of its own, or why there is none."""
+    command = [sys.executable, "-m", "scenewright", "bench", job.name, "--json", *(["--quick"] if quick else [])]
+    command += [word for part in job.parts for word in ("--part", part)]
+    less = {} if quick else _LESS.get(job.name, {})
+    surroundings = {**less, **os.environ, **(_ONE_THREAD if job.shares and not quick else {}), **(besides or {})}
     limit = QUICK_LIMIT if quick else LIMIT
     try:
         ended = subprocess.run(command, capture_output=True, text=True, check=False, env=surroundings, timeout=limit)
     except subprocess.TimeoutExpired:
-        return f"it was stopped after {limit:.0f} s; `scenewright bench {name}` runs it without a limit"
+        return f"it was stopped after {limit:.0f} s; `scenewright bench {job.name}` runs it without a limit"
     if ended.returncode:
         lines = ended.stderr.strip().splitlines()
         return lines[-1].removeprefix("scenewright: ") if lines else f"it ended with code {ended.returncode}"

@@ -26,13 +26,13 @@ NUMBERS = ("number", "metres")
 
 def ask(known: Known, question: Question) -> Judged:
     """One question answered from geometry; a question that raises an error counts as wrong."""
-    start = time.perf_counter()
+    start = time.process_time()
     try:
         given = asking.answer(question.text, known.survey)
     except Exception as error:  # one fault of the product must not hide what else it answers
-        failed = judge(question, None, f"{type(error).__name__}: {error}", time.perf_counter() - start)
+        failed = judge(question, None, f"{type(error).__name__}: {error}", time.process_time() - start)
         return replace(failed, right=False, refused=False, accuracy=0.0)
-    seconds = time.perf_counter() - start
+    seconds = time.process_time() - start
     return judge(question, given.answer, given.text, seconds, given.evidence.ids)
 
 

@@ -78,11 +78,11 @@ def guiding(case: Case, views: Sequence[ViewMasks], encoder: Encoder) -> Scene:
 
 
 def made(case: Case, eyes: Sequence[Camera], draw: Draw, how: Callable[..., Scene], encoder: Encoder) -> Case:
-    """The case with its field, and the seconds that pictures, masks and all else took."""
-    start = time.perf_counter()
+    """The case with its field, and the seconds of the processor that pictures, masks and all else took."""
+    start = time.process_time()
     views = [draw(case, eye, i) for i, eye in enumerate(eyes)]
     scene = how(case, views, encoder)
-    return replace(case, scene=scene, seconds=time.perf_counter() - start)
+    return replace(case, scene=scene, seconds=time.process_time() - start)
 
 
 def points(rooms: Sequence[Case], encoder: Encoder) -> Part:

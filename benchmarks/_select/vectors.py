@@ -70,24 +70,24 @@ class Uplift:
 
 def uplift(case: Case, seen: Sequence[Seen]) -> Uplift:
     """Lift all views' masks."""
-    start = time.perf_counter()
+    start = time.process_time()
     lifted = lift(case.scene.cloud, [view.masks for view in seen])
     within = np.asarray(lifted.weights.sum(axis=1)).ravel()
     total = np.asarray(lifted.seen.sum(axis=1)).ravel()
     objects = np.array([o for view in seen for o in view.objects], dtype=np.int64)
-    return Uplift(lifted, objects, (total > 0) & (within >= OWN * total), time.perf_counter() - start)
+    return Uplift(lifted, objects, (total > 0) & (within >= OWN * total), time.process_time() - start)
 
 
 def as_groups(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str]) -> Outcome:
     """One number a Gaussian, one vector a group: masks are grouped as users get it."""
-    start = time.perf_counter()
+    start = time.process_time()
     whole = [track.masks for track in associate(up.lifted).tracks if track.parent < 0]
     return _grouped(case, up, encoder, names, whole, start)
 
 
 def as_true_groups(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str]) -> Outcome:
     """The same with a flawless association: masks of one object are one group."""
-    start = time.perf_counter()
+    start = time.process_time()
     whole = [tuple(np.flatnonzero(up.objects == o.id).tolist()) for o in case.objects]
     return _grouped(case, up, encoder, names, whole, start)
 
@@ -105,18 +105,18 @@ def _grouped(
     column = np.where(up.covered, np.asarray(up.lifted.weights @ member).argmax(axis=1), len(whole))
     mass = np.asarray(up.lifted.weights.sum(axis=0)).ravel()
     table = (member[:, :-1] * mass[:, None]).T @ up.lifted.vectors
-    built = time.perf_counter() - start + up.seconds
-    start = time.perf_counter()
+    built = time.process_time() - start + up.seconds
+    start = time.process_time()
     chance = [np.append(probability(encoder, name, table), 0.0) for name in names]
     np.flatnonzero(np.isin(column, np.flatnonzero(chance[0] >= encoder.calibration.threshold)))
-    query = (time.perf_counter() - start) / len(names)
+    query = (time.process_time() - start) / len(names)
     size = 4 * len(column) + table.nbytes
     return _outcome(case, encoder, names, [c[column] for c in chance], built, query, size)
 
 
 def as_vectors(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str], width: int) -> Outcome:
     """One vector of `width` numbers a Gaussian, float32."""
-    start = time.perf_counter()
+    start = time.process_time()
     features = up.lifted.features()
     features[~up.covered] = 0
     full = features.shape[1]
@@ -124,10 +124,10 @@ def as_vectors(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str], w
         mean, axes = principal(features[up.covered], width)
         small = (features - mean) @ axes.T
         features = np.where(up.covered[:, None], small @ axes + mean, 0).astype(np.float32)
-    built = time.perf_counter() - start + up.seconds
-    start = time.perf_counter()
+    built = time.process_time() - start + up.seconds
+    start = time.process_time()
     _chance(features, encoder, names[0])
-    query = time.perf_counter() - start
+    query = time.process_time() - start
     chance = [_chance(features[::STRIDE], encoder, name) for name in names]
     return _outcome(case, encoder, names, chance, built, query, 4 * min(width, full) * len(features))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import itertools
 import json
 import subprocess
 from dataclasses import replace
@@ -16,7 +18,7 @@ from typer.testing import CliRunner
 from scenewright.agent.cli import app
 from scenewright.benchmarks import harness
 from scenewright.benchmarks._all import guard, page, running
-from scenewright.benchmarks._all.repeats import merged
+from scenewright.benchmarks._all.repeats import joined, merged
 from scenewright.benchmarks.harness import Metric, Point, Result
 from scenewright.gaussians.errors import FileError, UserError
 
@@ -60,9 +62,10 @@ def test_spread_stands_in_the_table() -> None:
 
 
 @pytest.fixture
-def processes(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def processes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     """Runs of benchmarks that end at once: "ask" fails, "fit" is of another revision, and "edit" prints no result."""
     ran: list[str] = []
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
     def run(command: list[str], **_: Any) -> subprocess.CompletedProcess[str]:
         name = command[4]
@@ -93,13 +96,63 @@ def test_what_is_not_timed_runs_first_and_is_not_repeated(processes: list[str]) 
     assert set(harness.names()) >= running.TOGETHER
 
 
+def test_whole_runs_divide_long_benchmarks_into_parts_that_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, shared in running.SHARED_PARTS.items():
+        known = importlib.import_module(f"scenewright.benchmarks.{name}").PARTS
+        assert sorted([*itertools.chain(*shared), *running.TIMED_PARTS[name]]) == sorted(known)
+    todo = running.jobs(["plan", "slim", "select"], False)
+    assert [job.title for job in todo[:2]] == ["select captures", "slim"]
+    assert [job.title for job in todo if not job.shares] == ["plan timed", "select costs"]
+    assert running.jobs(["plan"], True) == [running.Job("plan")]
+
+    def run(command: list[str], env: dict[str, str], **_: Any) -> subprocess.CompletedProcess[str]:
+        part = command[command.index("--part") + 1]
+        assert ("OMP_NUM_THREADS" in env) == (part == "nouns")
+        if part == "timed":
+            return subprocess.CompletedProcess(command, 2, "", "scenewright: lost\n")
+        own = replace(result(), metrics=(Metric(part, 1, "share"),))
+        return subprocess.CompletedProcess(command, 0, own.to_json(), "")
+
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    monkeypatch.setattr(running.subprocess, "run", run)
+    monkeypatch.setattr(running._machine, "revision", lambda: "abc")
+    found = running.measured(["plan"], False, lambda _: None)
+    assert [m.key for r in found.results for m in r.metrics] == ["nouns"] and found.failed == {"plan timed": "lost"}
+
+
+def test_parts_are_joined_to_one_result() -> None:
+    one, other = result(), replace(result(), metrics=(Metric("more", 1, "share"),), notes=("a", "b"), seeds=(1,))
+    found = joined([replace(one, notes=("a",)), other])
+    assert [m.key for m in found.metrics] == ["right", "more"] and found.notes == ("a", "b") and found.seeds == (1,)
+    assert len(found.points) == 2 and found.seconds == 4.0
+    with pytest.raises(ValueError, match="parts of one benchmark"):
+        joined([result(), result(name="ask")])
+    with pytest.raises(UserError, match="no part 'verbs'; choose timed, nouns"):
+        harness.run("plan", parts=("verbs",))
+
+
+def test_finished_jobs_are_kept_until_the_revision_changes(processes: list[str], tmp_path: Path) -> None:
+    for _ in range(2):
+        found = running.measured(["plan", "ask"], True, lambda _: None, seconds=1e-9, kept=tmp_path)
+        assert [r.name for r in found.results] == ["plan"] and found.failed == {"ask": "no captures"}
+    assert processes == ["plan", "ask", "ask"]  # what failed is measured again
+
+
+def test_quick_and_whole_results_are_not_compared(tmp_path: Path) -> None:
+    (tmp_path / "plan.json").write_text(result(3.0).to_json())
+    for command in (["all", "-o", str(tmp_path / "new")], ["plan"]):
+        earlier = tmp_path if command[0] == "all" else tmp_path / "plan.json"
+        with pytest.raises(UserError, match=r"whole run .* leave out --quick"):
+            CliRunner().invoke(app, ["bench", *command, "--quick", "--against", str(earlier)], catch_exceptions=False)
+
+
 def test_a_benchmark_that_takes_too_long_is_stopped_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
     def run(command: list[str], timeout: float, **_: Any) -> subprocess.CompletedProcess[str]:
         raise subprocess.TimeoutExpired(command, timeout)
 
     monkeypatch.setattr(running.subprocess, "run", run)
-    found = running.measured(["plan"], False, lambda _: None)
-    assert "stopped after 1500 s" in found.failed["plan"] and not found.results
+    found = running.measured(["render"], False, lambda _: None)
+    assert "stopped after 1500 s" in found.failed["render"] and not found.results
 
 
 def test_what_is_of_another_revision_or_unreadable_is_a_failure(processes: list[str]) -> None:
@@ -126,7 +179,7 @@ def test_the_command_writes_the_page_and_tells_what_is_worse(
     monkeypatch.setattr(harness, "names", lambda: ("plan", "select"))
     earlier = tmp_path / "earlier"
     earlier.mkdir()
-    (earlier / "plan.json").write_text(result(3.0).to_json())
+    (earlier / "plan.json").write_text(result(3.0, quick=True).to_json())
     command = ["bench", "all", "--quick", "-o", str(tmp_path / "new"), "--json"]
     done = CliRunner().invoke(app, [*command, "--against", str(earlier)])
     assert done.exit_code == 3 and "worse: plan: right: 3 -> 2 share" in done.stderr

@@ -160,8 +160,8 @@ def _true_masks(capture: Path) -> Iterator[ViewMasks]:
 
 
 def embedded(captures: Path, name: str, setting: Setting, encoder: Encoder) -> tuple[Scene, float]:
-    """The embedded scene, and the seconds that it took."""
+    """The embedded scene, and the seconds of the processor that it took."""
     scene, given = bare_scene(captures, name, setting), sources(captures / name, setting)
-    start = time.perf_counter()
+    start = time.process_time()
     made = embed(scene, encoder, masks=given or None)
-    return made, time.perf_counter() - start
+    return made, time.process_time() - start
