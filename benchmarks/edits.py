@@ -29,9 +29,24 @@ _QUICK, _QUICK_SETTINGS = 2, ("guitar", "playbot")  # instructions of each scene
 _ROWS = "rows.json"
 
 
-def run(quick: bool) -> Result:
+PARTS = ("graded", "colour", "checks")
+
+
+def run(quick: bool, parts: Sequence[str] = PARTS) -> Result:
     """All instructions in all settings whose data are here, the measures of colour, and of the checks."""
-    out, notes, rows = results_folder(), list[str](), list[grades.Row]()
+    found, notes = list[Metric](), list[str]()
+    if "graded" in parts:
+        found += _graded(quick, notes)
+    if "colour" in parts and not quick:
+        found += color.metrics(*color.measure())
+    if "checks" in parts:
+        found += sabotage.measure(quick)
+    return Result("edits of real scenes in people's words, graded by eye", "grade", tuple(found), (), tuple(notes))
+
+
+def _graded(quick: bool, notes: list[str]) -> Sequence[Metric]:
+    """Figures of the instructions; adds notes."""
+    out, rows = results_folder(), list[grades.Row]()
     for setting in (s for s in SETTINGS if not quick or s.name in _QUICK_SETTINGS):
         place = prepared(setting)
         if place is None:
@@ -41,11 +56,7 @@ def run(quick: bool) -> Result:
         rows += list(measured(place, chosen[:_QUICK] if quick else chosen, out))
     _write(rows, out / _ROWS)
     notes.append(f"contact sheets and rows.json are in {out}")
-    found: tuple[Metric, ...] = grades.metrics(rows)
-    if not quick:
-        found += color.metrics(*color.measure())
-    found += sabotage.measure(quick)
-    return Result("edits of real scenes in people's words, graded by eye", "grade", found, (), tuple(notes))
+    return grades.metrics(rows)
 
 
 def instructions() -> list[Instruction]:

@@ -21,7 +21,7 @@ from ._data import missing
 from ._fits import Made, Run
 from .harness import Metric, Point, Result
 
-SECONDS, MAX_GAUSSIANS = 90.0, 180_000
+SECONDS, MAX_GAUSSIANS = 60.0, 180_000
 QUICK_STEPS = 200
 NOISE = 0.01  # of a PSNR: a quarter of a decibel, as other seeds give
 TITLE = "bytes of trained scenes against likeness to photographs that were held out"

@@ -103,6 +103,8 @@ def _all(quick: bool, folder: Path, against: Path | None, force: bool, resume: b
     kept = running.kept_folder(quick)
     if kept is not None and not resume:
         shutil.rmtree(kept, ignore_errors=True)
+    if not quick:
+        running.prepare(terminal.say)
     found = running.measured(harness.names(), quick, terminal.say, kept=kept)
     made = page.write(folder, found.results, found.failed)
     told = {

@@ -7,8 +7,22 @@ from pathlib import Path
 
 from .. import _chart, harness
 from ..harness import Result, duration
+from . import running
 
 PAGE = "README.md"
+# What whole runs measure less of than they once did, or than a benchmark does by itself.
+LESS = (
+    f"{', '.join(sorted(running.TOGETHER))}, and parts of {', '.join(sorted(set(running.SHARED_PARTS) - {'edits'}))}, "
+    "ran two at a time with one thread each: their times are of the processor, or describe a core beside a busy one; "
+    "all other times were measured alone",
+    *(f"{part} is left out: {reason}" for part, reason in running.LEFT_OUT.items()),
+    "fit: the default for five minutes only; `scenewright bench fit` compares eight settings in an hour",
+    "fit_sizes: a minute for each degree on one core, not a minute and a half on two",
+    "select: every second kind of composed room, faults of masks in one furnished room and the chart in two, not three",
+    "ask: 360 questions in 12 furnished rooms and 200 in 16 graphs, not 600 in 20 and 300 in 24",
+    "plan: every eighth sentence of other people, not every fourth",
+    "fill: 60 deletions, not 100. slim: no 44 dB",
+)
 _ONCE = "accuracies are shares or likenesses, which do not depend on the machine; times do"
 
 
@@ -66,12 +80,14 @@ def _head(results: Sequence[Result], failed: Mapping[str, str]) -> list[str]:
     left = sorted(set(harness.names()) - {r.name for r in results} - set(failed))
     form = "the quick forms, rougher than the full ones" if first.quick else "the full forms"
     form += f" (left out: {', '.join(left)})" if left else ""
+    less = [] if first.quick else ["", *(f"- {line}" for line in LESS)]
     return [
         f"`scenewright bench all{' --quick' if first.quick else ''}` wrote this page: {len(results)} benchmarks, "
         f"{form}, on revision {first.revision or 'unknown'}, in {duration(seconds)}. Every chart and figure here is of "
         f"this one revision; {_ONCE}.",
         "",
         f"{told}.",
+        *less,
         *(["", *_failures(failed)] if failed else []),
     ]
 

@@ -32,6 +32,8 @@ TOGETHER = frozenset(
 )
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
 LONG = frozenset({"edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure", "view"})
+# Parts that whole runs leave out, with the reason.
+LEFT_OUT = {"edits graded": "its pictures are graded by eye; `scenewright bench edits` makes them"}
 # How whole runs divide benchmarks: parts that share the cores, a job each, and parts that are timed by the clock.
 SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "select": (
@@ -40,13 +42,14 @@ SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     ),
     "ask": (("geometry",), ("written", "stability", "routing", "views", "vision", "sight", "judge")),
     "plan": (("nouns",),),
+    "edits": (("colour",), ("checks",)),
     "view": (("faults",),),
 }  # fmt: skip
 TIMED_PARTS: Mapping[str, tuple[str, ...]] = {
-    "select": ("costs",), "ask": ("speed",), "plan": ("timed",), "view": ("browser", "words")
+    "edits": (), "select": ("costs",), "ask": ("speed",), "plan": ("timed",), "view": ("browser", "words")
 }  # fmt: skip
 # The longest first, so that no core waits for a long job at the end.
-LONGEST = ("stability", "edits", "select captures", "fit_sizes", "slim", "ask geometry")
+LONGEST = ("slim", "stability", "select captures", "fit_sizes", "ask geometry", "edits checks", "edits colour")
 MOST_REPEATS = 3
 _STARTS = 5.0  # seconds that a process takes besides its measurement
 _CHANGED = "the source changed while it was measured; leave it alone until all is measured"
@@ -90,9 +93,17 @@ def jobs(names: Sequence[str], quick: bool) -> list[Job]:
             found.append(Job(name, (), name in TOGETHER))
             continue
         found += [Job(name, parts, True) for parts in SHARED_PARTS[name]]
-        found.append(Job(name, TIMED_PARTS[name]))
+        if TIMED_PARTS[name]:
+            found.append(Job(name, TIMED_PARTS[name]))
     last = len(LONGEST)
     return sorted(found, key=lambda j: (not j.shares, LONGEST.index(j.title) if j.title in LONGEST else last))
+
+
+def prepare(say: Callable[[str], None]) -> None:
+    """Fit the captures that several benchmarks look at, so that none of them waits for it, and no two do it twice."""
+    started = time.perf_counter()
+    subprocess.run([sys.executable, "-m", "scenewright.benchmarks._select.real.fitted"], check=False)
+    say(f"captures fitted, or kept from before: {time.perf_counter() - started:.0f} s")
 
 
 def measured(
