@@ -43,7 +43,7 @@ SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "ask": (("geometry",), ("written", "stability", "routing", "views", "vision", "sight", "judge")),
     "plan": (("nouns",),),
     "edits": (("colour",), ("checks",)),
-    "view": (("faults",),),
+    "view": (("faults", "levels"),),
 }  # fmt: skip
 TIMED_PARTS: Mapping[str, tuple[str, ...]] = {
     "edits": (), "select": ("costs",), "ask": ("speed",), "plan": ("timed",), "view": ("browser", "words")
