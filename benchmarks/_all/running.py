@@ -28,10 +28,23 @@ QUICK, WHOLE = 165.0, 3000.0
 QUICK_LIMIT, LIMIT = 150.0, 1500.0
 # Charted against bytes, timed in seconds of the processor, or without a chart of times: they share the cores.
 TOGETHER = frozenset(
-    {"edit", "edits", "files", "fill", "fit_sizes", "layout", "mcp", "restyle", "slim", "stability", "structure"}
+    {
+        "dream",
+        "edit",
+        "edits",
+        "files",
+        "fill",
+        "fit_sizes",
+        "layout",
+        "mcp",
+        "restyle",
+        "slim",
+        "stability",
+        "structure",
+    }
 )
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
-LONG = frozenset({"edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure", "view"})
+LONG = frozenset({"dream", "edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure", "view"})
 # Parts that whole runs leave out, with the reason.
 LEFT_OUT = {"edits graded": "its pictures are graded by eye; `scenewright bench edits` makes them"}
 # How whole runs divide benchmarks: parts that share the cores, a job each, and parts that are timed by the clock.
@@ -49,7 +62,7 @@ TIMED_PARTS: Mapping[str, tuple[str, ...]] = {
     "edits": (), "select": ("costs",), "ask": ("speed",), "plan": ("timed",), "view": ("browser", "words")
 }  # fmt: skip
 # The longest first, so that no core waits for a long job at the end.
-LONGEST = ("slim", "stability", "select captures", "fit_sizes", "ask geometry", "edits checks", "edits colour")
+LONGEST = ("slim", "stability", "dream", "select captures", "fit_sizes", "ask geometry", "edits checks", "edits colour")
 MOST_REPEATS = 3
 _STARTS = 5.0  # seconds that a process takes besides its measurement
 _CHANGED = "the source changed while it was measured; leave it alone until all is measured"

@@ -146,7 +146,8 @@ def test_every_benchmark_plugs_in() -> None:
     assert "render" in harness.names() and "harness" not in harness.names()
     for name in harness.names():
         module = importlib.import_module(f"scenewright.benchmarks.{name}")
-        assert list(inspect.signature(module.run).parameters) == ["quick"], name
+        wanted = ["quick", "parts"] if hasattr(module, "PARTS") else ["quick"]
+        assert list(inspect.signature(module.run).parameters) == wanted, name
         assert module.__doc__, name
 
 
