@@ -105,9 +105,13 @@ Vlm = Annotated[
     ),
 ]  # fmt: skip
 Assets = Annotated[
-    Path | None,
-    typer.Option("--assets", metavar="FOLDER", help="Insert the .glb and .ply files in this folder by their names."),
-]
+    str | None,
+    typer.Option(
+        "--assets", metavar="FOLDER|dream:SPEC",
+        help="Your own assets: the .glb and .ply files of a folder, by their names; or 'dream:diffusers:FOLDER' or "
+        "'dream:command:PROGRAM {prompt} {output}', which make what the library does not draw.",
+    ),
+]  # fmt: skip
 _INFILL = typer.Option(
     "--infill", metavar="NAME",
     help="What fills the surfaces that deleted, moved and replaced things hid: 'scene' (what is around them; the "

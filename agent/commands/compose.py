@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...gaussians.timing import timed
-from ..options import Budget, Debug, Effort, Force, Json, Planner, Seed, Size, View, Window
+from ..options import Assets, Budget, Debug, Effort, Force, Json, Planner, Seed, Size, View, Window
 from ..terminal.effort import dialled, tell
 from ..terminal.output import terminal
 
@@ -50,9 +50,7 @@ def command(
     picture: Annotated[
         Path | None, typer.Option("--picture", metavar="FILE", help="File for a picture of the scene (.png).")
     ] = None,
-    assets: Annotated[
-        Path | None, typer.Option("--assets", metavar="FOLDER", help="Use the .glb and .ply files in this folder.")
-    ] = None,
+    assets: Assets = None,
     best: Annotated[
         bool, typer.Option("--best", help="Write the best plausible scene even if wishes conflict.")
     ] = False,
@@ -99,10 +97,11 @@ def command(
     terminal.say("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in seconds.items()))
 
 
-def _check_paths(targets: _Targets, assets: Path | None) -> None:
+def _check_paths(targets: _Targets, assets: str | None) -> None:
     """Check before the work that all files can be written and the folder of assets exists. Raises UserError if a file
     would be overwritten, has the wrong suffix or no folder; or there is no folder of assets."""
     from ...gaussians.errors import UserError
+    from ...planners.rooms.own_assets import DREAM
     from ..output_files import refuse_existing, require_png
 
     wanted = [path for path in (targets.graph, targets.scene, targets.picture) if path is not None]
@@ -114,7 +113,7 @@ def _check_paths(targets: _Targets, assets: Path | None) -> None:
     for path in wanted:
         if not path.absolute().parent.is_dir():
             raise UserError(f"there is no folder {path.parent}; make it, or write {path.name} elsewhere")
-    if assets is not None and not assets.is_dir():
+    if assets is not None and not assets.startswith(DREAM) and not Path(assets).is_dir():
         raise UserError(f"{assets} is not a folder; give one that holds .glb or .ply files")
 
 

@@ -30,8 +30,9 @@ def command(
             "--model",
             metavar="SPEC",
             envvar=MODEL,
-            help="'diffusers:FOLDER' (Stable Diffusion 1 or 2; with --image, Image Variations), or 'library': the "
-            "nearest thing of the built-in library, without a model.",
+            help="'diffusers:FOLDER' (Stable Diffusion 1 or 2; with --image, Image Variations); 'command:PROGRAM "
+            "{prompt} {image} {output}', any program that writes Gaussians; or 'library': the nearest thing of the "
+            "built-in library, without a model.",
         ),
     ] = None,
     image: Annotated[
@@ -62,6 +63,12 @@ def command(
     pictures: Annotated[
         Path | None, typer.Option("--pictures", metavar="FOLDER", help="Write a picture of the object on the way here.")
     ] = None,
+    up: Annotated[
+        Literal["auto", "x", "y", "z"],
+        typer.Option(
+            "--up", help="Axis that points up in what a program writes; auto: y, or as the kind's size tells."
+        ),
+    ] = "auto",
     device: Annotated[
         Literal["auto", "cpu", "cuda"],
         typer.Option("--device", help="Where to draw; auto: an NVIDIA GPU if there is one and gsplat is installed."),
@@ -79,7 +86,9 @@ def command(
     import numpy as np
 
     from ...gaussians.dream import denoisers
+    from ...gaussians.dream.command import PREFIX
     from ...gaussians.dream.dreaming import Settings, dream
+    from ...gaussians.dream.generating import from_command
     from ...gaussians.dream.prior import library_thing, standing, start_for
     from ...gaussians.errors import UserError
     from ...gaussians.files import save
@@ -91,6 +100,8 @@ def command(
     if height is not None and not 0.005 <= height <= 100:
         raise UserError(f"--height is between 0.005 and 100 metres, got {height:g}")
     _check_targets(output, pictures, force)
+    if minutes is not None and not 0 < minutes < 10_000:
+        raise UserError(f"--minutes is above 0, got {minutes:g}")
     if model is None:
         raise UserError(_without_model(prompt))
     if model == LIBRARY:
@@ -100,6 +111,14 @@ def command(
                         {"output": str(output), "gaussians": len(scene.cloud), "model": LIBRARY})  # fmt: skip
         return
     seconds = None if steps is not None else 60 * (10.0 if minutes is None else minutes)
+    if model.startswith(PREFIX):
+        if seconds is None:
+            raise UserError("--steps are for score distillation; a program gets --minutes")
+        scene, axis = from_command(model, prompt, image, seconds, up, height)
+        save(scene, output, force=force)
+        terminal.result(f"{output}: {len(scene.cloud):,} Gaussians, their {axis} axis was up",
+                        {"output": str(output), "gaussians": len(scene.cloud), "model": model, "up": axis})  # fmt: skip
+        return
     settings = Settings(seconds, steps, size, max_gaussians, seed=seed, device=resolve_device(device))
     first, told = start_for(start, prompt, max_gaussians, np.random.default_rng(seed), seed)
     knows = denoisers.load(model, prompt, image, guidance)

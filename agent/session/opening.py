@@ -60,7 +60,7 @@ class SessionOptions:
     judge: str | None = None
     vlm: str = "auto"
     accept_unconfirmed: bool = False
-    assets: Path | None = None
+    assets: str | None = None
     infill: str = "scene"
     capture: Path | None = None
     restyle: str | None = None

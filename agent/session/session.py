@@ -19,6 +19,7 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
+from ...planners.rooms.own_assets import own_assets
 from . import log as session_log
 from .asker import FIRST_VIEWS, Asker, see_answer
 from .dialled import SessionDial
@@ -27,7 +28,6 @@ from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
 from .observation import graph_of, picture_of
-from .own_assets import own_assets
 from .own_references import own_references
 from .picture_models import infill_of, photographed, restyler_of
 from .plan_runner import PlanFailed, has_queries, run_plan

@@ -32,9 +32,9 @@ from ...gaussians.timing import timed
 from ...gaussians.world import everyday
 from ...gaussians.world.box import Box
 from ...tools.field_update import NewObject, append_objects
-from .asset_folder import AssetFolder
 from .designs import AssetMaker
 from .node import Drawn, Node, NodeId
+from .own_assets import own_assets
 from .rest_heights import loads, rest_boxes
 from .surfacing import COMPOSED_COVER, with_materials
 
@@ -79,7 +79,7 @@ def build(
     graph: Drawn,
     *,
     seed: int = 0,
-    assets: Path | None = None,
+    assets: str | Path | None = None,
     detail: float = 1.0,
     ceiling: bool | None = None,
     look: Look = ANY_LOOK,
@@ -92,7 +92,7 @@ def construct(
     graph: Drawn,
     *,
     seed: int = 0,
-    assets: Path | None = None,
+    assets: str | Path | None = None,
     detail: float = 1.0,
     ceiling: bool | None = None,
     look: Look = ANY_LOOK,
@@ -103,7 +103,8 @@ def construct(
     Args:
         graph: z up, metres; it may have faults (`scenewright check` reports them).
         seed: chooses designs, light, floor and paint.
-        assets: folder of .glb and .ply files. A file with the name of a node is preferred to the asset library; one
+        assets: folder of .glb and .ply files, or what makes things that the library does not draw ("dream:...", see
+            `own_assets`). A file with the name of a node is preferred to the asset library; one
             with a similar name is used only if the library has no such kind.
         detail: factor on the number of Gaussians, 0.05 to 8.
         ceiling: whether to close the room above; None closes it if something hangs from it.
@@ -118,7 +119,7 @@ def construct(
     seconds: dict[str, float] = {}
     drawn = [n for n in graph.nodes if n.label.lower().strip() not in STRUCTURE or n.label.lower().strip() == "wall"]
     with timed(seconds, "assets"):
-        maker = AssetMaker(seed, detail, AssetFolder.read(assets) if assets is not None else None)
+        maker = AssetMaker(seed, detail, own_assets(assets))
         carried = loads(graph)
         made = {n.id: maker.make(n, carried.get(n.id, ())) for n in drawn}
     things = {key: one.asset for key, one in made.items()}

@@ -22,9 +22,9 @@ from ...gaussians.assets.modeling.solids import solid
 from ...gaussians.camera import Vec3
 from ...gaussians.color import BASIC, Rgb, parse, plain_color, shade_of
 from ...gaussians.world import everyday, kinds
-from .asset_folder import AssetFolder
 from .color_words import NO_COLOR, color_of, hex_of
 from .node import Node
+from .own_assets import OwnAssets
 from .rest_heights import Load, level_error
 
 Array = NDArray[np.float64]
@@ -54,12 +54,12 @@ class AssetMaker:
     Attributes:
         seed: what varies between two scenes of one graph.
         detail: factor on the number of Gaussians.
-        folder_assets: a user's folder of assets, or None.
+        own: a user's own assets, or None.
     """
 
     seed: int
     detail: float
-    folder_assets: AssetFolder | None = None
+    own: OwnAssets | None = None
     _done: dict[tuple[object, ...], Made] = field(default_factory=dict)
 
     def make(self, node: Node, loads: Sequence[Load] = ()) -> Made:
@@ -78,8 +78,8 @@ class AssetMaker:
     def _made(self, node: Node, size: Vec3, loads: Sequence[Load]) -> Made:
         said = f"{node.label or 'thing'} ({node.id})"
         rgb, notes = _shade(node, said)
-        if self.folder_assets is not None:
-            taken = self.folder_assets.take(node.label, size, rgb, exact=kind_of(node.label) is not None)
+        if self.own is not None:
+            taken = self.own.take(node.label, size, rgb, exact=kind_of(node.label) is not None)
             notes += taken.notes
             if taken.asset is not None:
                 return Made(taken.asset, notes)

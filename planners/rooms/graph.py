@@ -101,12 +101,12 @@ class SceneGraph(BaseModel):
         except ValidationError as error:
             raise FileError(f"{path} is no scene graph: {_first_wrong(error)}") from error
 
-    def build(self, *, seed: int = 0, assets: Path | None = None, detail: float = 1.0) -> Scene:
+    def build(self, *, seed: int = 0, assets: str | Path | None = None, detail: float = 1.0) -> Scene:
         """The scene that it describes, ready to be edited and asked (see `planners.rooms.build.construct`).
 
         Args:
             seed: chooses designs, light and paint; the same seed gives the same bytes.
-            assets: a folder of .glb and .ply files to take things from.
+            assets: a folder of .glb and .ply files to take things from, or "dream:..." (`own_assets.own_assets`).
             detail: factor on the number of Gaussians.
 
         Raises:

@@ -1,0 +1,88 @@
+"""Objects from any program that turns words or a picture into Gaussians: `command:"PROGRAM {prompt} {output}"`.
+
+The program runs without a shell, so that no word of a prompt is ever read as a command.
+"""
+
+from __future__ import annotations
+
+import shlex
+import subprocess
+import tempfile
+from pathlib import Path
+
+from ..cloud import GaussianCloud
+from ..errors import BackendError, ScenewrightError, UserError
+
+PREFIX = "command:"
+PLACES = ("{prompt}", "{image}", "{output}")
+OUTPUT = "object.ply"
+MOST = 2_000_000  # Gaussians of an object
+_TOLD = 300  # characters of what a program says when it fails
+
+
+def arguments(spec: str, prompt: str, image: Path | None, output: Path) -> list[str]:
+    """The program and its arguments, with words and paths filled in.
+
+    Args:
+        spec: "command:PROGRAM ARGUMENT ...", quoted as in a shell; `{output}` has to be in it, and `{image}` where a
+            picture is given.
+
+    Raises:
+        UserError: the specification has no program, a quote that is not closed, or not the places that are needed.
+    """
+    try:
+        parts = shlex.split(spec.removeprefix(PREFIX))
+    except ValueError as error:
+        raise UserError(f"cannot read {spec!r}: {error}; close its quotes") from error
+    if not parts or not any("{output}" in part for part in parts):
+        raise UserError(f'{spec!r} names no program with {{output}}; say command:"PROGRAM {{prompt}} {{output}}"')
+    if image is not None and not any("{image}" in part for part in parts):
+        raise UserError(f"{spec!r} takes no picture; put {{image}} where its path belongs, or leave out --image")
+    if image is None and any("{image}" in part for part in parts):
+        raise UserError(f"{spec!r} wants a picture; give --image FILE")
+    filled = dict(zip(PLACES, (prompt, str(image or ""), str(output)), strict=True))
+
+    def fill(part: str) -> str:
+        for place in PLACES:  # from left to right, once: what a prompt says is not filled in again
+            before, found, after = part.partition(place)
+            if found:
+                return fill(before) + filled[place] + fill(after)
+        return part
+
+    return [fill(part) for part in parts]
+
+
+def run(spec: str, prompt: str, image: Path | None, seconds: float) -> GaussianCloud:
+    """The Gaussians that a program writes, in the program's own axes.
+
+    Raises:
+        UserError: see `arguments`.
+        BackendError: the program is not there, fails, takes longer than `seconds`, or writes no Gaussians that can be
+            read.
+    """
+    from ..files import load
+
+    with tempfile.TemporaryDirectory(prefix="scenewright-") as folder:
+        output = Path(folder) / OUTPUT
+        command = arguments(spec, prompt, None if image is None else image.absolute(), output)
+        try:
+            done = subprocess.run(command, capture_output=True, timeout=seconds, check=False, stdin=subprocess.DEVNULL)
+        except FileNotFoundError as error:
+            raise BackendError(f"there is no program {command[0]!r}; give its path in {PREFIX}...") from error
+        except subprocess.TimeoutExpired as error:
+            raise BackendError(f"{command[0]} took longer than {seconds:.0f} s; give it more with --minutes") from error
+        except OSError as error:
+            raise BackendError(f"cannot run {command[0]}: {error.strerror or error}") from error
+        if done.returncode:
+            said = done.stderr.decode("utf-8", "replace").strip()[-_TOLD:] or "it says nothing"
+            raise BackendError(f"{command[0]} ended with {done.returncode}: {said}")
+        written = sorted(p for p in Path(folder).iterdir() if p.is_file())
+        if not written:
+            raise BackendError(f"{command[0]} wrote nothing to {{output}} ({OUTPUT})")
+        try:
+            cloud = load(output if output in written else written[0]).cloud
+        except ScenewrightError as error:
+            raise BackendError(f"what {command[0]} wrote cannot be used: {error}") from error
+    if not 0 < len(cloud) <= MOST:
+        raise BackendError(f"{command[0]} wrote {len(cloud):,} Gaussians; an object has 1 to {MOST:,}")
+    return cloud
