@@ -7,19 +7,20 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..gaussians.errors import BackendError
-from ._view import drawing, faults, levels, words
-from .harness import Metric, Result
+from ._view import drawing, engines, faults, levels, words
+from .harness import Direction, Metric, Result
 
 GOAL_PSNR, GOAL_RIGHT, GOAL_CLICK_MS, GOAL_WORDS_SECONDS, GOAL_BYTES = 30.0, 0.95, 100.0, 0.5, 1.2
 GOAL_OVER_DROPPING = 1.0
+GOAL_BESIDE = 0.8  # of the better engine's frame time
 
 
-PARTS = ("browser", "words", "levels", "faults")
+PARTS = ("browser", "beside", "words", "levels", "faults")
 
 
 def run(quick: bool, parts: Sequence[str] = PARTS) -> Result:
     """Measure all of it; where no browser can be driven, all but the rows of drawing, and say so."""
-    measures = {"browser": _browser, "words": _words, "levels": _levels, "faults": _faults}
+    measures = {"browser": _browser, "beside": _beside, "words": _words, "levels": _levels, "faults": _faults}
     found = [measures[name](quick) for name in PARTS if name in parts]
     return Result(
         title="the page in a browser with software WebGL, and its server",
@@ -30,6 +31,7 @@ def run(quick: bool, parts: Sequence[str] = PARTS) -> Result:
             *(note for _, notes in found for note in notes),
             "opened: from the address of an exported file to its first whole picture.",
             "frame: projecting, blending and presenting; the sort is a worker's and not in it.",
+            "beside: a frame from the camera's move to its pixels, while each engine sorts.",
             "words.seconds: to the last byte of the change at a client, without the browser.",
             "level: PSNR to the scene before writing; over_dropping: against leaving out the least visible of it.",
             "lod: drawn as render --lod does, against the finest level; draw: processor time of a picture.",
@@ -58,6 +60,37 @@ def _browser(quick: bool) -> _Found:
             Metric(f"{name}.{key}", value, "ms", "lower", 0.4) for key, value in row.items() if key.startswith("frame_")
         ]
     return metrics, []
+
+
+def _beside(quick: bool) -> _Found:
+    try:
+        rows, left_out = engines.measure(quick)
+    except BackendError as error:
+        return [], [f"the rows beside other engines were left out: {error}."]
+    return beside(rows), left_out
+
+
+def beside(rows: list[engines.Row]) -> list[Metric]:
+    """Frames and processor time of each engine, and ours over the better other one."""
+    metrics = []
+    cases = dict.fromkeys((row.driver, row.scene, row.size) for row in rows)
+    for case in cases:
+        key = ".".join(("beside", *case))
+        here = {row.engine: row for row in rows if (row.driver, row.scene, row.size) == case}
+        for name, row in here.items():
+            way: Direction = "lower" if name == engines.OURS else "neither"
+            metrics += [
+                Metric(f"{key}.{name}.frame", row.frame, "ms", way, 0.4),
+                Metric(f"{key}.{name}.cpu", row.cpu, "ms", way, 0.2),
+                Metric(f"{key}.{name}.psnr", row.psnr, "dB"),
+            ]
+        ours, others = here.pop(engines.OURS), here.values()
+        if others:
+            frame = ours.frame / min(row.frame for row in others)
+            cpu = ours.cpu / min(row.cpu for row in others)
+            metrics.append(Metric(f"{key}.ratio", frame, "x", "lower", 0.3, GOAL_BESIDE))
+            metrics.append(Metric(f"{key}.cpu_ratio", cpu, "x", "lower", 0.15, GOAL_BESIDE))
+    return metrics
 
 
 def _words(quick: bool) -> _Found:

@@ -241,3 +241,44 @@ def test_the_slider_shows_the_scene_before_on_its_left(page: Any) -> None:
     assert psnr(drawn[:, half:], after[:, half:]) > 30 > psnr(drawn[:, half:], before[:, half:])
     page.evaluate("() => { viewer.setBefore(null); viewer.compare = null }")
     assert psnr(picture(page), after) > 30
+
+
+def lit(means: torch.Tensor, scales: torch.Tensor, opacities: torch.Tensor, colors: torch.Tensor) -> Scene:
+    """Upright Gaussians of plain colours, in [0, 1]."""
+    turn = torch.tensor([1.0, 0, 0, 0]).expand(len(means), 4)
+    return Scene(GaussianCloud.create(means, turn, scales, opacities, ((colors - 0.5) / 0.28209479177)[:, None]))
+
+
+def test_every_footprint_of_a_full_draw_call_is_whole(page: Any) -> None:
+    """16-bit indices begin a new strip at 65,535, the last corner of the 16,384th footprint: the large one here."""
+    made = torch.Generator().manual_seed(2)
+    near = 0.5 * torch.rand(16_383, 3, generator=made) - torch.tensor([0.25, 3.0, 0.0])
+    means = torch.cat([near, torch.tensor([[0.0, 0.0, 0.1]])])
+    scales = torch.full((16_384, 3), 1e-3)
+    scales[-1] = 0.6
+    opacities = torch.full((16_384,), 0.02)
+    opacities[-1] = 0.95
+    scene = lit(means, scales, opacities, torch.tensor([0.9, 0.6, 0.2]).expand(16_384, 3))
+    shown(page, scene)
+    drawn, wanted = picture(page), render(scene.cloud, CAMERA).to_uint8()
+    keep("full call", drawn, wanted)
+    assert psnr(drawn, wanted) > 45
+
+
+def test_what_is_behind_an_opaque_wall_is_left_out_and_nothing_else(page: Any) -> None:
+    """A wall covers the left of the picture; later batches leave out what is wholly behind it."""
+    made = torch.Generator().manual_seed(3)
+    count = 6000
+    flat = torch.rand(count, 3, generator=made)
+    wall = torch.stack([2.4 * flat[:, 0] - 2.4, -1 + 0.01 * flat[:, 1], 3 * flat[:, 2] - 1.4], dim=1)
+    behind = torch.stack([5 * flat[:, 2] - 2.5, 1 + 0.5 * flat[:, 1], 4 * flat[:, 0] - 2], dim=1)
+    means = torch.cat([wall, behind])
+    scales = torch.full((2 * count, 3), 0.06)
+    scales[count:] = 0.01 + 0.12 * torch.rand(count, 1, generator=made) ** 3
+    colors = torch.rand(2 * count, 3, generator=made)
+    colors[:count] = torch.tensor([0.7, 0.4, 0.3])  # of one colour: its order is finer than the sort's 16 bits
+    scene = lit(means, scales, torch.full((2 * count,), 0.9), colors)
+    shown(page, scene)
+    drawn, wanted = picture(page), render(scene.cloud, CAMERA).to_uint8()
+    keep("wall", drawn, wanted)
+    assert psnr(drawn, wanted) > 45

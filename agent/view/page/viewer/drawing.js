@@ -1,17 +1,19 @@
-// The passes of a frame in WebGL2: project, draw nearest first in batches, close finished pixels between them, present.
+// The passes of a frame in WebGL2: project and draw nearest first, in batches; between them find the tiles behind which nothing is seen; present.
 
 import { WIDTH, allocate } from './splats.js';
 import * as shaders from './shaders.js';
 
-const CALL = 16384; // footprints a draw call: its 65,536 vertices have 16-bit indices
+const TILE = 8; // pixels along a side
+const BLOCK = 4; // tiles along a side of a block
+const CALL = 16383; // footprints a draw call: 16-bit indices, of which 65,535 would begin a new strip
 
 export class Drawing {
   constructor(gl) {
     this.gl = gl;
-    this.float = Boolean(gl.getExtension('EXT_color_buffer_float') || gl.getExtension('EXT_color_buffer_half_float'));
+    this.format = sumFormat(gl);
     this.programs = {
       splat: [false, true].map((marked) => program(gl, shaders.SPLAT_VERTEX, shaders.splat(marked))),
-      close: [false, true].map((marked) => program(gl, shaders.FULL, shaders.close(marked))),
+      cover: [[TILE, 'there.a < .999'], [BLOCK, 'there.r < .5']].map(([side, open]) => program(gl, shaders.FULL, shaders.cover(side, open))),
       present: [false, true].map((marked) => program(gl, shaders.FULL, shaders.present(marked))),
     };
     this.line = null; // around what is selected: its colour
@@ -34,12 +36,19 @@ export class Drawing {
     const { gl } = this;
     if (this.list !== list) this.setOrder(list);
     this.line = line;
-    this.project(splats, camera);
-    if (part) {
-      gl.enable(gl.SCISSOR_TEST);
-      gl.scissor(part[0], 0, part[1] - part[0], camera.height);
+    this.resize(camera.width, camera.height);
+    if (part) gl.scissor(part[0], 0, part[1] - part[0], camera.height);
+    let from = 0;
+    for (const share of [...batches, 1]) {
+      const to = share === 1 ? this.count : WIDTH * Math.round((this.count * share) / WIDTH);
+      if (to <= from) continue;
+      if (from) this.cover();
+      this.project(splats, camera, from, to);
+      this.blend(from, to, part);
+      from = to;
     }
-    this.blend(camera.width, camera.height, batches);
+    if (!from) this.blend(0, 0, part);
+    if (part) gl.enable(gl.SCISSOR_TEST);
     this.present(background, wide);
     gl.disable(gl.SCISSOR_TEST);
   }
@@ -78,19 +87,19 @@ export class Drawing {
     this.markCount = most + 1;
   }
 
-  // Footprints of the sorted slots as `camera` (Pinhole) sees them.
-  project(splats, camera) {
+  // Footprints of the sorted slots [from, to) as `camera` (Pinhole) sees them; from: a multiple of WIDTH, those before it are drawn.
+  project(splats, camera, from, to) {
     const { gl } = this;
     const name = `project${splats.degree}`;
     const { handle, at } = (this.programs[name] ??= program(gl, shaders.FULL, shaders.project(splats.degree)));
     gl.useProgram(handle);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.projected);
-    const rows = Math.ceil(this.count / WIDTH);
-    gl.viewport(0, 0, WIDTH, rows);
+    gl.viewport(0, from / WIDTH, WIDTH, Math.ceil((to - from) / WIDTH));
     gl.disable(gl.BLEND);
-    gl.disable(gl.DEPTH_TEST);
     const [geometry, shape, paint] = splats.textures;
-    bind(gl, at, { order: this.order, geometry, shape, paint, harmonics: splats.harmonics, marks: this.marks });
+    const [tiles, blocks] = this.covered.map(({ texture }) => texture);
+    bind(gl, at, { order: this.order, geometry, shape, paint, harmonics: splats.harmonics, marks: this.marks, tiles, blocks });
+    gl.uniform1i(at.covered, from ? 1 : 0);
     const { right, down, forward } = camera;
     gl.uniformMatrix3fv(at.view, false, [0, 1, 2].flatMap((i) => [right[i], down[i], forward[i]]));
     gl.uniform3fv(at.eye, camera.position);
@@ -104,58 +113,47 @@ export class Drawing {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  // Blend the footprints nearest first. batches: shares of them after which finished pixels are closed.
-  blend(width, height, batches) {
-    const { gl } = this;
-    this.resize(width, height);
-    gl.viewport(0, 0, width, height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets[0].frame);
-    gl.depthMask(true);
-    gl.clearColor(0, 0, 0, 0);
-    gl.clearDepth(1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    let from = 0;
-    for (const share of [...batches, 1]) {
-      const to = Math.round(this.count * share);
-      if (from) this.close();
-      this.splats(from, to);
-      from = to;
-    }
-  }
-
-  splats(from, to) {
+  // Blend the footprints [from, to), nearest first, behind those before them; part: the columns of pixels to draw, null for all.
+  blend(from, to, part) {
     const { gl } = this;
     const { handle, at } = this.programs.splat[this.line ? 1 : 0];
-    const { width, height } = this.targets[0];
+    const { width, height, frame } = this.target;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.viewport(0, 0, width, height);
+    if (part) gl.enable(gl.SCISSOR_TEST);
+    if (!from) {
+      gl.clearColor(0, 0, 0, 0);
+      gl.clear(gl.COLOR_BUFFER_BIT);
+    }
     gl.useProgram(handle);
     bind(gl, at, { places: this.place, looks: this.look });
     gl.uniform2f(at.size, width, height);
     gl.bindVertexArray(this.quads);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE_MINUS_DST_ALPHA, gl.ONE);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.LESS);
-    gl.depthMask(false);
     for (let first = from; first < to; first += CALL) {
       gl.uniform1i(at.first, first);
       gl.drawElements(gl.TRIANGLES, 6 * Math.min(CALL, to - first), gl.UNSIGNED_SHORT, 0);
     }
+    gl.disable(gl.SCISSOR_TEST);
   }
 
-  close() {
+  // Which tiles of the picture so far, and which blocks of tiles, let nothing behind them be seen.
+  cover() {
     const { gl } = this;
-    const [now, next] = this.targets;
-    const { handle, at } = this.programs.close[this.line ? 1 : 0];
-    gl.useProgram(handle);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, next.frame);
-    bind(gl, at, { picture: now.texture, selection: now.marks });
     gl.disable(gl.BLEND);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.ALWAYS);
-    gl.depthMask(true);
     gl.bindVertexArray(this.empty);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    this.targets.reverse();
+    let from = this.target;
+    this.covered.forEach((into, level) => {
+      const { handle, at } = this.programs.cover[level];
+      gl.useProgram(handle);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, into.frame);
+      gl.viewport(0, 0, into.width, into.height);
+      bind(gl, at, { picture: from.texture });
+      gl.uniform2i(at.size, from.width, from.height);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      from = into;
+    });
   }
 
   // The picture over `background` onto the canvas.
@@ -165,8 +163,8 @@ export class Drawing {
     gl.useProgram(handle);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.BLEND);
-    gl.disable(gl.DEPTH_TEST);
-    const { texture, marks, width, height } = this.targets[0];
+    const { texture, marks, width, height } = this.target;
+    gl.viewport(0, 0, width, height);
     bind(gl, at, { picture: texture, selection: marks });
     gl.uniform3fv(at.background, background);
     if (this.line) {
@@ -181,24 +179,35 @@ export class Drawing {
   resize(width, height) {
     const { gl } = this;
     const marked = Boolean(this.line);
-    const now = this.targets?.[0];
+    const now = this.target;
     if (now && now.width === width && now.height === height && Boolean(now.marks) === marked) return;
-    this.targets?.forEach(({ texture, marks, frame }) => {
-      [texture, marks].forEach((made) => gl.deleteTexture(made));
-      gl.deleteFramebuffer(frame);
-    });
-    gl.deleteRenderbuffer(this.depth ?? null);
-    this.depth = gl.createRenderbuffer();
-    gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
-    gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT16, width, height);
-    this.targets = [0, 1].map(() => {
-      const texture = allocate(gl, this.float ? gl.RGBA16F : gl.RGBA8, width, height);
-      const marks = marked ? allocate(gl, gl.RGBA8, width, height) : null;
-      const frame = framebuffer(gl, marks ? [texture, marks] : [texture]);
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, this.depth);
-      return { texture, marks, frame, width, height };
+    [now, ...(this.covered ?? [])].forEach((old) => old && free(gl, old));
+    const texture = allocate(gl, this.format, width, height);
+    const marks = marked ? allocate(gl, gl.RGBA8, width, height) : null;
+    this.target = { texture, marks, frame: framebuffer(gl, marks ? [texture, marks] : [texture]), width, height };
+    this.covered = [TILE, TILE * BLOCK].map((side) => {
+      const [wide, high] = [width, height].map((size) => Math.ceil(size / side));
+      const texture = allocate(gl, gl.R8, wide, high);
+      return { texture, frame: framebuffer(gl, [texture]), width: wide, height: high };
     });
   }
+}
+
+// The format that colours are summed in. A program that draws on the processor converts 16-bit floats at every step and
+// is twice as fast with 32 bits; a graphics card has half the traffic with 16.
+function sumFormat(gl) {
+  const float = gl.getExtension('EXT_color_buffer_float');
+  const told = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = told ? gl.getParameter(told.UNMASKED_RENDERER_WEBGL) : '';
+  const software = /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+  if (software && float && gl.getExtension('EXT_float_blend')) return gl.RGBA32F;
+  return float || gl.getExtension('EXT_color_buffer_half_float') ? gl.RGBA16F : gl.RGBA8;
+}
+
+function free(gl, { texture, marks, frame }) {
+  gl.deleteTexture(texture);
+  gl.deleteTexture(marks ?? null);
+  gl.deleteFramebuffer(frame);
 }
 
 function framebuffer(gl, textures) {

@@ -1,5 +1,5 @@
 // The shaders. `PROJECT` turns the sorted slots into footprints in the image, one texel each; `SPLAT` draws these nearest first;
-// `CLOSE` marks the pixels behind which nothing can be seen; `PRESENT` puts the result over the background.
+// `COVER` finds the tiles behind which nothing can be seen; `PRESENT` puts the result over the background.
 // The convention is that of gaussians/render/convention.py, the harmonics those of gaussians/harmonics.py.
 
 const HEAD = `#version 300 es
@@ -19,6 +19,8 @@ void main() {
 export const project = (degree) => `${HEAD}
 #define DEGREE ${degree}
 uniform usampler2D order, geometry, shape, paint, harmonics, marks;
+uniform sampler2D tiles, blocks; // of 8 and of 32 pixels a side: 1 where what is behind cannot be seen
+uniform bool covered; // whether they are to be looked at
 uniform mat3 view; // world to camera
 uniform vec3 eye;
 uniform vec4 tangents; // lowest and highest along x, along y
@@ -76,6 +78,21 @@ vec3 bands(int slot, vec3 d) {
 }
 #endif
 
+// Whether all tiles are covered that pixels [low, high] of the picture (from its lower left) touch; false for large footprints.
+bool hidden(vec2 low, vec2 high) {
+  vec2 reach = high - low;
+  if (max(reach.x, reach.y) > 64.) return false;
+  bool fine = max(reach.x, reach.y) <= 16.;
+  int side = fine ? 8 : 32;
+  ivec2 first = ivec2(low) / side, last = ivec2(high) / side;
+  for (int y = first.y; y <= last.y; y++) {
+    for (int x = first.x; x <= last.x; x++) {
+      if ((fine ? texelFetch(tiles, ivec2(x, y), 0) : texelFetch(blocks, ivec2(x, y), 0)).x < .5) return false;
+    }
+  }
+  return true;
+}
+
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   place = uvec4(0u);
@@ -116,6 +133,8 @@ void main() {
   vec2 centre = t * focal + .5 * size;
   vec2 box = reach * sqrt(vec2(xx, yy));
   if (any(lessThan(centre + box, vec2(0.))) || any(greaterThan(centre - box, size))) return;
+  vec2 middle = vec2(centre.x, size.y - centre.y);
+  if (covered && hidden(clamp(middle - box, vec2(0.), size - 1.), clamp(middle + box, vec2(0.), size - 1.))) return;
 
   vec3 color = .28209479177 * vec3(unpackHalf2x16(c.x), unpackHalf2x16(c.y).x) + .5;
 #if DEGREE > 0
@@ -134,7 +153,7 @@ void main() {
     floatBitsToUint(log2(opacity)));
 }`;
 
-// Four corners a footprint, 16,384 footprints a call (its indices have 16 bits); first: number of the call's first footprint.
+// Four corners a footprint, 16,383 footprints a call (its indices have 16 bits); first: number of the call's first footprint.
 export const SPLAT_VERTEX = `${HEAD}
 uniform usampler2D places, looks;
 uniform int first;
@@ -162,8 +181,7 @@ void main() {
   selected = rest.y;
 }`;
 
-// Nothing is discarded, so that closed pixels fail the depth test before this runs. With `marked` a second target takes the share of
-// each pixel that is selected, beside an alpha of its own, which blending needs.
+// With `marked` a second target takes the share of each pixel that is selected, beside an alpha of its own, which blending needs.
 export const splat = (marked) => `${HEAD}
 flat in vec4 paint;
 flat in float selected;
@@ -177,16 +195,22 @@ void main() {
   ${marked ? 'mark = vec4(selected * alpha, 0., 0., alpha);' : ''}
 }`;
 
-// Copies the picture so far and closes finished pixels: what is behind them changes an 8-bit value by half a step at most.
-export const close = (marked) => `${HEAD}
-uniform sampler2D picture, selection;
+// 1 where all of a square of `side` texels of the picture is finished: what is behind changes an 8-bit value by a quarter of a step at most.
+// open: whether the texel `there` is not finished.
+export const cover = (side, open) => `${HEAD}
+uniform sampler2D picture;
+uniform ivec2 size; // of the picture
 layout(location = 0) out vec4 result;
-${marked ? 'layout(location = 1) out vec4 mark;' : ''}
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  result = texelFetch(picture, at, 0);
-  ${marked ? 'mark = texelFetch(selection, at, 0);' : ''}
-  gl_FragDepth = result.a > .998 ? 0. : 1.;
+  result = vec4(0.);
+  ivec2 first = ivec2(gl_FragCoord.xy) * ${side}, last = min(first + ${side}, size);
+  for (int y = first.y; y < last.y; y++) {
+    for (int x = first.x; x < last.x; x++) {
+      vec4 there = texelFetch(picture, ivec2(x, y), 0);
+      if (${open}) return;
+    }
+  }
+  result = vec4(1.);
 }`;
 
 // Over the background; with `marked` a line runs just outside what is selected, whose own colours stay as they are.

@@ -295,8 +295,7 @@ export class SplatViewer {
     this.fresh = this.sortedNumber === this.number;
     Object.assign(this.stats, { frame_ms: performance.now() - began, drawn: this.ready.count, slots: this.splats.slots });
     this.onFrame?.(this.stats);
-    if (this.fresh) this.settle();
-    else this.asked ??= requestAnimationFrame(() => this.tick());
+    if (this.fresh) this.settle(); // else the sorting worker answers soon, and the next picture is drawn then
   }
 
   settle() {
