@@ -12,6 +12,7 @@ import base64
 import http.server
 import io
 import json
+import math
 import os
 import shutil
 import statistics
@@ -190,7 +191,8 @@ def _walked(
 def _psnr(png: bytes, cloud: GaussianCloud, view: View, size: tuple[int, int]) -> float:
     drawn = np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(float)
     wanted = render(cloud, view.camera(size)).to_uint8()
-    return float(10 * np.log10(255**2 / max(1e-4, np.mean((drawn - wanted) ** 2))))
+    error = float(np.mean((drawn - wanted) ** 2))
+    return 10 * math.log10(255**2 / max(1e-4, error))
 
 
 def _processor_seconds() -> float:
