@@ -59,7 +59,7 @@ SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "view": (("faults", "levels"),),
 }  # fmt: skip
 TIMED_PARTS: Mapping[str, tuple[str, ...]] = {
-    "edits": (), "select": ("costs",), "ask": ("speed",), "plan": ("timed",), "view": ("browser", "words")
+    "edits": (), "select": ("costs",), "ask": ("speed",), "plan": ("timed",), "view": ("browser", "beside", "words")
 }  # fmt: skip
 # The longest first, so that no core waits for a long job at the end.
 LONGEST = ("slim", "stability", "dream", "select captures", "fit_sizes", "ask geometry", "edits checks", "edits colour")
