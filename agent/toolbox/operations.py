@@ -11,7 +11,7 @@ from ...gaussians.errors import UserError
 from ...gaussians.language.query.nested import without_confirmation
 from ...planners.plan import EditPlan
 from ...tools import registry
-from ...tools.operation import EditOp
+from ...tools.operation import EditOp, Length
 from . import views
 from .limits import ArgumentError
 from .reply import Reply, edited
@@ -63,7 +63,14 @@ def _parsed(name: str, given: dict[str, Any]) -> tuple[EditOp, bool]:
 
 
 def operation_words(op: EditOp) -> str:
-    """The operation in words, for the history and the log."""
+    """The operation in words, for the history and the log: "move it: direction up, distance 0.45 m"."""
     fields = op.model_dump(exclude_defaults=True, exclude={"op", "target"}, mode="json")
-    more = ", ".join(f"{k} {json.dumps(v, ensure_ascii=False)}" for k, v in fields.items())
-    return f"{op.op} {op.subject()} {more}".strip()[:400]
+    more = ", ".join(f"{name} {_in_words(getattr(op, name), value)}" for name, value in fields.items())
+    return (f"{op.op} {op.subject()}: {more}" if more else f"{op.op} {op.subject()}")[:400]
+
+
+def _in_words(field: object, dumped: Any) -> str:
+    """A field as a person writes it: a text without quotation marks, a length with its unit; others as JSON."""
+    if isinstance(field, Length):
+        return f"{field.value:g} {field.unit}"
+    return dumped if isinstance(dumped, str) else json.dumps(dumped, ensure_ascii=False)

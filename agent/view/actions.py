@@ -111,9 +111,10 @@ class Actions:
 
     def _refused(self, error: ScenewrightError) -> Reply:
         first, *lines = self._dialogue.refused(error).lines
-        question = self._session.question
-        if isinstance(error, InstructionError) and question is not None:
-            first, lines = numbered(first, question.candidates), lines[-1:]  # the picture shows the candidates
+        question = self._session.question if isinstance(error, InstructionError) else None
+        first = numbered(first, question.candidates if question is not None else ())
+        if question is not None:
+            lines = lines[-1:]  # the picture shows the candidates
         return {**_ANSWER, "ok": False, "text": first, "lines": lines}
 
     def _stepped(self, step: Step) -> Reply:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...gaussians.cloud import NO_GROUP
 from ...gaussians.color import lab_to_rgb
+from ...gaussians.color import name_of as color_name
 from ...gaussians.render.convention import near_plane
 from ...gaussians.rows import rows_of_ids
 from ...gaussians.world.box import Box
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from ..session.session import Session
     from .changes import Shown
 
+_GROUP = re.compile(r" \(group \d+\)")  # as `Candidate.describe` writes it
 HISTORY = 200  # steps that are told
 _BOUNDS = 0.01  # share of the centres on each side that may lie outside the bounds of a scene: floaters
 _SAMPLE = 20_000  # Gaussians from which the box of a selection is measured
@@ -108,10 +111,11 @@ def names(scene: Scene) -> dict[int, str]:
 
 
 def name_of(group: Group) -> str:
-    """The name of a thing as the page shows it."""
-    from ..terminal.thing_names import name_of_thing
+    """The name of a thing as the page shows it; where that is not sure, its colour: "gray thing"."""
+    from ..terminal.thing_names import NAME_THRESHOLD
 
-    return name_of_thing(group)
+    sure = group.label and group.label_score >= NAME_THRESHOLD
+    return group.label if sure else f"{color_name(group.lab)} thing"
 
 
 @lru_cache(maxsize=4096)
@@ -175,8 +179,8 @@ def _question(session: Session) -> dict[str, Any] | None:
 
 
 def numbered(text: str, candidates: Sequence[Candidate]) -> str:
-    """A text that lists candidates, with their numbers in the picture in place of those of their groups."""
+    """A text that lists candidates, with their numbers in the picture; the page shows no numbers of groups."""
     for number, candidate in enumerate(candidates, start=1):
         if candidate.group >= 0:
             text = text.replace(candidate.describe(), f"{candidate.name} ({number})", 1)
-    return text
+    return _GROUP.sub("", text)

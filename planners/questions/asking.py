@@ -261,4 +261,5 @@ def _value(given: Answer | None) -> str:
     value: Mapping[str, Any] = given.to_json()
     said = value["answer"]
     said = ", ".join(said) if isinstance(said, list) else said
-    return f" ({said}{' ' + given.unit if given.unit else ''})"
+    unit = f" {given.unit}" if given.unit and isinstance(said, int | float) else ""  # texts hold their units
+    return f" ({said}{unit})"

@@ -88,7 +88,7 @@ function drawHints(place, state, say) {
   place.hidden = state.turns.length > 0 || state.connection !== "ready";
   if (place.hidden) return;
   const names = [...new Set(state.things.map((thing) => thing.name))].filter(Boolean);
-  const one = names.find((name) => !/wall|floor|ceiling/.test(name));
+  const one = names.find((name) => !/wall|floor|ceiling| thing$/.test(name)); // one whose name is sure
   const said = one ? [`What is next to the ${one}?`, `Make the ${one} teal`, `Look at the ${one}`] : ["What is in the room?", "Warmer light"];
   place.replaceChildren(
     el("p", {}, state.scene?.slots === 0 ? "The scene is empty. Say what to put into it." : "Say what to change, or ask. Click a thing, and “it” means what you clicked."),

@@ -12,6 +12,7 @@ import {Gizmo} from "./gizmo.js";
 import {keys} from "./keys.js";
 import {notice} from "./notice.js";
 import {moreButton, panels} from "./panels.js";
+import {keepPlace, takePlace} from "./place.js";
 import {selectedBar} from "./selected.js";
 import {selection} from "./selection.js";
 import {slider} from "./slider.js";
@@ -83,7 +84,7 @@ function onWelcome(scene) {
   document.title = `${scene.title} – Scenewright`;
   byId("title").textContent = scene.title;
   Object.assign(viewer.controls, {up: scene.up, floor: scene.floor, metres: scene.metres_per_unit});
-  if (first) lookFrom(scene.camera);
+  if (first && !takePlace(store, viewer)) lookFrom(scene.camera);
   if (scene.slots === 0) store.update({loaded: 1, revision: scene.revision, connection: "ready"});
 }
 
@@ -214,6 +215,7 @@ fillHelp(commands, [
 
 notice(store);
 keepTurns(store);
+keepPlace(store, viewer);
 chat({store, say, answer, point});
 things({store, point, select: (group, mode) => send({type: "select", mode, group})});
 selection({store, viewer, send, answer});

@@ -45,7 +45,11 @@ def refuse_non_edit(clause: Clause, sentence: Sequence[Word], mark: str) -> None
     first = next((t for t in texts if t not in ("and", "so", "well", "but", "ok", "okay", "hey", "hi", "please")), "")
     polite = {w for p in (*lexicon.FILLER, *lexicon.POLITE) for w in p} | lexicon.CHAT
     if first in lexicon.COMMANDS:
-        raise Refusal(f"{first} is a command of the session, not an edit", first, verdict="not_an_edit")
+        raise Refusal(
+            f"{first} is a command, not an edit; /help lists those of the chat and the page",
+            first,
+            verdict="not_an_edit",
+        )
     asks_for_edit = any(t.type in _EDIT_TYPES for t in clause.tags)
     if not asks_for_edit and all(t in polite for t in texts) and any(t in lexicon.CHAT for t in texts):
         raise Refusal(CHAT, verdict="not_an_edit")

@@ -1,4 +1,5 @@
-"""What a thing is that is told by its number or its looks: "what is object 7?", "what is the black thing?"."""
+"""What a thing is that is told by its number, its looks or a click: "what is object 7?", "what is the black thing?",
+"what is this?"."""
 
 from __future__ import annotations
 
@@ -21,13 +22,15 @@ _PHRASES = """
     {x} is what
     which (thing|object) is {x}
 """
+_ACCOUNT = frozenset({"describe", "explain"})  # of "it" more is told than its name (describe.py)
 
 
 def answer(asked: Asked, survey: Survey) -> Answer | None:
-    """The label of the thing with this number, or of what is described without its name: "the black thing"."""
+    """The label of the thing with this number, of "it", or of what is described without its name: "the black thing"."""
     query = asked.slots["x"]
     numbered = query.text.startswith(f"{BY_ID} ")
-    described = is_unnamed(query) and (query.colors or query.size) and not query.groups and not query.last
+    pointed = query.last and not _ACCOUNT & set(asked.words)
+    described = pointed or (is_unnamed(query) and (query.colors or query.size) and not query.groups)
     if not numbered and not described:
         return None
     phrase = meant(survey, query)

@@ -96,7 +96,8 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
         return _summed(phrase, what, slots.get("u"), survey)
     if what == "footprint" and not {"footprint", "floor", "base"} & set(asked.words):
         return _face(phrase, survey)
-    if what == "size" and not phrase.query.text and not phrase.query.groups and "size" not in asked.words:
+    pointed = phrase.query.groups or phrase.query.last
+    if what == "size" and not phrase.query.text and not pointed and "size" not in asked.words:
         return None  # "how big is everything" asks for the room
     if what == "size":
         return _size(phrase, slots.get("u"), survey)

@@ -334,8 +334,8 @@ def _checked_anchor(query: Query) -> Query | None:
 
 
 def is_anything(query: Query) -> bool:
-    """Whether a query names neither a kind of thing nor a colour: "anything", and not "anything green"."""
-    return is_unnamed(query) and not query.colors and not query.not_colors
+    """Whether a query names neither a kind of thing nor a colour: "anything", and not "anything green" or "it"."""
+    return is_unnamed(query) and not query.colors and not query.not_colors and not query.last
 
 
 def is_unnamed(query: Query) -> bool:

@@ -37,6 +37,11 @@ def test_a_tab_gets_everything_and_the_state(server: Server, page: Page) -> None
     assert page.state["selection"]["groups"] == [] and not page.state["can_undo"]
 
 
+def test_a_thing_whose_name_is_not_sure_is_told_by_its_colour(unsure: Scene, encoder: Any) -> None:
+    with served(Session(unsure, encoder=encoder)) as made, Page(made.port, made.cookie) as page:
+        assert [t["name"] for t in page.state["things"]] == ["red thing", "green thing", "red thing", "floor"]
+
+
 def test_words_change_what_every_tab_shows_and_undo_restores_it(server: Server, page: Page) -> None:
     with Page(server.port, server.cookie) as other:
         digest = page.state["digest"]
@@ -88,7 +93,9 @@ def test_operations_go_to_the_selection_as_one_step(server: Server, page: Page) 
     assert page.ask("operate", ops=[move])["type"] == "error"  # nothing is selected
     page.ask("select", mode="set", group=1)
     assert page.ask("operate", ops=[move, {"op": "scale", "factor": 1.2}])["ok"]
-    assert len(page.state["history"]) == 1 and same(page, server.hub)
+    (step,) = page.state["history"]
+    assert step["text"] == "move it: direction up, distance 0.5 m and scale it: factor 1.2"
+    assert same(page, server.hub)
     assert page.ask("operate", ops=[{"op": "nonsense"}])["type"] == "error"
 
 

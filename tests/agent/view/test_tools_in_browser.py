@@ -314,10 +314,15 @@ def test_a_tab_that_is_loaded_again_keeps_its_conversation(page: Page) -> None:
     assert page.say("how many chairs are there?")["ok"]
     assert page.say("make the sofa red")["ok"]
     page.say("remove the chair")
-    before = page.turns()
+    page.drag((300, 300), (380, 320))
+    sofa = page.thing("sofa")["group"]
+    page.tab.hover(f"[data-stop=name-{sofa}]")
+    page.tab.click(f"[data-stop=eye-{sofa}]")
+    before, camera = page.turns(), page.state("viewer.camera")
     page.tab.reload()
     page.until("store.state.connection === 'ready' && store.state.question !== null")
     assert page.turns() == before
+    assert page.state("viewer.camera") == camera and page.state("[...store.state.hidden]") == [sofa]
     page.until("document.querySelector('#turns .evidence img').naturalWidth === 768")
     page.tab.locator("#numbers .number").first.click()
     assert page.answered()["ok"]

@@ -44,6 +44,24 @@ def test_a_scene_is_answered_as_its_graph_is(survey: Survey, text: str, value: o
     assert answer(text, Survey.of_graph(ROOM)).answer == value
 
 
+def test_what_was_pointed_at_is_told() -> None:
+    session = Session(ROOM.build(detail=0.1))
+    language = session.embed().language
+    assert language is not None
+    chair = next(g.id for g in language.groups if g.label == "chair" and g.box.center[0] > 0)
+    for text, told in (
+        ("what is this?", r"^That is a white chair, 0\.5\d m wide"), ("what kind of thing is that?", "a white chair"),
+        ("where is it?", "^The white chair is "), ("how large is it?", r"^The white chair is 0\.5\d m wide"),
+        ("describe it", "^White chair: "), ("is it on the left?", "^No, the white chair is on the right"),
+    ):  # fmt: skip
+        session.remember((chair,))
+        assert re.search(told, session.ask(text).text), (text, session.ask(text).text)
+
+
+def test_a_size_of_several_things_has_its_unit_once(survey: Survey) -> None:
+    assert " m high)" in (told := answer("how large is the chair?", survey).text) and "high m" not in told, told
+
+
 def test_colours_are_the_plain_words_that_selection_uses(survey: Survey) -> None:
     assert {t.label + t.color for t in survey.things} == {"sofablue", "coffee tablebrown", "chairred", "chairwhite"}
 
