@@ -33,10 +33,11 @@ def write_levels(scene: Scene, output: Path, sizes: Sizes, measured: int, force:
     from ..gaussians.files.formats.streamed_sog import Streamed
     from ..gaussians.levels.making import LEVELS, described, make, measure
     from ..gaussians.levels.tree import LEAF_ROWS
-    from ..gaussians.slim.views import choose_views
+    from ..gaussians.slim.views import choose_views, estimated_frame
 
     start = time.perf_counter()
     terminal.progress("choosing views", 0.0)
+    scene = scene.replace(frame=estimated_frame(scene))  # kept, so that no reader estimates it again
     views = choose_views(scene)
     levels, chunk_rows = sizes[0] or LEVELS, sizes[1] or streamed_sog_writing.CHUNK_ROWS
     made = make(scene, levels, views.ranking, min(LEAF_ROWS, chunk_rows), terminal.progress)
@@ -49,8 +50,8 @@ def write_levels(scene: Scene, output: Path, sizes: Sizes, measured: int, force:
     seconds = time.perf_counter() - start
     terminal.clear()
     data = {"path": str(output), "levels": _rows(found), "leaves": made.tree.leaves}
-    total = sum(level.bytes for level in found)
-    head = f"{output}: {len(found)} levels, {made.tree.leaves} leaves, {total:,} bytes, written and measured in "
+    total, measuring = sum(level.bytes for level in found), " and measured" if measured else ""
+    head = f"{output}: {len(found)} levels, {made.tree.leaves} leaves, {total:,} bytes, written{measuring} in "
     terminal.result("\n".join([f"{head}{seconds:.1f} s", *_lines(found)]), data | {"bytes": total, "seconds": seconds})
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import UserError
@@ -49,6 +50,7 @@ def default_view(scene: Scene) -> Camera:
     return default_viewer(scene if scene.cameras else framed(scene), *PICTURE)
 
 
+@lru_cache(maxsize=1)  # seconds, and what opens a scene asks twice; a session keeps its scenes anyway
 def framed(scene: Scene) -> Scene:
     """The scene with up and floor estimated, if its up direction is unknown."""
     if scene.frame.up_source != "unknown":

@@ -13,13 +13,14 @@ import queue
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import PurePath
 from typing import Any, Protocol
 
 import numpy as np
 
+from ...gaussians.cloud import GaussianCloud
 from ...gaussians.errors import ScenewrightError, UserError
 from ..session.dialogue import Dialogue
 from ..session.history import looks_alike
@@ -30,6 +31,7 @@ from .actions import Actions
 from .changes import Changes, Shown, changes
 from .gallery import Gallery
 from .messages import Asked
+from .preview import Preview
 from .standalone import page
 
 _log = logging.getLogger(__name__)
@@ -59,6 +61,7 @@ class Hub:
         title: of the page.
         folder: where scenes are saved; None: nowhere.
         keep_field: write the language field beside a saved scene.
+        coarse: a coarse level of the scene, which tabs show until it has come.
         begin: done on the worker before anything else, such as the edits of a session that was cut off.
 
     Attributes:
@@ -75,6 +78,7 @@ class Hub:
         folder: Folder | None,
         *,
         keep_field: bool = False,
+        coarse: GaussianCloud | None = None,
         begin: Callable[[], None] | None = None,
     ) -> None:
         self.session = session
@@ -84,6 +88,9 @@ class Hub:
         self._actions = Actions(self, self._dialogue, folder, keep_field)
         # Revisions of another run of the server are never those of this one.
         self.shown = Shown.first(session.scene, int(time.time() * 1000))
+        self._first = self.shown
+        large = self.shown.slots.count > wire.CHUNK  # what comes in one message needs no preview
+        self._preview = None if coarse is None or not large else Preview.of(coarse, self.shown)
         self.made: tuple[str, bytes] | None = None
         self._state = state.of(session, self.shown)
         self.state = self._told(False)
@@ -141,6 +148,10 @@ class Hub:
         shown = self.shown
         told = {"type": "welcome", "revision": shown.revision, "slots": shown.slots.count, "degree": shown.degree}
         return {**told, **self._welcome, "digest": self._state["digest"]}
+
+    def load(self, shown: Shown) -> Iterator[bytes]:
+        """The messages that tell a tab everything; before any edit a preview comes first."""
+        return wire.load(shown, self._preview if shown is self._first else None)
 
     def change_from(self, revision: int) -> tuple[bytes, Shown] | None:
         """The message that brings a tab at a revision up to date, and what it then shows; None: it needs everything.

@@ -14,6 +14,7 @@ from ..session.session import Progress
 from ..terminal.output import terminal
 from ..toolbox.folder import Folder
 from .hub import Hub
+from .preview import coarse_level
 from .serving import serve
 
 
@@ -34,7 +35,10 @@ def run(options: SessionOptions, *, port: int, open_page: bool, anew: bool) -> N
         session.point(None)  # the log then holds something that is later than those edits
         earlier = None
     begin = None if earlier is None else lambda: restore(session, earlier, lambda note: terminal.say(f"note: {note}"))
-    hub = Hub(session, options.path.name, Folder(folder_of(options.path)), keep_field=embedded, begin=begin)
+    coarse = coarse_level(options.path)
+    hub = Hub(
+        session, options.path.name, Folder(folder_of(options.path)), keep_field=embedded, coarse=coarse, begin=begin
+    )
     relay.to = hub.progress
     serve(hub, port, open_page=open_page)
     if log is not None and session.done and any(s.scene.cloud is not session.scene.cloud for s in session.states):

@@ -13,7 +13,6 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
-from . import wire
 from .hub import Hub
 from .messages import Asked, BadMessage, Message, Resume, parse
 
@@ -137,7 +136,7 @@ class ServedTab:
                 self._revision = change[1].revision
                 return
         shown = self._hub.shown
-        chunks = wire.load(shown)
+        chunks = self._hub.load(shown)
         while (chunk := await asyncio.to_thread(next, chunks, None)) is not None:
             await self._socket.send_bytes(chunk)
             await self._send_progress()

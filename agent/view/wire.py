@@ -9,11 +9,14 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ...gaussians.cloud import GaussianCloud
 from .changes import Changes, Shown
 from .columns import columns_of, encode, width
-from .slots import I64, ranges_of, slots_of
+from .preview import Preview
+from .slots import EMPTY, I64, ranges_of, slots_of
 
 MAGIC = b"SWV1"
+TELLS_EMPTY = ("color", "group")  # the columns that tell an empty slot; its others keep what they held
 CHUNK = 65_536  # slots of one message of a load
 _RANGE_BYTES = 12  # of a range in the header, about: gaps whose rows take fewer bytes are sent along
 
@@ -27,19 +30,29 @@ class Part:
     data: bytes
 
 
-def load(shown: Shown) -> Iterator[bytes]:
-    """The messages that tell a page everything, made one by one."""
+def load(shown: Shown, preview: Preview | None = None) -> Iterator[bytes]:
+    """The messages that tell a page everything, made one by one; a preview comes first and goes bit by bit."""
     count = shown.slots.count
-    chunks = max(1, -(-count // CHUNK))
+    chunks, extra = max(1, -(-count // CHUNK)), preview is not None
+    if preview is not None:
+        rows = np.arange(len(preview.cloud))
+        parts = [_part(preview.cloud, shown, column, count + rows, rows) for column in columns_of(shown.degree)]
+        yield message(shown, None, parts, (0, chunks + 1))
     for number in range(chunks):
         first, end = number * CHUNK, min((number + 1) * CHUNK, count)
-        ranges = np.array([[first, end - first]], np.int64)
-        rows = shown.slots.rows[first:end]
-        parts = [
-            Part(column, ranges, encode(shown.scene.cloud, shown.owner, column, rows))
-            for column in columns_of(shown.degree)
-        ]
-        yield message(shown, None, parts, (number, chunks))
+        slots = np.arange(first, end)
+        gone = np.zeros(0, np.int64) if preview is None else count + preview.emptied(first, end)
+        parts = []
+        for column in columns_of(shown.degree):
+            marked = gone if column in TELLS_EMPTY else gone[:0]
+            rows = np.concatenate([shown.slots.rows[first:end], np.full(len(marked), EMPTY)])
+            parts.append(_part(shown.scene.cloud, shown, column, np.concatenate([slots, marked]), rows))
+        yield message(shown, None, parts, (number + extra, chunks + extra))
+
+
+def _part(cloud: GaussianCloud, shown: Shown, column: str, slots: I64, rows: I64) -> Part:
+    """A column of rows `[M]` of a cloud in ascending slots `[M]`."""
+    return Part(column, ranges_of(slots), encode(cloud, shown.owner, column, rows))
 
 
 def change(shown: Shown, base: int, changed: Changes, kind: Literal["columns", "before"] = "columns") -> bytes:
@@ -68,8 +81,10 @@ def message(
         padding = -len(part.data) % 8
         body += [part.data, bytes(padding)]
         offset += len(part.data) + padding
+    reach = max((int(part.ranges[-1].sum()) for part in parts if len(part.ranges)), default=0)
     header = {
-        "type": kind, "revision": shown.revision, "base": base, "slots": shown.slots.count, "degree": shown.degree,
+        "type": kind, "revision": shown.revision, "base": base, "slots": max(shown.slots.count, reach),
+        "degree": shown.degree,
         "chunk": list(chunk), "parts": told,
     }  # fmt: skip
     text = json.dumps(header, separators=(",", ":")).encode()

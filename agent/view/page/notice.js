@@ -8,7 +8,8 @@ export function notice(store) {
   place.append(title, line, progress);
   store.watch(["connection", "loaded", "trouble", "scene"], (state) => {
     const [told, more] = toldOf(state);
-    place.className = state.connection === "lost" && state.loaded === 1 ? "float small" : "float";
+    const seen = {lost: state.loaded === 1, loading: state.loaded > 0}[state.connection]; // a picture, which is not covered
+    place.className = seen ? "float small" : "float";
     place.hidden = told === "";
     title.textContent = told;
     line.textContent = more;
