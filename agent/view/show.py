@@ -33,6 +33,15 @@ class Shown:
         return f'<iframe srcdoc="{html.escape(self.page)}" height="{self.height}" style="{frame}"></iframe>'
 
 
+def picture(scene: Scene) -> bytes | None:
+    """A scene as the bytes of a PNG file, from its first camera or a view chosen from it; None if it is empty."""
+    from ...gaussians.render import render
+    from ..pictures.image_files import encoded_png
+    from ..pictures.named_cameras import default_view
+
+    return encoded_png(render(scene.cloud, default_view(scene)).to_uint8()) if len(scene.cloud) else None
+
+
 def show(scene: Scene | Result, view: Camera | None = None, *, title: str = "", height: int = HEIGHT) -> Shown:
     """A scene, or the scene of a result, to look around in, in a notebook.
 

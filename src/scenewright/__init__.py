@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import sys
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -131,6 +132,25 @@ __all__ = [
     "save",
     "show",
 ]
+
+
+def _picture(scene: Scene) -> bytes | None:
+    """What a notebook shows of a scene that is the value of a cell."""
+    from .agent.view.show import picture
+
+    return picture(scene)
+
+
+def _show_in_notebook() -> None:
+    """Where IPython runs, let it show scenes as pictures. (A scene itself knows nothing of how it is drawn.)"""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    if shell is not None:
+        shell.display_formatter.formatters["image/png"].for_type_by_name(*_SCENE, _picture)
+
+
+_SCENE = ("scenewright.gaussians.scene", "Scene")
+_show_in_notebook()
 
 
 def __getattr__(name: str) -> Any:

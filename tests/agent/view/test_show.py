@@ -5,7 +5,11 @@ from __future__ import annotations
 import html
 import io
 import re
+import sys
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +18,7 @@ from PIL import Image
 
 import scenewright
 from scenewright import GaussianCloud, Result, Scene, UserError
+from scenewright.agent.pictures.named_cameras import default_view
 from scenewright.agent.view.standalone import page
 from scenewright.gaussians.camera import Camera
 
@@ -43,6 +48,21 @@ def test_a_result_is_shown_as_its_viewer_sees_it_and_has_a_picture() -> None:
     picture = np.asarray(Image.open(io.BytesIO(result._repr_png_())))
     assert np.array_equal(picture, result.render().to_uint8())
     assert picture[..., 0].max() > 100
+
+
+def test_a_notebook_shows_a_scene_as_a_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: dict[tuple[str, str], Callable[[Scene], bytes | None]] = {}
+    png = SimpleNamespace(for_type_by_name=lambda module, name, draw: shown.update({(module, name): draw}))
+    shell = SimpleNamespace(display_formatter=SimpleNamespace(formatters={"image/png": png}))
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    scenewright._show_in_notebook()
+    draw = shown[Scene.__module__, Scene.__qualname__]
+    scene = replace(row(), cameras=(CAMERA,))
+    drawn = draw(scene)
+    assert drawn is not None
+    picture = np.asarray(Image.open(io.BytesIO(drawn)))
+    assert np.array_equal(picture, scenewright.render(scene, default_view(scene)).to_uint8()) and picture.max() > 100
+    assert draw(Scene(GaussianCloud.empty())) is None
 
 
 def test_without_gaussians_or_height_there_is_nothing_to_show() -> None:
