@@ -30,6 +30,7 @@ from .occlusion import blocked, reach_of
 from .planes import F64, VOXELS, Mask, Plane, planes_near
 from .shadow import Shadow, most_even, multiplied, rows_and_factors, zone_of
 from .smooth import harmonic
+from .span import Span
 from .texture import Continued, continued
 
 if TYPE_CHECKING:
@@ -146,23 +147,31 @@ def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = No
 
     there = scene.cloud if apart is None else scene.cloud[~apart]
     witnesses = witnesses_of(there, thing, scene.cameras)
-    patches = [_unseen_part(p, witnesses) for p in patches]
-    return patches + _behind(scene, thing, apart, (low, high), patches, witnesses)
+    span = Span.of(there, size)
+    patches = [_unseen_part(p, witnesses, span) for p in patches]
+    return patches + _behind(scene, thing, apart, (low, high), patches, witnesses, span)
 
 
-def _unseen_part(patch: Patch, witnesses: Sequence[View]) -> Patch:
-    """A patch without the new Gaussians that photographs would have seen before what they show."""
+def _unseen_part(patch: Patch, witnesses: Sequence[View], span: Span) -> Patch:
+    """A patch without the new Gaussians that photographs would have seen before what they show, or that lie beyond the
+    scene."""
     from .behind.views import seen_past
 
-    if not len(patch.cloud) or not witnesses:
+    if not len(patch.cloud):
         return patch
-    past = seen_past(patch.cloud.means.to(torch.float64).cpu().numpy(), witnesses)
-    return replace(patch, cloud=patch.cloud[torch.from_numpy(~past).to(patch.cloud.device)]) if past.any() else patch
+    points = patch.cloud.means.to(torch.float64).cpu().numpy()
+    past = seen_past(points, witnesses) | span.outside(points)
+    if not past.any():
+        return patch
+    kept, hole = patch.cloud[torch.from_numpy(~past).to(patch.cloud.device)], patch.hole.copy()
+    if patch.chart is not None:
+        hole[hole] = ~span.outside(patch.chart.points()[hole])
+    return replace(patch, cloud=kept, hole=hole)
 
 
 def _behind(
     scene: Scene, thing: GaussianCloud, apart: Tensor | None, corners: tuple[F64, F64], patches: Sequence[Patch],
-    witnesses: Sequence[View],
+    witnesses: Sequence[View], span: Span,
 ) -> list[Patch]:  # fmt: skip
     """What lies behind a thing and is of no plane that was continued."""
     from .behind.dark import without_dark
@@ -176,7 +185,7 @@ def _behind(
     cloud = concat([cloud, new]) if len(new) else cloud
     looking = [c for c in scene.cameras if c.contains(*c.project(((corners[0] + corners[1]) / 2)[None]))[0]]
     bands, cloud = cloud.degree, without_gloss(cloud, looking)
-    place = place_of(cloud, thing, corners, scene.cameras, scene.frame.up_vector, witnesses)
+    place = place_of(cloud, thing, corners, scene.cameras, scene.frame.up_vector, span, witnesses)
     place = without_dark(place, cloud, thing, scene.cameras)
     return [
         Patch(

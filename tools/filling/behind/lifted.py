@@ -45,6 +45,7 @@ _FARTHER = 1.3  # times the largest depth around a hole: that of the last
 _UNCOVERED = 0.2  # of a pixel that the thing filled, below which what is behind it was seen
 _OUTSIDE = 3.0  # times the thing's distance: what surrounds a hole and is farther away is the outside of a window
 _TOLD_OF = 0.02  # of the pixels that the thing filled: a hole that stays open is told from this on
+_CLEAR, _ENDS = 0.02, 0.3  # of a pixel that the thing filled; of what surrounds a hole that has to be nothing
 _GLASS = 0.5  # of what surrounds a hole, from which it is in a mirror or a window
 GLASS = "a mirror or a window lies behind it, and what that shows there nobody saw"
 NOTHING_BEHIND = "nothing is seen behind it that could be continued"
@@ -136,6 +137,8 @@ def _filled(view: View, index: int, open_: Mask, place: Place, told: _Told) -> l
         support = float((ring & known).sum()) / max(int(ring.sum()), 1)
         reason = _refusal(view, ring & known, support, glass)
         if reason:
+            if _is_void(view, ring, place):
+                continue
             if hole.sum() >= _TOLD_OF * (view.covers > 0.5).sum():
                 refused.append(_hole(view, index, hole, bands, (support, reason)))
         else:
@@ -166,6 +169,16 @@ def _refusal(view: View, ring: Mask, support: float, glass: frozenset[int]) -> s
     if len(front) and np.median(view.depth[ring]) > _OUTSIDE * np.median(front):
         return OUTSIDE
     return ""
+
+
+def _is_void(view: View, ring: Mask, place: Place) -> bool:
+    """Whether the thing stood before the end of the scene: much of what is around the hole is nothing.
+
+    Where no photograph shows the place, it may be unknown as well, and that is told.
+    """
+    nothing = (view.alpha < VOID) & (view.covers < _CLEAR)
+    most = _ENDS if view.taken else _ENDS / 2
+    return any(v.taken for v in place.views) and bool(ring.any() and (ring & nothing).sum() > most * ring.sum())
 
 
 def _depths(view: View, colours: F64, hole: Mask, known: Mask) -> F64:
@@ -216,7 +229,7 @@ def _unseen(view: View, hole: Mask, depth: F64, place: Place) -> tuple[F64, Mask
     for step in range(_TRIED):
         tried = start[left] * (np.maximum(far / start[left], 1.0)) ** (step / (_TRIED - 1))
         points = eye + rays[left] * tried[:, None]
-        bad = _was_seen(points, others) | (_hides(points, beside) & ~place.under(points))
+        bad = _was_seen(points, others) | (_hides(points, beside) & ~place.under(points)) | place.span.outside(points)
         best[left[~bad]] = tried[~bad]
         left = left[bad]
         if not len(left):

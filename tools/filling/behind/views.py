@@ -18,6 +18,7 @@ from ....gaussians.render import render
 from ..hidden import ring_of_directions
 from ..planes import F64, Mask
 from ..smooth import harmonic
+from ..span import Span
 
 MOST_VIEWS = 6
 _WITNESSES, _SMALL = 16, 160  # photographs that tell what was seen, and pixels along their longer side
@@ -125,12 +126,14 @@ class Place:
             no photographs.
         up: `[3]`, unit.
         bottom: height along it up to which the thing may have stood on something.
+        span: how far the scene reaches.
     """
 
     views: tuple[View, ...]
     witnesses: tuple[View, ...]
     up: F64
     bottom: float
+    span: Span
 
     def under(self, points: F64) -> Mask:
         """Which points `[M, 3]` are no higher than the bottom of the thing."""
@@ -143,6 +146,7 @@ def place_of(
     corners: tuple[F64, F64],
     cameras: Sequence[Camera],
     up: F64,
+    span: Span,
     witnesses: Sequence[View] = (),
 ) -> Place:
     """Views of the place of a thing.
@@ -151,6 +155,7 @@ def place_of(
         cloud: the scene without the thing.
         corners: of the thing, `[3]` each.
         cameras: of the photographs.
+        span: how far the scene reaches.
         witnesses: see `witnesses_of`.
     """
     low, high = corners
@@ -171,7 +176,7 @@ def place_of(
     if not any(v.open_pixels.any() for v in views):
         views = []
     bottom = float((box @ up).min()) + _FOOT * size
-    return Place(tuple(views), tuple(witnesses) or tuple(views), up, bottom)
+    return Place(tuple(views), tuple(witnesses) or tuple(views), up, bottom, span)
 
 
 def witnesses_of(cloud: GaussianCloud, thing: GaussianCloud, cameras: Sequence[Camera]) -> list[View]:
