@@ -22,6 +22,7 @@ LESS = (
     "ask: 360 questions in 12 furnished rooms and 200 in 16 graphs, not 600 in 20 and 300 in 24",
     "plan: every eighth sentence of other people, not every fourth",
     "fill: 60 deletions, not 100. slim: no 44 dB",
+    "dream: half a minute each on one core, not two",
 )
 _ONCE = "accuracies are shares or likenesses, which do not depend on the machine; times do"
 

@@ -37,6 +37,7 @@ TOGETHER = frozenset(
         "fit_sizes",
         "layout",
         "mcp",
+        "mesh",
         "restyle",
         "slim",
         "stability",
