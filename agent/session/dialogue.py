@@ -50,10 +50,15 @@ class Said:
 
 @dataclass(frozen=True)
 class Refused:
-    """Why a line was refused: lines for a person, the first a sentence, and plain data."""
+    """Why a line was refused: lines for a person, the first a sentence, and plain data.
+
+    Attributes:
+        after: the lines that follow those of the candidates: how to answer, and what a model cost.
+    """
 
     lines: tuple[str, ...]
     data: dict[str, Any]
+    after: tuple[str, ...] = ()
 
 
 class Dialogue:
@@ -107,19 +112,21 @@ class Dialogue:
         where = [f", {c.seen_from(self.session.viewer)}" if offered else "" for c in candidates]
         lines += [f"  {i}. {c.describe()}{side}" for i, (c, side) in enumerate(zip(candidates, where, strict=True), 1)]
         verdict = question.selection.verdict if question is not None else ""
+        after: list[str] = []
         if verdict == "ambiguous":
-            lines.append("Which one? A number, several ('1 and 2'), 'all', or for example 'the left one'.")
+            after.append("Which one? A number, several ('1 and 2'), 'all', or for example 'the left one'.")
         if verdict == "absent" and candidates:
-            lines.append("A number chooses one of them; or say it in other words.")
+            after.append("A number chooses one of them; or say it in other words.")
         if verdict == "unconfirmed":
-            lines.append("Is that meant? 'yes' or 'no'.")
+            after.append("Is that meant? 'yes' or 'no'.")
         data = {
             "verdict": verdict_of(error),
             "reason": str(error),
             "candidates": [candidate_json(c) for c in candidates],
             **planner_json(question.plan if question else self._new_plan),
         }
-        return Refused((*lines, *usage_lines(self._new_plan)), data)
+        after += usage_lines(self._new_plan)
+        return Refused((*lines, *after), data, tuple(after))
 
     # -- private ----------------------------------------------------------------------------------------------------
 

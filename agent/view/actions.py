@@ -110,11 +110,12 @@ class Actions:
         return {**self._said(said), "receipt": _receipt(told.results), "pictures": told.pictures}
 
     def _refused(self, error: ScenewrightError) -> Reply:
-        first, *lines = self._dialogue.refused(error).lines
+        refused = self._dialogue.refused(error)
+        first, *lines = refused.lines
         question = self._session.question if isinstance(error, InstructionError) else None
         first = numbered(first, question.candidates if question is not None else ())
         if question is not None:
-            lines = lines[-1:]  # the picture shows the candidates
+            lines = list(refused.after)  # the picture shows the candidates
         return {**_ANSWER, "ok": False, "text": first, "lines": lines}
 
     def _stepped(self, step: Step) -> Reply:

@@ -104,6 +104,7 @@ def test_a_question_is_answered_by_a_click(server: Server, page: Page) -> None:
     question = page.state["question"]
     assert not asked["ok"] and [c["number"] for c in question["candidates"]] == [1, 2]
     assert [c["name"] for c in question["candidates"]] == ["red box", "red box"]
+    assert len(asked["lines"]) == 1 and asked["lines"][0].startswith("Which one? A number")
     assert "red box (1), red box (2)" in asked["text"] and "red box (1), red box (2)" in question["text"]
     assert page.ask("answer", choice=2)["ok"]
     assert page.state["question"] is None and same(page, server.hub)
