@@ -18,7 +18,7 @@ from ..errors import UserError
 from ..files import writing
 from ..rotations import to_matrix
 from ..scene import Frame, Scene
-from . import glb, texturing
+from . import glb, outlines, texturing
 from .shaping import Grid, Shape, shape_of, sphere_cameras
 
 F64 = NDArray[np.float64]
@@ -28,6 +28,7 @@ PER_SIGMA = 0.7  # cell over a typical Gaussian's middle standard deviation
 LEAST_CELLS, MOST_CELLS = 24, 160  # along the longest side, unless asked for
 VIEWS = 64  # around the part
 INSIDE = 48  # more of a whole scene: its own cameras, and computed ones within it
+OUTLINED = 2  # every second of the views around the part fits its outlines
 PER_CELL = 2.2  # pixels of a view
 MOST_PIXELS = 512
 TEXTURE = 1024
@@ -160,6 +161,7 @@ def mesh(
     cameras = cameras_of(part, grid, whole if ids is None else None)
     told("looking from all sides", 0.1)
     shape = shape_of(part, cameras, grid, LEVEL, faces)
+    shape = outlines.fitted(shape, part, cameras[:VIEWS:OUTLINED], grid.step)
     told("mesh made", 0.5)
     if not watertight:
         shape = texturing.without_hidden(shape, cameras)
