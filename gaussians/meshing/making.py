@@ -29,6 +29,7 @@ LEAST_CELLS, MOST_CELLS = 24, 160  # along the longest side, unless asked for
 VIEWS = 64  # around the part
 INSIDE = 48  # more of a whole scene: its own cameras, and computed ones within it
 OUTLINED = 2  # every second of the views around the part fits its outlines
+FARTHEST = 0.5  # cells that this moves a vertex
 PER_CELL = 2.2  # pixels of a view
 MOST_PIXELS = 512
 TEXTURE = 1024
@@ -161,7 +162,7 @@ def mesh(
     cameras = cameras_of(part, grid, whole if ids is None else None)
     told("looking from all sides", 0.1)
     shape = shape_of(part, cameras, grid, LEVEL, faces)
-    shape = outlines.fitted(shape, part, cameras[:VIEWS:OUTLINED], grid.step)
+    shape = outlines.fitted(shape, part, cameras[:VIEWS:OUTLINED], FARTHEST * grid.step)
     told("mesh made", 0.5)
     if not watertight:
         shape = texturing.without_hidden(shape, cameras)

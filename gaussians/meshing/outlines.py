@@ -22,8 +22,10 @@ F64 = NDArray[np.float64]
 F32 = NDArray[np.float32]
 Int = NDArray[np.int64]
 
-REACH = 5.0  # pixels on each side of an outline in which that of the splats is searched
-STEP = 0.25  # pixels of this search
+FINER = 2  # times the pixels of the views that carve: splats are drawn no narrower than about a pixel
+LEAST, MOST = 512, 768  # pixels of such a view
+REACH = 1.2  # times the farthest move, in which the splats' outline is searched on each side
+STEPS = 24  # of this search on each side
 HALF = 0.5  # alpha at the splats' outline
 INWARD = 1.5  # pixels, where an edge must be the nearest surface to be an outline that is seen
 SURE = 3.0  # views from which a vertex follows them fully
@@ -42,8 +44,10 @@ def fitted(shape: Shape, cloud: GaussianCloud, cameras: Sequence[Camera], far: f
     edges = _edges(shape)
     many = len(shape.vertices)
     total, count = np.zeros(many), np.zeros(many)
-    for camera in cameras:
-        rows, offset = _offsets(shape, edges, camera, render(cloud, camera).alpha.numpy())
+    for view in cameras:
+        size = int(np.clip(FINER * view.width, LEAST, MOST))
+        camera = view.resized(size, size)
+        rows, offset = _offsets(shape, edges, camera, render(cloud, camera).alpha.numpy(), REACH * far)
         for end in range(2):
             total += np.bincount(edges.ends[rows, end], offset, many)
             count += np.bincount(edges.ends[rows, end], minlength=many)
@@ -59,7 +63,7 @@ def _edges(shape: Shape) -> _Edges:
     return _Edges(ends[order][::2], face.reshape(-1, 2))
 
 
-def _offsets(shape: Shape, edges: _Edges, camera: Camera, alpha: F32) -> tuple[Int, F64]:
+def _offsets(shape: Shape, edges: _Edges, camera: Camera, alpha: F32, reach: float) -> tuple[Int, F64]:
     """The edges `[R]` on the outline that a camera sees, and how far outside the splats' outline lies, scene units."""
     v = shape.vertices
     corners = v[shape.faces]
@@ -80,21 +84,21 @@ def _offsets(shape: Shape, edges: _Edges, camera: Camera, alpha: F32) -> tuple[I
     at = middle - INWARD * across
     inside = (at >= 0).all(axis=1) & (at < [camera.width, camera.height]).all(axis=1) & (length > 1e-6)
     column, row = np.clip(at.astype(int), 0, [camera.width - 1, camera.height - 1]).T
-    visible = inside & (z > 0) & (np.abs(nearest[row, column] - z) < 3 * REACH * z / camera.fx)
-    offset = _crossing(alpha, middle, across)
+    visible = inside & (z > 0) & (np.abs(nearest[row, column] - z) < 3 * reach)
+    offset = _crossing(alpha, middle, across * (reach * camera.fx / np.maximum(z, 1e-9))[:, None])
     kept = visible & np.isfinite(offset)
-    return rows[kept], (offset * z / camera.fx)[kept]
+    return rows[kept], offset[kept] * reach
 
 
 def _crossing(alpha: F32, middle: F64, across: F64) -> F64:
-    """Pixels from `middle` `[R, 2]` along `across` to the nearest place where alpha falls through `HALF`; NaN if there
-    is none within `REACH`."""
-    steps = np.arange(-REACH, REACH + STEP / 2, STEP)
+    """Multiples, -1 to 1, of `across` `[R, 2]` from `middle` `[R, 2]` (pixels) at which alpha falls through `HALF`, the
+    nearest; NaN if there is none."""
+    steps = np.linspace(-1, 1, 2 * STEPS + 1)
     inside = _sampled(alpha, middle[:, None] + steps[:, None] * across[:, None]) > HALF  # [R, S]
     falls = inside[:, :-1] & ~inside[:, 1:]
-    distance = np.where(falls, np.abs(steps[:-1] + STEP / 2), np.inf)
+    distance = np.where(falls, np.abs(steps[:-1] + 0.5 / STEPS), np.inf)
     best = distance.argmin(axis=1)
-    return np.where(falls.any(axis=1), steps[best] + STEP / 2, np.nan)
+    return np.where(falls.any(axis=1), steps[best] + 0.5 / STEPS, np.nan)
 
 
 def _sampled(image: F32, at: F64) -> F64:

@@ -13,7 +13,7 @@ from scenewright.gaussians.harmonics import color_to_dc
 Point = tuple[float, float, float]
 
 
-def box(low: Point, high: Point, rgb: Point, across: int = 12, opacity: float = 0.97) -> GaussianCloud:
+def box(low: Point, high: Point, rgb: Point, across: int = 16, opacity: float = 0.97) -> GaussianCloud:
     """The six sides of a box, `across` by `across` Gaussians each."""
     corner, span = np.array(low), np.array(high) - np.array(low)
     step = (np.arange(across) + 0.5) / across

@@ -22,7 +22,7 @@ from scenewright.gaussians.meshing import Mesh, mesh, texturing
 from scenewright.gaussians.scene import Frame, Scene
 
 RED, BLUE, GREEN = (0.8, 0.1, 0.1), (0.1, 0.2, 0.8), (0.1, 0.7, 0.2)
-CELLS = 24
+CELLS = 48
 needs_xatlas = pytest.mark.skipif(importlib.util.find_spec("xatlas") is None, reason="xatlas is not installed")
 
 
@@ -51,12 +51,12 @@ def test_a_watertight_mesh_has_two_faces_at_every_edge_and_faces_out(made: Mesh)
     loaded = _loaded(made)
     assert loaded.is_watertight and loaded.is_winding_consistent
     volume = 0.5**3 * (0.5 * 0.6 * 2.0 + 0.9 * 0.6 * 0.5 + 0.3 * 0.6 * 0.4)
-    assert loaded.volume == pytest.approx(volume, rel=0.06)  # edges are rounded within a cell of 4 cm
+    assert loaded.volume == pytest.approx(volume, rel=0.06)  # edges are rounded within a cell of 2 cm
 
 
 def test_the_mesh_is_in_metres_stands_on_its_own_and_y_is_up(made: Mesh) -> None:
     low, high = _loaded(made).bounds
-    # 1.4 x 1.2 x 2 units of half a metre; a cell is 4 cm.
+    # 1.4 x 1.2 x 2 units of half a metre; a cell is 2 cm.
     assert high - low == pytest.approx([0.7, 1.0, 0.6], abs=0.03)
     assert low[1] == pytest.approx(0, abs=1e-6)
     assert (low + high)[[0, 2]] == pytest.approx([0, 0], abs=1e-6)
@@ -104,8 +104,9 @@ def test_a_scene_with_another_up_gives_the_same_upright_mesh(letter: Scene, made
     assert high[1] - low[1] == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.slow
 def test_in_place_keeps_the_origin_of_the_scene(letter: Scene) -> None:
-    part = letter.cloud.ids[:864]  # the red upright
+    part = letter.cloud.ids[:1536]  # the red upright
     low, high = _loaded(mesh(letter, part, texture=0, cells=CELLS, in_place=True)).bounds
     # x is east, y up, z south: half a metre a unit.
     assert low == pytest.approx([5.0, 1.5, -2.8], abs=0.03)
@@ -143,7 +144,7 @@ def test_the_file_follows_gltf(made: Mesh) -> None:
 @pytest.mark.slow
 def test_a_wall_is_a_thin_sheet(letter: Scene) -> None:
     wall = box((0, 0, 0), (2, 0.0005, 1.5), GREEN)
-    made = mesh(Scene(wall), wall.ids, texture=0, cells=CELLS, watertight=True)
+    made = mesh(Scene(wall), wall.ids, texture=0, cells=24, watertight=True)
     width, height, depth = made.size
     assert (width, height) == pytest.approx((2, 1.5), abs=2.5 * made.cell)  # its rim grows
     assert 0 < depth < 1.5 * made.cell

@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.meshing.decimating import decimate
+from scenewright.gaussians.meshing.outlines import fitted
 from scenewright.gaussians.meshing.raster import draw
+from scenewright.gaussians.meshing.shaping import Shape, sphere_cameras
 from scenewright.gaussians.meshing.tetrahedra import surface
 from scenewright.gaussians.render import cpu, render
 
@@ -140,3 +142,20 @@ def test_the_depth_is_infinite_exactly_where_light_is_left() -> None:
         clear = np.abs(1 - alpha - level) > 1e-3  # where rounding does not decide
         assert (np.isfinite(depth) == (1 - alpha <= level))[clear].all()
         assert np.isfinite(depth).any() and not np.isfinite(depth).all()
+
+
+def test_outlines_go_to_where_the_splats_end() -> None:
+    sigma, opacity = 0.3, 0.95
+    ball = GaussianCloud.create(
+        torch.zeros(1, 3), torch.tensor([[1.0, 0, 0, 0]]), torch.full((1, 3), sigma), torch.tensor([opacity]),
+        torch.zeros(1, 1, 3),
+    )  # fmt: skip
+    nodes, faces = decimate(*_ball(), 600, 0.0)
+    nodes = nodes - (nodes.max(axis=0) + nodes.min(axis=0)) / 2
+    small = Shape(nodes * 0.3 / 8, faces)
+    moved = fitted(small, ball, sphere_cameras(np.zeros(3), 0.5, 24, 96), far=0.1)
+    # Half of the light is stopped where opacity * exp(-d^2 / 2) = 0.5; a pixel is a twelfth of the ball's radius.
+    wanted = sigma * math.sqrt(2 * math.log(opacity / 0.5))
+    assert np.linalg.norm(moved.vertices, axis=1).mean() == pytest.approx(wanted, abs=0.01)
+    still = fitted(small, ball, sphere_cameras(np.zeros(3), 0.5, 24, 96), far=0.0)
+    assert np.array_equal(still.vertices, small.vertices)
