@@ -37,8 +37,7 @@ picture: $(VENV)/.ready
 # The picture of the page in the README and in docs/view.md, as its test makes it in a browser; with fewer colours.
 page-picture: $(VENV)/.ready-dev
 	SCENEWRIGHT_PAGE_PICTURES=docs $(BIN)/python -m pytest -n 0 -m slow tests/agent/view/test_picture_of_the_page.py
-	$(BIN)/python -c "from PIL import Image; i = Image.open('docs/view.png').convert('RGB'); \
-	  i.quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save('docs/view.png', optimize=True)"
+	$(BIN)/python -c "from PIL import Image; Image.open('docs/view.png').convert('RGB').save('docs/view.png', optimize=True)"
 
 format: $(VENV)/.ready-dev
 	$(BIN)/ruff check --fix .

@@ -28,8 +28,8 @@ from ._data import folder, missing
 from ._dream.knowing import Knowing
 from .harness import Metric, Point, Result
 
-SECONDS, QUICK_SECONDS = 30.0, 6.0
-SIDE, QUICK_SIDE = 128, 64
+SECONDS, QUICK_SECONDS = 12.0, 6.0
+SIDE, QUICK_SIDE = 96, 64
 GOALS = {"sphere": 24.0, "form": 27.0}  # dB, in ten minutes of two cores
 OWN = ("armchair", "guitar", "bicycle", "desk lamp", "teddy bear")  # designs of seed 3; the form is that of seed 11
 FOREIGN = {  # meshes by others, and what the prompt calls them
