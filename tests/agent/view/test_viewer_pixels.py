@@ -282,3 +282,25 @@ def test_what_is_behind_an_opaque_wall_is_left_out_and_nothing_else(page: Any) -
     drawn, wanted = picture(page), render(scene.cloud, CAMERA).to_uint8()
     keep("wall", drawn, wanted)
     assert psnr(drawn, wanted) > 45
+
+
+def test_a_lost_context_comes_back_with_all_that_changed_meanwhile(page: Any) -> None:
+    scene = clusters(2)
+    state = shown(page, scene)
+    was = picture(page)
+    page.evaluate("() => { window.loser = viewer.gl.getExtension('WEBGL_lose_context'); loser.loseContext() }")
+    page.evaluate("() => { viewer.highlight = { groups: new Set([3]), color: [1, 0, 1] } }")
+    sh = scene.cloud.sh.clone()
+    sh[scene.cloud.group == 2, 0] = torch.tensor([1.5, -1.5, -1.5])
+    kept = scene.cloud.replace(sh=sh)
+    after = state.then(Scene(kept))
+    page.evaluate("decode", base64.b64encode(change(after, 0, changes(state, after) or {})).decode())
+    assert page.evaluate("viewer.gl.isContextLost()")
+    page.evaluate("async () => { await new Promise((done) => setTimeout(done, 200)); loser.restoreContext() }")
+    outlined = picture(page)
+    page.evaluate("() => { viewer.highlight = {} }")
+    drawn, wanted = picture(page), render(kept, CAMERA).to_uint8()
+    keep("restored", was, outlined, drawn, wanted)
+    assert (outlined == [255, 0, 255]).all(axis=-1).sum() > 50
+    assert psnr(drawn, wanted) > 40
+    assert psnr(drawn, was) < 30

@@ -22,10 +22,9 @@ export class Splats {
   grow(slots) {
     this.slots = Math.max(this.slots, slots);
     if (slots <= this.capacity) return;
-    const { gl } = this;
     const rows = Math.ceil((this.capacity ? slots * 1.25 : slots) / WIDTH) || 1;
-    const limit = gl.getParameter(gl.MAX_TEXTURE_SIZE);
-    if (2 * rows > limit) throw new Error(`this browser draws at most ${(limit / 2) * WIDTH} Gaussians, not ${slots}`);
+    const limit = this.gl.getParameter(this.gl.MAX_TEXTURE_SIZE);
+    if (limit !== null && 2 * rows > limit) throw new Error(`this browser draws at most ${(limit / 2) * WIDTH} Gaussians, not ${slots}`);
     this.capacity = rows * WIDTH;
     const wider = (Type, each, old) => {
       const array = new Type(each * this.capacity);
@@ -43,10 +42,17 @@ export class Splats {
     this.shape16 = new Uint16Array(this.shape.buffer);
     this.turn16 = new Int16Array(this.shape.buffer);
     this.paint16 = new Uint16Array(this.paint.buffer);
+    this.bands = wider(Uint32Array, 4 * TEXELS[this.degree], this.bands);
+    this.store();
+  }
+
+  // Textures of everything, from the copies here.
+  store() {
+    const { gl } = this;
+    const rows = this.capacity / WIDTH;
     this.textures?.forEach((texture) => gl.deleteTexture(texture));
     this.textures = [gl.RGBA32UI, gl.RGBA32UI, gl.RG32UI].map((format) => allocate(gl, format, WIDTH, rows));
     for (let i = 0; i < 3; i++) this.upload(i, 0, this.capacity);
-    this.bands = wider(Uint32Array, 4 * TEXELS[this.degree], this.bands);
     if (this.harmonics) gl.deleteTexture(this.harmonics);
     this.harmonics = allocate(gl, gl.RGBA32UI, Math.max(1, HARMONIC_WIDTH * TEXELS[this.degree]), this.degree ? 2 * rows : 1);
     if (this.degree) this.uploadHarmonics(0, this.capacity);

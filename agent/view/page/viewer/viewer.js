@@ -32,10 +32,15 @@ export class SplatViewer {
     this.number = 0; // of the state to be sorted: grows with each change of view or rows
     this.sortedNumber = -1;
     this.sorting = false;
+    this.fence = null; // signalled when the last picture is finished
     this.fresh = false; // whether the picture is that of the present state
     this.controls = new OrbitFlyWalk(this);
     this.worker = makeWorker ? makeWorker() : new Worker(new URL('./sort_worker.js', import.meta.url));
     this.worker.onmessage = ({ data }) => this.sorted(data);
+    this.stop = new AbortController();
+    const on = (type, handler) => canvas.addEventListener(type, handler, { signal: this.stop.signal });
+    on('webglcontextlost', (event) => event.preventDefault()); // else the browser never gives it back
+    on('webglcontextrestored', () => this.restore());
     this.observer = new ResizeObserver(() => this.touch(true));
     this.observer.observe(canvas);
   }
@@ -72,7 +77,9 @@ export class SplatViewer {
       if (column !== 'harmonics') where.forEach(([first, count]) => changed.set(`${first} ${count}`, [first, count]));
     }
     this.tell([...changed.values()]);
-    this.touch(true);
+    // Of a load the pictures after 1, 2, 4, 8 ... messages and of the whole are drawn: each is worth its wait.
+    const [number, of] = header.base === null ? (header.chunk ?? [0, 1]) : [0, 1];
+    if (number + 1 === of || (number & (number + 1)) === 0) this.touch(true);
     return header;
   }
 
@@ -117,6 +124,15 @@ export class SplatViewer {
 
   get comparing() {
     return Boolean(this.past) && this.compare !== null;
+  }
+
+  // The browser took the graphics context away and gave a new one: everything on it is made anew from the copies here.
+  restore() {
+    this.drawing = new Drawing(this.gl);
+    this.fence = null;
+    this.splats?.store();
+    this.highlight = this.marks;
+    this.touch(true);
   }
 
   // Tell the sorting worker of changed slots.
@@ -237,10 +253,23 @@ export class SplatViewer {
   tick() {
     this.asked = null;
     if (!this.splats) return this.settle();
+    if (this.gl.isContextLost()) return; // `restore` goes on
     this.fit();
     if (this.sortedNumber < this.number && !this.sorting) this.sort(this.comparing ? 1 : 0);
     // While the camera moves, the order of the last view will do if a new one takes long.
-    if (this.sortedNumber === this.number || (this.ready && this.stats.sort_ms > 25)) this.draw();
+    if (this.sortedNumber !== this.number && !(this.ready && this.stats.sort_ms > 25)) return;
+    if (this.drawn()) this.draw();
+    else this.asked ??= requestAnimationFrame(() => this.tick());
+  }
+
+  // Whether the last picture is finished: none is asked for while another is drawn, which would only make what follows wait.
+  drawn() {
+    const { gl } = this;
+    if (!this.fence) return true;
+    if (gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    gl.deleteSync(this.fence);
+    this.fence = null;
+    return true;
   }
 
   fit() {
@@ -292,6 +321,9 @@ export class SplatViewer {
     const part = line ? [line, camera.width] : null;
     if (line) drawing.picture(this.splats, this.earlier, camera, null, wide, BATCHES, this.background, [0, line]);
     if (line < camera.width) drawing.picture(this.splats, this.ready, camera, outline, wide, BATCHES, this.background, part);
+    if (this.fence) this.gl.deleteSync(this.fence);
+    this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.gl.flush();
     this.fresh = this.sortedNumber === this.number;
     Object.assign(this.stats, { frame_ms: performance.now() - began, drawn: this.ready.count, slots: this.splats.slots });
     this.onFrame?.(this.stats);
@@ -316,6 +348,7 @@ export class SplatViewer {
 
   close() {
     this.observer.disconnect();
+    this.stop.abort();
     this.controls.close();
     this.worker.terminate();
     if (this.asked) cancelAnimationFrame(this.asked);
