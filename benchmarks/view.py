@@ -31,7 +31,7 @@ def run(quick: bool, parts: Sequence[str] = PARTS) -> Result:
         notes=(
             *(note for _, notes in found for note in notes),
             "opened: from the address of an exported file to its first whole picture.",
-            "first: from the server's address to the first whole picture, at a second visit; pictures: drawn meanwhile.",
+            "first: from the address of a server to the first whole picture, second visit; pictures: drawn meanwhile.",
             "frame: projecting, blending and presenting; the sort is a worker's and not in it.",
             "beside: a frame from the camera's move to its pixels, while each engine sorts.",
             "words.seconds: to the last byte of the change at a client, without the browser.",
