@@ -34,10 +34,12 @@ picture: $(VENV)/.ready
 	  i = i.resize((1000, round(i.height * 1000 / i.width)), Image.Resampling.LANCZOS); \
 	  i.quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save('docs/demo.png', optimize=True)"
 
-# The picture of the page in the README and in docs/view.md, as its test makes it in a browser; with fewer colours.
+# The picture of the page in the README and in docs/view.md, as its test makes it in a browser.
 page-picture: $(VENV)/.ready-dev
-	SCENEWRIGHT_PAGE_PICTURES=docs $(BIN)/python -m pytest -n 0 -m slow tests/agent/view/test_picture_of_the_page.py
-	$(BIN)/python -c "from PIL import Image; Image.open('docs/view.png').convert('RGB').save('docs/view.png', optimize=True)"
+	mkdir -p $(DEMO)
+	SCENEWRIGHT_PAGE_PICTURES=$(DEMO) $(BIN)/python -m pytest -n 0 -m slow tests/agent/view/test_picture_of_the_page.py
+	$(BIN)/python -c "from PIL import Image; \
+	  Image.open('$(DEMO)/view.png').convert('RGB').save('docs/view.jpg', quality=88, optimize=True, subsampling=0)"
 
 format: $(VENV)/.ready-dev
 	$(BIN)/ruff check --fix .
