@@ -21,8 +21,8 @@ from .terminal.output import error_json, terminal
 
 VERBS = (
     "demo", "info", "embed", "name-all", "select", "ask", "describe", "plan", "schema", "check", "compose", "edit",
-    "chat", "view", "render", "find-view", "convert", "export", "mesh", "slim", "mcp", "fit", "dream", "bench",
-    "doctor",
+    "chat", "view", "render", "find-view", "convert", "export", "mesh", "slim", "mcp", "fit", "dream", "batch",
+    "bench", "doctor",
 )  # fmt: skip
 
 _ON_A_SESSION = ("select", "ask", "edit", "describe")  # which first load all that a session needs

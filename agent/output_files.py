@@ -32,9 +32,11 @@ def require_folder(path: Path) -> None:
 def folder_of(scene: Path) -> Path:
     """The folder that a session writes to: where the scene lies. A scene that is a folder itself (SOG, levels of
     detail) stays as it is: files in it would make it another scene, whose language field is no longer its own."""
+    from ..gaussians.files.formats import sog
     from ..gaussians.files.formats.streamed_sog import scene_folder
 
-    return scene_folder(scene.absolute()).parent
+    whole = scene_folder(scene.absolute())
+    return (whole.parent if whole.name == sog.META else whole).parent
 
 
 def make_folder(path: Path) -> None:

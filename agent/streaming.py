@@ -27,8 +27,14 @@ def is_streamed(path: Path) -> bool:
     return path.suffix.lower() == ".lod" or path.name == "lod-meta.json"
 
 
-def write_levels(scene: Scene, output: Path, sizes: Sizes, measured: int, force: bool) -> None:
-    """Write the scene in levels, with what each keeps in so many held-out views, and print them."""
+def write_levels(
+    scene: Scene, original: GaussianCloud, output: Path, sizes: Sizes, measured: int, force: bool
+) -> None:  # fmt: skip
+    """Write the scene in levels, with what each keeps in so many held-out views, and print them.
+
+    Args:
+        original: what the finest level is compared with; the scene may be a reduced form of it.
+    """
     from ..gaussians.files.formats import streamed_sog_writing
     from ..gaussians.files.formats.streamed_sog import Streamed
     from ..gaussians.levels.making import LEVELS, described, make, measure
@@ -45,7 +51,7 @@ def write_levels(scene: Scene, output: Path, sizes: Sizes, measured: int, force:
         streamed_sog_writing.write(made, folder, chunk_rows, terminal.progress)
         terminal.progress("measuring", 0.99)
         held_out = views.held_out[:: -(-len(views.held_out) // measured)] if measured else ()
-        streamed_sog_writing.annotate(folder, scene, measure(scene, folder, held_out) if held_out else ())
+        streamed_sog_writing.annotate(folder, scene, measure(original, folder, held_out) if held_out else ())
         found = described(Streamed.open(folder))
     seconds = time.perf_counter() - start
     terminal.clear()

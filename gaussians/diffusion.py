@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import json
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ def pipeline_in(argument: str, kind: str, option: str) -> Any:
         option: of the command line, for messages.
 
     Raises:
-        BackendError: as `load`.
+        BackendError: it is no pipeline, brings code of its own, or cannot be loaded; or diffusers is not installed.
     """
     folder = Path(argument).expanduser()
     if not (folder / "model_index.json").is_file():
@@ -27,6 +28,7 @@ def pipeline_in(argument: str, kind: str, option: str) -> Any:
             f"{folder} is no folder of a diffusers pipeline: it has no model_index.json; download a model into it, or "
             "save one with save_pretrained"
         )
+    _refuse_code(folder)
     if importlib.util.find_spec("torchvision") is not None:
         import_torchvision()  # transformers imports it
     try:
@@ -38,9 +40,20 @@ def pipeline_in(argument: str, kind: str, option: str) -> Any:
     import torch
 
     try:
-        pipeline = getattr(library, kind).from_pretrained(str(folder), local_files_only=True)
+        pipeline = getattr(library, kind).from_pretrained(str(folder), local_files_only=True, use_safetensors=True)
         pipeline = pipeline.to("cuda" if torch.cuda.is_available() else "cpu")
         pipeline.set_progress_bar_config(disable=True)
     except Exception as error:  # missing weights, unknown classes, broken files: each library its own
         raise BackendError(f"cannot load the pipeline in {folder}: {error}; download it again") from error
     return pipeline
+
+
+def _refuse_code(folder: Path) -> None:
+    """A folder from elsewhere must not bring a program along: diffusers runs classes of its own that an index names."""
+    try:
+        index = json.loads((folder / "model_index.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BackendError(f"cannot read {folder / 'model_index.json'}: {error}; download the model again") from error
+    named = index.get("_class_name") if isinstance(index, dict) else None
+    if named is not None and not isinstance(named, str) or any(folder.rglob("*.py")):
+        raise BackendError(f"{folder} brings Python code of its own, which is not run; use a pipeline without any")

@@ -86,7 +86,7 @@ def command(
     if streamed:
         for note in report.notes:
             terminal.say(f"note: {note}")
-        write_levels(smaller, output, (levels, chunk), views, force)
+        write_levels(smaller, cut.cloud, output, (levels, chunk), views, force)
         return
     start = time.perf_counter()
     _save(smaller, output, force, spz_version)

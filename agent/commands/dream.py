@@ -106,6 +106,8 @@ def command(
         raise UserError(_without_model(prompt))
     if model == LIBRARY:
         scene = library_thing(prompt, seed)
+        if height is not None:
+            scene = standing(scene.cloud, prompt, height)
         save(scene, output, force=force)
         terminal.result(f"{output}: {len(scene.cloud):,} Gaussians from the library; nothing was dreamt",
                         {"output": str(output), "gaussians": len(scene.cloud), "model": LIBRARY})  # fmt: skip

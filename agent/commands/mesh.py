@@ -67,6 +67,8 @@ def command(
     )  # fmt: skip
     made.save(output, force)
     terminal.clear()
+    if faces is not None and len(made.faces) > faces:
+        terminal.say(f"note: {len(made.faces):,} triangles are the fewest that keep its pieces closed")
     if session.scene.frame.metres_per_unit is None:
         terminal.say("note: the scene's scale is unknown; one of its units is written as a metre (--metres-per-unit)")
     data = _data(made, output, chosen) | {"seconds": round(time.perf_counter() - started, 2)}

@@ -146,7 +146,14 @@ class Hub:
     def welcome(self) -> dict[str, Any]:
         """The `welcome` message."""
         shown = self.shown
-        told = {"type": "welcome", "revision": shown.revision, "slots": shown.slots.count, "degree": shown.degree}
+        run = self._first.revision  # a tab's conversation belongs to one run of the server
+        told = {
+            "type": "welcome",
+            "run": run,
+            "revision": shown.revision,
+            "slots": shown.slots.count,
+            "degree": shown.degree,
+        }
         return {**told, **self._welcome, "digest": self._state["digest"]}
 
     def load(self, shown: Shown) -> Iterator[bytes]:

@@ -35,7 +35,11 @@ def run(options: SessionOptions, *, port: int, open_page: bool, anew: bool) -> N
         session.point(None)  # the log then holds something that is later than those edits
         earlier = None
     begin = None if earlier is None else lambda: restore(session, earlier, lambda note: terminal.say(f"note: {note}"))
-    coarse = coarse_level(options.path)
+    try:
+        coarse = coarse_level(options.path)
+    except FileError as error:  # the scene itself is there
+        terminal.say(f"note: no coarse picture comes first: {error}")
+        coarse = None
     hub = Hub(
         session, options.path.name, Folder(folder_of(options.path)), keep_field=embedded, coarse=coarse, begin=begin
     )

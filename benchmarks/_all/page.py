@@ -13,7 +13,7 @@ PAGE = "README.md"
 # What whole runs measure less of than they once did, or than a benchmark does by itself.
 LESS = (
     f"{', '.join(sorted(running.TOGETHER))}, and parts of {', '.join(sorted(set(running.SHARED_PARTS) - {'edits'}))}, "
-    "ran two at a time with one thread each: their times are of the processor, or describe a core beside a busy one; "
+    "ran beside each other with one thread each: their times are of the processor, or describe a core beside a busy one; "
     "all other times were measured alone",
     *(f"{part} is left out: {reason}" for part, reason in running.LEFT_OUT.items()),
     "fit: the default for five minutes only; `scenewright bench fit` compares eight settings in an hour",
@@ -22,7 +22,7 @@ LESS = (
     "ask: 360 questions in 12 furnished rooms and 200 in 16 graphs, not 600 in 20 and 300 in 24",
     "plan: every eighth sentence of other people, not every fourth",
     "fill: 60 deletions, not 100. slim: no 44 dB",
-    "dream: half a minute each on one core, not two",
+    "dream: twelve seconds each on one core",
 )
 _ONCE = "accuracies are shares or likenesses, which do not depend on the machine; times do"
 

@@ -116,8 +116,9 @@ def jobs(names: Sequence[str], quick: bool) -> list[Job]:
 def prepare(say: Callable[[str], None]) -> None:
     """Fit the captures that several benchmarks look at, so that none of them waits for it, and no two do it twice."""
     started = time.perf_counter()
-    subprocess.run([sys.executable, "-m", "scenewright.benchmarks._select.real.fitted"], check=False)
-    say(f"captures fitted, or kept from before: {time.perf_counter() - started:.0f} s")
+    done = subprocess.run([sys.executable, "-m", "scenewright.benchmarks._select.real.fitted"], check=False)
+    said = "captures fitted, or kept from before" if done.returncode == 0 else "captures could not be fitted"
+    say(f"{said}: {time.perf_counter() - started:.0f} s")
 
 
 def measured(
@@ -178,10 +179,13 @@ def _once(todo: Sequence[Job], quick: bool, kept: Path | None) -> Iterator[tuple
 def _kept_or_run(job: Job, quick: bool, kept: Path | None) -> Result | str:
     """The kept result of a job, or a new one, which is then kept."""
     path = None if kept is None else kept / f"{job.title.replace(' ', '-')}.json"
+    revision = _machine.revision()
     if path is not None and path.is_file():
-        return Result.from_json(path.read_text(encoding="utf-8"))
+        known = Result.from_json(path.read_text(encoding="utf-8"))
+        if known.revision == revision:
+            return known
     outcome = _run(job, quick)
-    if path is not None and isinstance(outcome, Result):
+    if path is not None and isinstance(outcome, Result) and outcome.revision == revision:
         path.parent.mkdir(parents=True, exist_ok=True)
         with writing(path, force=True) as file:
             file.write(outcome.to_json().encode())

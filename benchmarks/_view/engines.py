@@ -252,10 +252,15 @@ class _Files(http.server.BaseHTTPRequestHandler):
             kind = "text/html"
         elif path in self._table:
             body = self._table[path]
-        elif path.startswith("/modules/") and self._modules is not None:
-            body = (self._modules / path.removeprefix("/modules/")).read_bytes()
         else:
-            body = ((PAGE if path.startswith("/viewer/") else _FOLDER) / path[1:]).read_bytes()
+            root = PAGE if path.startswith("/viewer/") else _FOLDER
+            if path.startswith("/modules/") and self._modules is not None:
+                root = self._modules
+            file = (root / path.removeprefix("/modules").lstrip("/")).resolve()
+            if not file.is_relative_to(root.resolve()) or not file.is_file():
+                self.send_error(404)
+                return
+            body = file.read_bytes()
         self.send_response(200)
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(body)))

@@ -5,7 +5,10 @@ The program runs without a shell, so that no word of a prompt is ever read as a 
 
 from __future__ import annotations
 
+import contextlib
+import os
 import shlex
+import signal
 import subprocess
 import tempfile
 from pathlib import Path
@@ -52,6 +55,19 @@ def arguments(spec: str, prompt: str, image: Path | None, output: Path) -> list[
     return [fill(part) for part in parts]
 
 
+def _run(command: list[str], seconds: float) -> subprocess.CompletedProcess[bytes]:
+    """As `subprocess.run`, but what the program starts ends with it."""
+    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, start_new_session=True, **pipes) as process:
+        try:
+            out, err = process.communicate(timeout=seconds)
+        except BaseException:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            raise
+    return subprocess.CompletedProcess(command, process.returncode, out, err)
+
+
 def run(spec: str, prompt: str, image: Path | None, seconds: float) -> GaussianCloud:
     """The Gaussians that a program writes, in the program's own axes.
 
@@ -66,7 +82,7 @@ def run(spec: str, prompt: str, image: Path | None, seconds: float) -> GaussianC
         output = Path(folder) / OUTPUT
         command = arguments(spec, prompt, None if image is None else image.absolute(), output)
         try:
-            done = subprocess.run(command, capture_output=True, timeout=seconds, check=False, stdin=subprocess.DEVNULL)
+            done = _run(command, seconds)
         except FileNotFoundError as error:
             raise BackendError(f"there is no program {command[0]!r}; give its path in {PREFIX}...") from error
         except subprocess.TimeoutExpired as error:

@@ -49,7 +49,7 @@ class Generator:
         from ..files import save
 
         root = self.folder if self.folder is not None else kept()
-        key = hashlib.sha256(f"{self.spec}\n{prompt}\n{self.seed}".encode()).hexdigest()[:24]
+        key = hashlib.sha256(f"{Path.cwd()}\n{self.spec}\n{prompt}\n{self.seed}".encode()).hexdigest()[:24]
         path = root / f"{key}.ply"
         if not path.is_file():
             root.mkdir(parents=True, exist_ok=True)

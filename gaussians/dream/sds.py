@@ -98,6 +98,6 @@ def distilled(
     noise = torch.from_numpy(rng.standard_normal(tuple(code.shape), dtype=np.float32)).to(code)
     with torch.no_grad():
         noisy = alpha**0.5 * code + (1 - alpha) ** 0.5 * noise
-        off = torch.nan_to_num(denoiser.noise(noisy, step, asked).to(code) - noise)
+        off = torch.nan_to_num(denoiser.noise(noisy, step, asked).to(code) - noise, 0.0, 0.0, 0.0)
     (gradient,) = torch.autograd.grad(code, leaf, weight(alpha) * off / code.numel())
     return float(off.square().mean().sqrt()), np.ascontiguousarray(gradient.numpy())

@@ -16,7 +16,7 @@ F64 = NDArray[np.float64]
 
 USUAL: Up = "y"  # of what programs write that turn a picture into Gaussians
 _CLEARER = 1.3  # factor by which proportions have to fit better than as usual
-# Rows: our x, y, z in the axes of the file; a front at +z of y-up files, and at +x of z-up files' kind, becomes -y.
+# Rows: our x, y, z in the axes of the file. The front of files whose y is up is +z; of those whose z is up, -y.
 TURNS: dict[str, F64] = {
     "x": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
     "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
@@ -25,7 +25,7 @@ TURNS: dict[str, F64] = {
 
 
 def upright(cloud: GaussianCloud, kind: Kind | None, up: Up = "auto") -> tuple[GaussianCloud, str]:
-    """The Gaussians with z up, and the axis of theirs that was up.
+    """The Gaussians with z up and harmonics of degree 0, which need no rotation; and the axis of theirs that was up.
 
     Args:
         kind: of the object; None if unknown.

@@ -83,15 +83,18 @@ def _moved(fine: GaussianCloud, coarse: GaussianCloud, rows: NDArray[np.int64], 
     return root
 
 
-def measure(scene: Scene, path: Path, views: Sequence[View]) -> tuple[tuple[float, float], ...]:
+def measure(original: GaussianCloud, path: Path, views: Sequence[View]) -> tuple[tuple[float, float], ...]:
     """PSNR in dB of each level of a written folder, mean and least of held-out views, as `Level` has it.
+
+    Args:
+        original: what level 0 is compared with.
 
     Raises:
         FileError: the folder cannot be read.
     """
     streamed = Streamed.open(path)
     cameras = [view.camera for view in views]
-    truth, found = scene.cloud, list[tuple[float, float]]()
+    truth, found = original, list[tuple[float, float]]()
     for level in range(streamed.levels):
         cloud = streamed.level(level)[0]
         loss = psnr(truth, cloud, cameras)

@@ -38,7 +38,7 @@ FAINT = 0.02  # opacity below which a Gaussian does not widen the grid
 SPREAD = 1.5  # standard deviations that a Gaussian reaches
 STRAY = 0.25  # of the extent, beyond which a Gaussian is a floater
 OUTER = 0.01  # share of the Gaussians at each end of each axis that do not define the extent
-LARGEST = 8192  # texels per side
+LARGEST = 4096  # texels per side: solving for more takes gigabytes
 _MARGIN = 4  # cells around the part
 
 

@@ -5,11 +5,11 @@ const KEY = "scenewright-turns";
 const KEPT = 100; // turns
 let key = 0;
 
-/** What this tab said before it was loaded again: `{turns, told}`; nothing in a new tab. */
+/** What this tab said before it was loaded again: `{turns, told, run}`; nothing in a new tab. */
 export function keptTurns() {
   try {
-    const {turns, told} = JSON.parse(sessionStorage.getItem(KEY));
-    return {turns: turns.map((turn) => ({...turn, key: key++, id: null})), told};
+    const {turns, told, run} = JSON.parse(sessionStorage.getItem(KEY));
+    return {turns: turns.map((turn) => ({...turn, key: key++, id: null})), told, run};
   } catch {
     return {};
   }
@@ -17,8 +17,13 @@ export function keptTurns() {
 
 /** Keeps what was said and answered for when the tab is loaded again. */
 export function keepTurns(store) {
-  store.watch(["turns", "told"], ({turns, told}) => {
-    sessionStorage.setItem(KEY, JSON.stringify({turns: turns.filter((turn) => turn.answer).slice(-KEPT), told}));
+  store.watch(["turns", "told", "run"], ({turns, told, run}) => {
+    const answered = turns.filter((turn) => turn.answer).slice(-KEPT);
+    try {
+      sessionStorage.setItem(KEY, JSON.stringify({turns: answered, told, run}));
+    } catch {
+      sessionStorage.removeItem(KEY); // there is no room for it
+    }
   });
 }
 

@@ -80,7 +80,8 @@ function onMessage(message) {
 
 function onWelcome(scene) {
   const first = store.state.scene === null;
-  store.update({scene, connection: store.state.loaded === 1 ? "ready" : "loading"});
+  if (first && store.state.run !== scene.run) store.update({turns: [], told: 0}); // kept from another scene or server
+  store.update({scene, run: scene.run, connection: store.state.loaded === 1 ? "ready" : "loading"});
   document.title = `${scene.title} – Scenewright`;
   byId("title").textContent = scene.title;
   Object.assign(viewer.controls, {up: scene.up, floor: scene.floor, metres: scene.metres_per_unit});

@@ -49,6 +49,7 @@ export function initialState() {
     question: null,
     history: [],
     told: 0, // how many steps of it the conversation tells
+    run: null, // of the server, to which the conversation belongs
     canUndo: false,
     canRedo: false,
     embedded: false,

@@ -21,7 +21,7 @@ from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 import torch
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from ...camera import Camera
 from ...cloud import GaussianCloud, concat
@@ -65,6 +65,12 @@ class Run(_Part):
 class _Bound(_Part):
     min: sog.Triple
     max: sog.Triple
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if any(low > high for low, high in zip(self.min, self.max, strict=True)):
+            raise ValueError("a box ends before it begins")
+        return self
 
 
 class _Node(_Part):

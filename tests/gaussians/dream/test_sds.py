@@ -65,11 +65,12 @@ def test_a_picture_of_another_size_is_brought_to_that_of_the_denoiser() -> None:
     assert np.isfinite(found).all()
 
 
-def test_nothing_that_a_denoiser_returns_becomes_nan() -> None:
+@pytest.mark.parametrize("gain", [float("nan"), float("inf"), -float("inf")])
+def test_nothing_that_a_denoiser_returns_does_harm(gain: float) -> None:
     model = _linear()
-    model.gain = float("nan")
-    _, found = distilled(model, _picture(), view(0, 0, 8), 0.4, np.random.default_rng(7))
-    assert np.isfinite(found).all()
+    model.gain = gain
+    off, found = distilled(model, _picture(), view(0, 0, 8), 0.4, np.random.default_rng(7))
+    assert off == 0 and not found.any()
 
 
 @pytest.mark.parametrize("count", [1, 2, 50, 1000])

@@ -44,7 +44,7 @@ def test_levels_stay_in_their_leaves_and_beat_dropping(tmp_path: Path) -> None:
         assert (torch.from_numpy(levels.tree.leaf_of(cloud.means.numpy())) == cloud.group).all()
     streamed_sog_writing.save(levels, tmp_path / "a.lod")
     held_out = views.held_out[:4]
-    found = measure(scene, tmp_path / "a.lod", held_out)
+    found = measure(scene.cloud, tmp_path / "a.lod", held_out)
     streamed_sog_writing.annotate(tmp_path / "a.lod", scene, found)
     told = described(Streamed.open(tmp_path / "a.lod"))
     assert [level.gaussians for level in told] == counts

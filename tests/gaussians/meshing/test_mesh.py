@@ -182,7 +182,7 @@ def test_a_hollow_thing_is_filled() -> None:
     ("change", "message"),
     [
         ({"faces": 3}, "at least 4 faces"),
-        ({"texture": 7}, "16 to 8192 texels"),
+        ({"texture": 7}, "16 to 4096 texels"),
         ({"cells": 4}, "8 to 512 cells"),
     ],
 )
