@@ -55,5 +55,5 @@ def _refuse_code(folder: Path) -> None:
     except (OSError, ValueError) as error:
         raise BackendError(f"cannot read {folder / 'model_index.json'}: {error}; download the model again") from error
     named = index.get("_class_name") if isinstance(index, dict) else None
-    if named is not None and not isinstance(named, str) or any(folder.rglob("*.py")):
+    if (named is not None and not isinstance(named, str)) or any(folder.rglob("*.py")):
         raise BackendError(f"{folder} brings Python code of its own, which is not run; use a pipeline without any")

@@ -7,6 +7,7 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
+from ...gaussians.errors import FileError
 from ..output_files import folder_of
 from ..session.opening import SessionOptions, open_session
 from ..session.restoring import restore, unfinished
