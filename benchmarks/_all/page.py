@@ -13,8 +13,8 @@ PAGE = "README.md"
 # What whole runs measure less of than they once did, or than a benchmark does by itself.
 LESS = (
     f"{', '.join(sorted(running.TOGETHER))}, and parts of {', '.join(sorted(set(running.SHARED_PARTS) - {'edits'}))}, "
-    "ran beside each other with one thread each: their times are of the processor, or describe a core beside a busy one; "
-    "all other times were measured alone",
+    "ran beside each other with one thread each: their times are of the processor, or describe a core beside a busy "
+    "one; all other times were measured alone",
     *(f"{part} is left out: {reason}" for part, reason in running.LEFT_OUT.items()),
     "fit: the default for five minutes only; `scenewright bench fit` compares eight settings in an hour",
     "fit_sizes: a minute for each degree on one core, not a minute and a half on two",
