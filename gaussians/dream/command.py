@@ -57,8 +57,9 @@ def arguments(spec: str, prompt: str, image: Path | None, output: Path) -> list[
 
 def _run(command: list[str], seconds: float) -> subprocess.CompletedProcess[bytes]:
     """As `subprocess.run`, but what the program starts ends with it."""
-    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    with subprocess.Popen(command, start_new_session=True, **pipes) as process:
+    with subprocess.Popen(
+        command, start_new_session=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
         try:
             out, err = process.communicate(timeout=seconds)
         except BaseException:

@@ -156,8 +156,8 @@ def _fake_diffusers(monkeypatch: pytest.MonkeyPatch, paint: Callable[[dict[str, 
 
     class Pipeline:
         @classmethod
-        def from_pretrained(cls, folder: str, local_files_only: bool) -> Pipeline:
-            assert local_files_only and Path(folder).is_dir()
+        def from_pretrained(cls, folder: str, local_files_only: bool, use_safetensors: bool) -> Pipeline:
+            assert local_files_only and use_safetensors and Path(folder).is_dir()
             return cls()
 
         def to(self, device: str) -> Pipeline:
@@ -218,6 +218,18 @@ def test_diffusers_is_optional(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setitem(sys.modules, "diffusers", None)
     with pytest.raises(BackendError, match=r"scenewright\[diffusion\]"):
         load(f"diffusers:{_pipeline_folder(tmp_path)}")
+
+
+@pytest.mark.parametrize("index", ['{"_class_name": ["code", "Pipeline"]}', "{}", "no JSON"])
+def test_a_folder_with_a_program_in_it_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, index: str) -> None:
+    """diffusers imports the modules that an index names."""
+    _fake_diffusers(monkeypatch, _paint)
+    (tmp_path / "unet").mkdir()
+    if index == "{}":
+        (tmp_path / "unet" / "code.py").write_text("1 / 0")
+    (tmp_path / "model_index.json").write_text(index)
+    with pytest.raises(BackendError, match=r"not run|cannot read"):
+        load(f"diffusers:{tmp_path}")
 
 
 def test_a_folder_is_written_first_and_read_then(tmp_path: Path) -> None:

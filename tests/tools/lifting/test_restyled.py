@@ -103,7 +103,7 @@ def test_a_pipeline_of_diffusers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     calls: list[dict[str, Any]] = []
 
     class Pipeline:
-        from_pretrained = classmethod(lambda cls, folder, local_files_only: cls())
+        from_pretrained = classmethod(lambda cls, folder, local_files_only, use_safetensors: cls())
         to = staticmethod(lambda device: Pipeline())
         set_progress_bar_config = staticmethod(lambda disable: None)
 
