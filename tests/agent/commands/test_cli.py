@@ -353,7 +353,7 @@ def test_bench_lists_and_measures(call: Any, monkeypatch: pytest.MonkeyPatch, tm
     assert call("bench", "nonsense").code == 2
     values = iter([1.0, 1.0, 2.0])
 
-    def run(name: str, quick: bool) -> harness.Result:
+    def run(name: str, quick: bool, parts: tuple[str, ...] = ()) -> harness.Result:
         metric = harness.Metric("a.seconds", next(values), "s", "lower", 0.1)
         return harness.Result("a test", "PSNR (dB)", (metric,), (harness.Point("cpu", "full", 0.1, 50.0, 10, True),))
 

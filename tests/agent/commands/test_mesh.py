@@ -12,6 +12,7 @@ import trimesh
 from scenewright.gaussians.meshing import texturing
 
 
+@pytest.mark.slow
 def test_a_named_thing_becomes_a_file(call: Any, room: Path, tmp_path: Path) -> None:
     target = tmp_path / "thing.glb"
     code, out, err = call(

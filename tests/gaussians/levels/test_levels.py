@@ -34,6 +34,7 @@ def test_many_at_one_place_end_the_division(share: float) -> None:
     assert sizes.sum() == 1000 and sizes.min() > 0 and sizes.max() <= max(100, share * 1000)
 
 
+@pytest.mark.slow
 def test_levels_stay_in_their_leaves_and_beat_dropping(tmp_path: Path) -> None:
     scene = furnish(3).scene
     views = choose_views(scene, size=128)
