@@ -121,6 +121,7 @@ class _Hand(threading.Thread):
                     self._process = subprocess.Popen(
                         [sys.executable, "-m", f"{__package__}.worker"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                         stderr=subprocess.DEVNULL, text=True, encoding="utf-8", env={**threads, **os.environ},
+                        start_new_session=True,  # Ctrl-C is for the batch: it ends its workers
                     )  # fmt: skip
                 except OSError as error:
                     raise BackendError(f"cannot start a worker: {error.strerror or error}") from error

@@ -29,6 +29,7 @@ from .jobs import Job, arguments
 from .working import Outcome, Task
 
 Receipt = dict[str, Any]
+INTERRUPTED = 130  # exit code of a command line that Ctrl-C ended
 
 
 @dataclass
@@ -87,6 +88,8 @@ def run_batch(
         paths = {key: str(folder.absolute()) for key, folder in folders.items()}
         tasks = {key: Task(arguments(job.run, paths[key]), paths[key]) for key, job in first.items()}
         for key, outcome in engine.outcomes(tasks):
+            if outcome["code"] == INTERRUPTED:  # not its failure: it is done next time
+                raise KeyboardInterrupt
             receipt = _settled(out, first[key], key, folders[key], outcome)
             known[key] = receipt
             totals.done += receipt["code"] == 0

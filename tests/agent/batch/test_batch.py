@@ -103,6 +103,14 @@ def test_what_failed_is_not_repeated_unless_asked(tmp_path: Path) -> None:
     assert (len(idle.done), len(again.done)) == (0, 1)
 
 
+def test_an_interrupt_ends_the_batch_and_fails_no_job(tmp_path: Path) -> None:
+    jobs, out = [_job("a", "x"), _job("b", "y")], tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        run_batch(jobs, out, Counting(code=130))
+    assert not list((out / "receipts").iterdir())
+    assert run_batch(jobs, out, Counting()).done == 2
+
+
 def test_two_batches_do_not_share_a_folder(tmp_path: Path) -> None:
     class Nested(Counting):
         def outcomes(self, tasks: Mapping[str, Task]) -> Iterator[tuple[str, Outcome]]:
