@@ -111,7 +111,7 @@ def _vote(box: Box, name: str) -> list[tuple[float, str]]:
     kind = kinds.find(name) if name else None
     if kind is None or min(box.size) <= 0:
         return []
-    width, depth, height = ((low * high) ** 0.5 if low > 0 else high / 2 for low, high in kind.size)
+    width, depth, height = kind.usual_size
     by_length, by_height = np.log(max(box.size[:2]) / max(width, depth)), np.log(box.size[2] / height)
     return [] if abs(by_length - by_height) > np.log(SHAPE) else [(float(by_length + by_height) / 2, name)]
 
@@ -121,7 +121,7 @@ def _long_vote(box: Box, name: str) -> list[tuple[float, str]]:
     kind = kinds.find(name) if name else None
     if kind is None or max(box.size) <= 0:
         return []
-    usual = max((low * high) ** 0.5 if low > 0 else high / 2 for low, high in kind.size)
+    usual = max(kind.usual_size)
     return [(float(np.log(max(box.size) / usual)), name)]
 
 
@@ -254,7 +254,7 @@ def fitted(scale: SceneScale, kind: str, old: Box) -> SceneScale:
     size = kinds.find(kind)
     if not scale.guessed or size is None:
         return scale
-    width, depth, height = ((low * high) ** 0.5 if low > 0 else high / 2 for low, high in size.size)
+    width, depth, height = size.usual_size
     factor = min(old.size[2] / height, _WIDER * max(old.size[:2]) / max(width, depth))
     said = "the scene's scale is unknown; the new thing is as large as what it replaces"
     return SceneScale(max(factor, 1e-9), (said,))

@@ -84,13 +84,11 @@ def run_batch(
             if keys[job.id] not in known:
                 first.setdefault(keys[job.id], job)
         totals = Totals(len(jobs), len(jobs) - len(first))
-        folders = {key: work / f"{job.id}-{secrets.token_hex(4)}" for key, job in first.items()}
-        paths = {key: str(folder.absolute()) for key, folder in folders.items()}
-        tasks = {key: Task(arguments(job.run, paths[key]), paths[key]) for key, job in first.items()}
+        tasks = {key: _task(job, work) for key, job in first.items()}
         for key, outcome in engine.outcomes(tasks):
             if outcome["code"] == INTERRUPTED:  # not its failure: it is done next time
                 raise KeyboardInterrupt
-            receipt = _settled(out, first[key], key, folders[key], outcome)
+            receipt = _settled(out, first[key], key, Path(tasks[key].folder), outcome)
             known[key] = receipt
             totals.done += receipt["code"] == 0
             totals.failed += receipt["code"] != 0
@@ -102,6 +100,12 @@ def run_batch(
             file.write("".join(json.dumps(r, ensure_ascii=False) + "\n" for r in totals.receipts).encode())
         shutil.rmtree(work, ignore_errors=True)
     return totals
+
+
+def _task(job: Job, work: Path) -> Task:
+    """A job in a new folder, of which only this run knows."""
+    folder = str((work / f"{job.id}-{secrets.token_hex(4)}").absolute())
+    return Task(arguments(job.run, folder), folder)
 
 
 def _same(receipt: Receipt, job: Job) -> Receipt:
@@ -116,7 +120,7 @@ def _settled(out: Path, job: Job, key: str, folder: Path, outcome: Outcome) -> R
     shutil.rmtree(place, ignore_errors=True)  # of an earlier run that was stopped before its receipt, or of other words
     if not empty and outcome["code"] == 0:
         os.replace(folder, place)
-        outcome = _renamed(outcome, str(folder.absolute()), str(place))
+        outcome = _renamed(outcome, str(folder), str(place))
     receipt: Receipt = {
         "id": job.id, "key": key, "run": list(job.run), **outcome,
         "folder": job.id if not empty and outcome["code"] == 0 else None,

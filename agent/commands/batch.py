@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import Debug, Json
-from ..terminal.output import terminal
+from ..terminal.output import terminal, time_left
 
 if TYPE_CHECKING:
     from ..batch.engines import Engine
@@ -67,8 +67,7 @@ def _engine(workers: int, ray: str | None) -> Engine:
 
 def _shown(receipt: dict[str, Any], totals: Totals) -> None:
     ended, todo = totals.done + totals.failed, totals.jobs - totals.kept
-    left = f"{totals.left / 60:.1f} min left" if totals.left >= 60 else f"{totals.left:.0f} s left"
-    terminal.progress(f"{ended} of {todo} jobs, {totals.failed} failed, {left}", ended / max(todo, 1))
+    terminal.progress(f"{ended} of {todo} jobs, {totals.failed} failed, {time_left(totals.left)}", ended / max(todo, 1))
     if receipt["code"]:
         terminal.say(f"{receipt['id']} failed with {receipt['code']}: {_last_line(receipt)}")
 

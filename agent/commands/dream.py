@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ..options import Debug, Force, Json, Seed
-from ..terminal.output import terminal
+from ..terminal.output import terminal, time_left
 
 if TYPE_CHECKING:
     from ...gaussians.dream.dreaming import Dreamed, Settings, Status
@@ -168,10 +168,9 @@ class _Shown:
         self._folder, self._last = folder, time.monotonic()
 
     def __call__(self, status: Status) -> None:
-        left = status.seconds_left
-        until = f"{left / 60:.1f} min left" if left >= 60 else f"{left:.0f} s left"
         terminal.progress(
-            f"step {status.steps}, residual {status.residual:.3f}, {status.gaussians:,} Gaussians, {until}",
+            f"step {status.steps}, residual {status.residual:.3f}, {status.gaussians:,} Gaussians, "
+            f"{time_left(status.seconds_left)}",
             status.share,
         )
         now = time.monotonic()

@@ -12,7 +12,7 @@ import typer
 
 from ..options import Debug, Effort, Force, Json, Seed
 from ..terminal.effort import dialled, reported, tell
-from ..terminal.output import terminal
+from ..terminal.output import terminal, time_left
 
 if TYPE_CHECKING:
     from ...gaussians.fit import Fitted, Photos, Settings, Status
@@ -169,9 +169,7 @@ def _describe(photos: Photos) -> str:
 
 def _show_status(status: Status) -> None:
     seen = "" if status.psnr != status.psnr else f", {status.psnr:.2f} dB held out"
-    left = (
-        f"{status.seconds_left / 60:.1f} min left" if status.seconds_left >= 60 else f"{status.seconds_left:.0f} s left"
-    )
+    left = time_left(status.seconds_left)
     terminal.progress(
         f"step {status.steps}, loss {status.loss:.4f}{seen}, {status.gaussians:,} Gaussians, {left}", status.share
     )

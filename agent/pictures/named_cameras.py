@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import math
 import re
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import UserError
+from ...gaussians.kept import Kept
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera, Vec3
-    from ...gaussians.scene import Scene
+    from ...gaussians.scene import Frame, Scene
 
 PICTURE = (960, 640)  # pixels, by default
 _FOV_Y = 55.0  # degrees, of a view given by eye and target
@@ -50,15 +50,21 @@ def default_view(scene: Scene) -> Camera:
     return default_viewer(scene if scene.cameras else framed(scene), *PICTURE)
 
 
-@lru_cache(maxsize=1)  # seconds, and what opens a scene asks twice; a session keeps its scenes anyway
+_frames: Kept[Frame] = Kept(1)  # estimating takes seconds, and what opens a scene asks twice
+
+
 def framed(scene: Scene) -> Scene:
     """The scene with up and floor estimated, if its up direction is unknown."""
     if scene.frame.up_source != "unknown":
         return scene
+    return scene.replace(frame=_frames.get((scene,), lambda: _estimated(scene)))
+
+
+def _estimated(scene: Scene) -> Frame:
     from ...gaussians.language.segmentation.orient import estimate_frame
     from ...gaussians.language.segmentation.surface import surface_of
 
-    return scene.replace(frame=estimate_frame(surface_of(scene.cloud), scene.cameras, scene.frame))
+    return estimate_frame(surface_of(scene.cloud), scene.cameras, scene.frame)
 
 
 def with_frame(scene: Scene, up: str | None, metres_per_unit: float | None) -> Scene:

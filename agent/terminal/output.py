@@ -19,6 +19,11 @@ import typer
 from ...gaussians.errors import AbsentError, ScenewrightError, UserError
 
 
+def time_left(seconds: float) -> str:
+    """An estimate in words: "2.5 min left", "40 s left"."""
+    return f"{seconds / 60:.1f} min left" if seconds >= 60 else f"{seconds:.0f} s left"
+
+
 class Terminal:
     """One command's output.
 

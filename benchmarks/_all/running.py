@@ -18,6 +18,7 @@ from pathlib import Path
 
 from ...gaussians.errors import FileError
 from ...gaussians.files import writing
+from ...gaussians.user_cache import user_cache
 from .. import _fits, _machine
 from ..harness import Result
 from .repeats import joined, merged
@@ -197,8 +198,7 @@ def kept_folder(quick: bool) -> Path | None:
     revision = _machine.revision()
     if revision is None or revision.endswith("-dirty"):
         return None
-    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return root / "scenewright" / "bench" / "all" / f"{revision}{'-quick' if quick else ''}"
+    return user_cache("bench", "all", f"{revision}{'-quick' if quick else ''}")
 
 
 def side_by_side(names: Sequence[str], say: Callable[[str], None], surroundings: Mapping[str, str]) -> Measured:

@@ -39,6 +39,7 @@ from ...gaussians.errors import BackendError
 from ...gaussians.render import render
 from ...gaussians.render.convention import near_plane
 from ...gaussians.scene import Scene
+from ...gaussians.user_cache import user_cache
 from .._data import folder, missing
 from ..render import VIEWS, View
 from .browser import DRIVERS, chromium
@@ -120,7 +121,7 @@ def fetched() -> Path:
     Raises:
         BackendError: there is no npm, or it could not fetch them.
     """
-    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "scenewright" / "engines"
+    root = user_cache("engines")
     modules = root / "node_modules"
     if all(_version(modules / name) == version for name, _, version in (p.rpartition("@") for p in PACKAGES)):
         return modules

@@ -21,17 +21,15 @@ from ..errors import FileError, UserError
 from ..fit import checkpoint
 from ..fit.densify import MCMCStrategy
 from ..fit.engine import engine_for, resolve_device
+from ..fit.fitting import CHECKPOINT_EVERY, REPORT_EVERY
 from ..fit.parameters import Parameters
-from ..fit.train import LR_DECAY, MEANS_LR, REFINE_STOP, morton_order
+from ..fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, REFINE_STOP, morton_order
 from .sds import Denoiser, distilled
 from .start import Start
 from .views import drawn
 
 EXTENT = 2.6  # distance of the views from the object, radii: what the learning rate of means is multiplied with
 COARSE, SMALL = 0.4, 0.5  # share of the dreaming in small pictures, and their side over the whole one
-REFINE_EVERY = 100  # steps between two refinements
-CHECKPOINT_EVERY = 30.0  # seconds
-REPORT_EVERY = 0.5  # seconds
 FAINT = 0.02  # opacity below which a Gaussian is left out at the end
 _NOISE = 5e3  # of the strategy: a tenth of that for photographs, as an object has no far places to find
 

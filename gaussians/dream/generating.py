@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from ..errors import BackendError
 from ..scene import Scene
+from ..user_cache import user_cache
 from . import command, denoisers
 from .dreaming import Settings, dream
 from .prior import kind_of, standing, start_for
@@ -80,5 +80,4 @@ def from_command(
 
 def kept() -> Path:
     """The folder in which things are kept."""
-    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return root / "scenewright" / "dreams"
+    return user_cache("dreams")

@@ -87,5 +87,4 @@ def _usual(prompt: str, span: Vec3) -> float:
     kind = kind_of(prompt)
     if kind is None:
         return UNKNOWN / max(span)
-    usual = [(low * high) ** 0.5 if low > 0 else high / 2 for low, high in kind.size]
-    return float(np.exp(np.mean([np.log(max(u, 1e-3) / s) for u, s in zip(usual, span, strict=True)])))
+    return float(np.exp(np.mean([np.log(max(u, 1e-3) / s) for u, s in zip(kind.usual_size, span, strict=True)])))

@@ -8,7 +8,9 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from ..assets.modeling.imported import FROM_Y_UP
 from ..cloud import GaussianCloud
+from ..rotations import from_matrix, multiply, normalize
 from ..world.kinds import Kind
 
 Up = Literal["auto", "x", "y", "z"]
@@ -19,7 +21,7 @@ _CLEARER = 1.3  # factor by which proportions have to fit better than as usual
 # Rows: our x, y, z in the axes of the file. The front of files whose y is up is +z; of those whose z is up, -y.
 TURNS: dict[str, F64] = {
     "x": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
-    "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+    "y": FROM_Y_UP,
     "z": np.eye(3),
 }
 
@@ -34,8 +36,6 @@ def upright(cloud: GaussianCloud, kind: Kind | None, up: Up = "auto") -> tuple[G
     points = cloud.means.to(torch.float64).numpy()
     axis = up if up != "auto" else _by_proportions(points, kind)
     turn = TURNS[axis]
-    from ..rotations import from_matrix, multiply, normalize
-
     spin = from_matrix(torch.from_numpy(turn)).to(torch.float32)
     return cloud.replace(
         means=torch.from_numpy((points @ turn.T).astype(np.float32)), quats=normalize(multiply(spin, cloud.quats)),

@@ -7,6 +7,7 @@ the grammar, the wishes, the checker and the vocabularies of the encoders. Addin
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -95,6 +96,12 @@ class Kind:
     def names(self) -> tuple[str, ...]:
         """Every word for it, its own name first."""
         return tuple(dict.fromkeys((self.name, *self.also, *self.loosely, *self.labels, *self.narrower)))
+
+    @property
+    def usual_size(self) -> tuple[float, float, float]:
+        """Width, depth and height of a usual one, metres: the middle of the sizes as sold, as ratios go."""
+        width, depth, height = (math.sqrt(low * high) if low > 0 else high / 2 for low, high in self.size)
+        return width, depth, height
 
     @property
     def is_rug(self) -> bool:

@@ -18,6 +18,8 @@ from lark import Lark
 from lark.grammar import Rule
 from lark.lexer import Lexer, TerminalDef
 
+from ...gaussians.user_cache import user_cache
+
 
 def load_parser(grammar: str, lexer: type[Lexer]) -> Lark:
     """The parser of a grammar, from its stored tables where there are any; else it is built and its tables stored."""
@@ -32,9 +34,8 @@ def load_parser(grammar: str, lexer: type[Lexer]) -> Lark:
 
 def tables_path(grammar: str) -> Path:
     """Path of the stored tables of a grammar."""
-    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     mark = hashlib.sha256(f"{lark.__version__};{grammar}".encode()).hexdigest()[:24]
-    return root / "scenewright" / "grammar" / f"{mark}.json"
+    return user_cache("grammar", f"{mark}.json")
 
 
 def _stored(parser: Lark) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from ....gaussians.language import encoders, masks
 from ....gaussians.language.field.embed import embed
 from ....gaussians.language.field.store import load_field, save_field
 from ....gaussians.scene import Scene
+from ....gaussians.user_cache import user_cache
 from ..._data import folder
 from ..._select.real.fitted import scene_of
 
@@ -133,5 +134,4 @@ def _views(setting: Setting, scene: Scene) -> tuple[Camera, ...]:
 def results_folder() -> Path:
     """Where pictures go: `SCENEWRIGHT_BENCH_EDITS`, or a folder of the user's cache."""
     given = os.environ.get("SCENEWRIGHT_BENCH_EDITS")
-    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return Path(given) if given else root / "scenewright" / "bench" / "edits"
+    return Path(given) if given else user_cache("bench", "edits")

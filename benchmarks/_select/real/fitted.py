@@ -13,6 +13,7 @@ from ....agent.terminal.output import terminal
 from ....gaussians.files import load, save
 from ....gaussians.fit import Settings, fit, load_photos
 from ....gaussians.scene import Scene
+from ....gaussians.user_cache import user_cache
 from ..._data import folder
 
 READY = "SCENEWRIGHT_BENCH_SCENES"
@@ -27,7 +28,7 @@ def scene_of(capture: Path) -> Scene:
     given = None if ready is None else Path(ready) / f"{capture.name}.ply"
     if given is not None and given.is_file():
         return load(given)
-    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "scenewright" / "bench"
+    root = user_cache("bench")
     kept = root / f"{capture.name}-{STEPS}-{VERSION}.ply"
     if not kept.is_file():
         terminal.say(f"note: fitting {capture.name} in {STEPS} steps, once; it is kept as {kept}")

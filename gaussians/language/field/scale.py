@@ -57,7 +57,7 @@ def _log_scale(group: Group) -> float | None:
     kind = kinds.find(group.label) if group.label and group.label_score >= SURE else None
     if kind is None or group.level != "object" or not group.count or min(group.box.size) <= 0:
         return None
-    width, depth, height = (math.sqrt(low * high) if low > 0 else high / 2 for low, high in kind.size)
+    width, depth, height = kind.usual_size
     by_length = math.log(max(width, depth) / max(group.box.size[:2]))
     by_height = math.log(height / group.box.size[2])
     return None if abs(by_length - by_height) > math.log(SHAPE) else (by_length + by_height) / 2

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import zlib
 from dataclasses import asdict
 from pathlib import Path
@@ -25,6 +24,7 @@ from ...errors import FileError, ScenewrightError, UserError
 from ...files.atomic import writing
 from ...files.formats.streamed_sog import scene_folder
 from ...scene import Frame, Scene
+from ...user_cache import user_cache
 from .language_field import Group, LanguageField
 from .making import Making
 
@@ -66,8 +66,7 @@ def field_path(scene_path: Path) -> Path:
 
 def cached_field_path(scene_fingerprint: str) -> Path:
     """Path of the field in the user's cache."""
-    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return root / "scenewright" / "fields" / (scene_fingerprint + SUFFIX)
+    return user_cache("fields", scene_fingerprint + SUFFIX)
 
 
 def save_field(scene: Scene, scene_path: Path, packed: bool = False) -> Path:

@@ -24,7 +24,7 @@ from ....gaussians.rotations import from_matrix
 from ..new_rows import FLAT, OPACITY
 from ..planes import F64, Mask
 from .patchwork import patched
-from .views import SPECK, VOID, Place, View, seen_again
+from .views import CLEAR, SPECK, VOID, Place, View, seen_again
 
 _SUPPORT, _GUESSED = (
     0.5,
@@ -45,7 +45,7 @@ _FARTHER = 1.3  # times the largest depth around a hole: that of the last
 _UNCOVERED = 0.2  # of a pixel that the thing filled, below which what is behind it was seen
 _OUTSIDE = 3.0  # times the thing's distance: what surrounds a hole and is farther away is the outside of a window
 _TOLD_OF = 0.02  # of the pixels that the thing filled: a hole that stays open is told from this on
-_CLEAR, _ENDS = 0.02, 0.3  # of a pixel that the thing filled; of what surrounds a hole that has to be nothing
+_ENDS = 0.3  # of what surrounds a hole that has to be nothing, so that a scene ends there
 _GLASS = 0.5  # of what surrounds a hole, from which it is in a mirror or a window
 GLASS = "a mirror or a window lies behind it, and what that shows there nobody saw"
 NOTHING_BEHIND = "nothing is seen behind it that could be continued"
@@ -176,7 +176,7 @@ def _is_void(view: View, ring: Mask, place: Place) -> bool:
 
     Where no photograph shows the place, it may be unknown as well, and that is told.
     """
-    nothing = (view.alpha < VOID) & (view.covers < _CLEAR)
+    nothing = (view.alpha < VOID) & (view.covers < CLEAR)
     most = _ENDS if view.taken else _ENDS / 2
     return any(v.taken for v in place.views) and bool(ring.any() and (ring & nothing).sum() > most * ring.sum())
 

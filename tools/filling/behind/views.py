@@ -30,7 +30,7 @@ _MARGIN = 0.6  # of that side: what is seen around it
 _NEAREST, _AWAY = 0.6, 2.4  # of the thing's extent: least distance of a view, and that of views that are added
 _SHOWS = 0.3  # of the thing that nothing hides, so that an added view is one from where it can be seen
 _COVERS = 0.05  # share of a pixel from which the thing covers it
-_CLEAR = 0.02  # share below which the pixel is not touched by it
+CLEAR = 0.02  # share below which the pixel is not touched by it
 _GONE = 0.5  # of the alpha around: a pixel with less shows nothing
 VOID = 0.12  # alpha below which nothing is there: dark surfaces in captures on black reach no high alpha
 SPECK = 5  # pixels of a hole
@@ -85,7 +85,7 @@ class View:
         low, high = np.quantile(self.front[there], [0.05, 0.95])
         away, at = ndimage.distance_transform_edt(~there, return_indices=True)
         nearer = self.depth < self.front[tuple(at)] - _BEFORE * (high - low)
-        nearer &= (away <= _BESIDE) & (self.covers < _CLEAR) & (self.alpha > 0.5)
+        nearer &= (away <= _BESIDE) & (self.covers < CLEAR) & (self.alpha > 0.5)
         # What the thing stands on is as far away as the thing is where they meet, and nearer only farther from it.
         area, count = ndimage.label(nearer)
         pixels = np.bincount(area.ravel(), minlength=count + 1)
@@ -102,12 +102,12 @@ class View:
     def open_pixels(self) -> Mask:
         """`[H, W]` where the thing was and nothing is now, without specks."""
         hid = self.covers > _COVERS
-        sure = (self.covers < _CLEAR) & ~ndimage.binary_dilation(hid) & ~self.before
+        sure = (self.covers < CLEAR) & ~ndimage.binary_dilation(hid) & ~self.before
         if not hid.any() or not sure.any():
             return np.zeros(hid.shape, bool)
         around = harmonic(ndimage.median_filter(self.alpha, 3)[..., None], sure, ~sure)[..., 0]
         gone = hid & (self.alpha < _GONE * np.maximum(around, VOID))
-        gone = ndimage.binary_closing(gone) & (self.covers > _CLEAR)
+        gone = ndimage.binary_closing(gone) & (self.covers > CLEAR)
         gone = gone if self.dark is None else gone & ~self.dark
         area, count = ndimage.label(gone)
         size = np.bincount(area.ravel(), minlength=count + 1)
