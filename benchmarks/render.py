@@ -27,7 +27,7 @@ from .harness import Metric, Point, Result
 
 DATA = Path(__file__).resolve().parents[1] / "../shared/data"  # unless SCENEWRIGHT_DATA says otherwise
 SIZES, QUICK_SIZES = ((512, 512), (1920, 1080)), ((256, 256),)
-REPEATS, QUICK_REPEATS = 9, 3
+REPEATS, QUICK_REPEATS = 5, 3
 BEST_PSNR = 120.0  # dB, where equal pictures are capped: below float32's own rounding
 FAINT = 0.1  # opacity from which one of the settings keeps Gaussians
 SYNTHETIC = 300_000  # Gaussians of the cloud drawn where real scenes are absent; a tenth if quick

@@ -101,7 +101,7 @@ class Measured:
 
 
 def jobs(names: Sequence[str], quick: bool) -> list[Job]:
-    """What is run, in the order in which it starts: first jobs that share the cores, the longest of them first."""
+    """What is run, in the order in which it starts: first jobs that are timed, then others, the longest first."""
     found = list[Job]()
     for name in names:
         if quick or name not in SHARED_PARTS:
@@ -111,7 +111,7 @@ def jobs(names: Sequence[str], quick: bool) -> list[Job]:
         if TIMED_PARTS[name]:
             found.append(Job(name, TIMED_PARTS[name]))
     last = len(LONGEST)
-    return sorted(found, key=lambda j: (not j.shares, LONGEST.index(j.title) if j.title in LONGEST else last))
+    return sorted(found, key=lambda j: (j.shares, LONGEST.index(j.title) if j.title in LONGEST else last))
 
 
 def prepare(say: Callable[[str], None]) -> None:
@@ -131,8 +131,8 @@ def measured(
 ) -> Measured:
     """Run benchmarks once, and the shortest of those that are timed again while time is left.
 
-    Jobs that share the cores run first, as many at a time as there are cores; the others one after the other, with the
-    machine to themselves. Quick runs leave out `LONG`.
+    Jobs that are timed run first, one after the other, with the machine to themselves; then those that share the cores,
+    as many at a time as there are cores. Quick runs leave out `LONG`.
 
     Args:
         say: gets a sentence about each run.
@@ -167,14 +167,14 @@ def _joined(name: str, found: Mapping[Job, Sequence[Result]]) -> Result:
 
 
 def _once(todo: Sequence[Job], quick: bool, kept: Path | None) -> Iterator[tuple[Job, Result | str]]:
-    """Each job with its result or failure, as they end: first those that share the cores, then the others."""
+    """Each job with its result or failure, as they end: first those that are timed, then those that share the cores."""
+    for job in todo:
+        if not job.shares:
+            yield job, _kept_or_run(job, quick, kept)
     with ThreadPoolExecutor(_machine.cores()) as pool:
         under_way = {pool.submit(_kept_or_run, job, quick, kept): job for job in todo if job.shares}
         for done in as_completed(under_way):
             yield under_way[done], done.result()
-    for job in todo:
-        if not job.shares:
-            yield job, _kept_or_run(job, quick, kept)
 
 
 def _kept_or_run(job: Job, quick: bool, kept: Path | None) -> Result | str:
