@@ -17,6 +17,7 @@ from .painted import Painted
 
 if TYPE_CHECKING:
     from .language.field.language_field import LanguageField
+    from .motion.motion import Motion
 
 Source = Literal["given", "file", "estimated", "unknown"]
 
@@ -77,6 +78,8 @@ class Scene:
         language: the groups that phrases resolve to, or None before embedding.
         path: the file it was loaded from, or None.
         painted: what was painted, with its colours before; None if nothing was, and in a scene just loaded.
+        motion: what changes with time; None in a static scene. The cloud is the scene at `motion.start`, and
+            `motion.at.at` gives it at any time.
     """
 
     cloud: GaussianCloud
@@ -85,6 +88,7 @@ class Scene:
     language: LanguageField | None = None
     path: Path | None = None
     painted: Painted | None = None
+    motion: Motion | None = None
 
     def replace(self, **changes: Any) -> Self:
         """A new scene with some fields replaced."""

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from .gaussians.language.query.query import Query, Relation
     from .gaussians.language.query.selection import Selection
     from .gaussians.meshing import Mesh, mesh
+    from .gaussians.motion.at import at
+    from .gaussians.motion.motion import Look, Motion, Track
     from .gaussians.render import render
     from .gaussians.scene import Frame, Scene
     from .planners.compose.api import compose
@@ -62,6 +64,10 @@ _HOME = {
     "embed": ".gaussians.language.field.embed",
     "mesh": ".gaussians.meshing",
     "Mesh": ".gaussians.meshing",
+    "Motion": ".gaussians.motion.motion",
+    "Track": ".gaussians.motion.motion",
+    "Look": ".gaussians.motion.motion",
+    "at": ".gaussians.motion.at",
     "kinds": ".gaussians.assets",
     "make": ".gaussians.assets",
     "furnish": ".gaussians.assets",
@@ -106,7 +112,9 @@ __all__ = [
     "GaussianCloud",
     "InstructionError",
     "LanguageField",
+    "Look",
     "Mesh",
+    "Motion",
     "Query",
     "Receipt",
     "Relation",
@@ -119,8 +127,10 @@ __all__ = [
     "Selection",
     "Session",
     "Toolbox",
+    "Track",
     "UnconfirmedError",
     "UserError",
+    "at",
     "compose",
     "embed",
     "furnish",
