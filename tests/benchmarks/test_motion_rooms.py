@@ -1,0 +1,53 @@
+"""The moving rooms: what moves is where their tracks say, and films know it."""
+
+import json
+
+import numpy as np
+import pytest
+import torch
+
+from scenewright.benchmarks._motion import films, rooms
+from scenewright.gaussians.errors import UserError
+from scenewright.gaussians.motion.at import at
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return rooms.moving_room("ball", 0.15)
+
+
+def test_a_ball_rolls_across_the_rug_to_the_wall(ball):
+    path = films.middles(ball, [0.0, 0.4, 1.2, 2.2, 3.5, 5.0])[0]
+    rug = next(g.box for g in ball.language.groups if g.label == "rug")
+    assert np.allclose(path[0], path[1]) and np.allclose(path[4], path[5])
+    assert abs(path[5][0] + 0.11 - 2.5) < 0.01  # at the east wall, metres
+    low, high = rug.center[0] - rug.size[0] / 2, rug.center[0] + rug.size[0] / 2
+    assert path[0][0] < low < path[2][0] < path[3][0] < high < path[4][0]
+
+
+def test_every_moving_row_is_of_the_thing_that_moves(ball):
+    number = next(g.id for g in ball.language.groups if g.label == "ball")
+    held = torch.isin(ball.cloud.ids, torch.from_numpy(ball.motion.tracks[0].ids))
+    assert torch.equal(held, ball.cloud.group == number)
+
+
+def test_the_mask_of_a_frame_covers_the_moved_thing(ball):
+    camera = films.standing("ball", 4, (64, 48))[1]
+    frame = films.Clouds(ball).frame(camera, 2.0)
+    pixel, depth = camera.project(at(ball, 2.0).cloud.means[ball.cloud.group == 9].double().mean(0).numpy()[None])
+    assert depth[0] > 0 and frame.mask[int(pixel[0, 1]), int(pixel[0, 0])] and frame.mask.mean() < 0.1
+
+
+def test_a_film_is_written_as_a_capture_with_times(ball, tmp_path):
+    made = films.film("ball", "4", (48, 36), fps=0.4, detail=0.15)
+    films.write(made, tmp_path)
+    frames = json.loads((tmp_path / "transforms.json").read_text())["frames"]
+    assert len(frames) == len(made.frames) and {f["time"] for f in frames} == set(made.times.tolist())
+    assert all(
+        (tmp_path / f["file_path"]).is_file() and (tmp_path / "truth" / f["file_path"]).is_file() for f in frames
+    )
+
+
+def test_an_unknown_room_is_refused_with_the_known_ones():
+    with pytest.raises(UserError, match="ball, door, drawer, fan, books, toy"):
+        rooms.moving_room("garden")
