@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .camera import Camera, Vec3
 from .cloud import GaussianCloud
 from .errors import UserError
+from .motion.motion import with_only
 from .render import contributions, render
 from .scene import Scene
 
@@ -71,7 +72,7 @@ def prune(scene: Scene, max_gaussians: int, cameras: Sequence[Camera]) -> Scene:
     if not cameras:
         raise UserError("no view shows anything of this scene, so its Gaussians cannot be ranked; crop it instead")
     kept = np.sort(rank_by_contribution(scene.cloud, cameras)[:max_gaussians])
-    return scene.replace(cloud=scene.cloud[torch.from_numpy(kept)])
+    return _rows(scene, torch.from_numpy(kept))
 
 
 def psnr(truth: GaussianCloud, other: GaussianCloud, cameras: Sequence[Camera]) -> tuple[float, ...]:
@@ -84,7 +85,13 @@ def _cut(scene: Scene, inside: torch.Tensor, what: str) -> Scene:
         low, high = scene.cloud.means.amin(dim=0).tolist(), scene.cloud.means.amax(dim=0).tolist()
         spans = ", ".join(f"{axis} {a:.4g} to {b:.4g}" for axis, a, b in zip("xyz", low, high, strict=True))
         raise UserError(f"no Gaussian lies in the {what}; the scene spans {spans}")
-    return scene.replace(cloud=scene.cloud[inside])
+    return _rows(scene, inside)
+
+
+def _rows(scene: Scene, rows: torch.Tensor) -> Scene:
+    """The scene with some rows alone."""
+    cloud = scene.cloud[rows]
+    return scene.replace(cloud=cloud, motion=with_only(scene.motion, cloud.ids.cpu().numpy()))
 
 
 def _image(cloud: GaussianCloud, camera: Camera) -> NDArray[np.float64]:

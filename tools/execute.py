@@ -23,6 +23,7 @@ from .cohesion import remarks
 from .enclosed import with_enclosed
 from .judging.case import Case
 from .judging.examine import measured
+from .keeping_motion import with_motion_kept
 from .operation import Context, EditOp, Outcome
 from .ops.reframe import of_everything
 from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
@@ -69,7 +70,7 @@ def carry_out(
             inner = (f"{len(chosen.enclosed):,} Gaussians inside it went along",)
         op = op.settled(scene, context)
     with timed(seconds, "apply"):
-        outcome = op.apply(scene, chosen, context)
+        outcome = with_motion_kept(scene, op.apply(scene, chosen, context))
         unsupported = (*remarks(scene, op, chosen), *unsupported_note(scene, outcome.scene, chosen.groups))
         query = op.query()
         where = (chosen.reason,) if query is not None and query.spatial and chosen.reason else ()

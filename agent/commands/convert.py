@@ -220,10 +220,13 @@ def _save(scene: Scene, output: Path, force: bool, spz_version: int) -> None:
     from ...gaussians.files import save, writing
     from ...gaussians.files.formats import spz
     from ...gaussians.files.formats.morton import morton_sorted
+    from ...gaussians.files.motion_file import save_motion
 
     if output.suffix.lower() == ".spz" and spz_version != spz.LATEST:
+        ordered = morton_sorted(scene)
         with writing(output, force) as file:
-            spz.write(morton_sorted(scene), file, spz_version)
+            spz.write(ordered, file, spz_version)
+        save_motion(ordered, output)
     else:
         save(scene, output, force)
 

@@ -130,10 +130,12 @@ def _write(done: Slimmed, loaded: Scene, target: Path, ids: Path | None, force: 
     import numpy as np
 
     from ...gaussians.files import writing
+    from ...gaussians.files.motion_file import save_motion
     from ...gaussians.language.field.store import save_field
 
     with writing(target, force) as file:
         file.write(done.data)
+    save_motion(done.scene, target)
     field = None if loaded.language is None else save_field(done.scene, target, packed=True)
     if ids is not None:
         rows = io.BytesIO()

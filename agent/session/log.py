@@ -288,7 +288,7 @@ def save_fields(path: str | Path, state: State) -> dict[str, Any]:
 
 def _file_digest(path: Path | None) -> str | None:
     """The digest of a scene file's bytes; None if it is no longer there."""
-    from ...gaussians.language.field.store import fingerprint
+    from ...gaussians.files.fingerprint import fingerprint
 
     if path is None or not path.exists():
         return None

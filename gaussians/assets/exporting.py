@@ -10,6 +10,7 @@ from torch import Tensor
 
 from ..errors import UserError
 from ..files import save, writer, writing
+from ..motion.motion import with_only
 from ..scene import Scene
 
 MESH = ".glb"
@@ -38,7 +39,8 @@ def export(scene: Scene, ids: Tensor, path: Path, force: bool = False) -> None:
     chosen = torch.isin(scene.cloud.ids, ids.to(scene.cloud.ids.device))
     if not bool(chosen.any()):
         raise UserError("nothing is selected, so there is nothing to write")
-    part = scene.replace(cloud=scene.cloud[chosen], language=None)
+    cloud = scene.cloud[chosen]
+    part = scene.replace(cloud=cloud, language=None, motion=with_only(scene.motion, cloud.ids.cpu().numpy()))
     if path.suffix.lower() != MESH:
         save(part, path, force=force)
         return

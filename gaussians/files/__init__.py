@@ -11,6 +11,7 @@ import functools
 import importlib
 import pkgutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -20,6 +21,7 @@ from . import formats
 from .atomic import writing
 from .format import HEAD_BYTES, Format, Report
 from .formats.morton import morton_sorted
+from .motion_file import load_motion, save_motion
 
 __all__ = ["Format", "Report", "known_formats", "load", "load_with_report", "save", "writer", "writing"]
 
@@ -34,10 +36,12 @@ def known_formats() -> tuple[Format, ...]:
 
 
 def load(path: str | Path) -> Scene:
-    """The scene in a file or folder of any known format; the ids of its Gaussians are the row numbers of the file.
+    """The scene in a file or folder of any known format, with the motion beside it, if there is one for exactly this
+    file; the ids of its Gaussians are the row numbers of the file.
 
     Raises:
-        FileError: the path is missing, unreadable, of an unknown format, or without a usable Gaussian.
+        FileError: the path is missing, unreadable, of an unknown format, or without a usable Gaussian;
+            or its motion is damaged.
     """
     return load_with_report(path)[0]
 
@@ -46,9 +50,11 @@ def load_with_report(path: str | Path) -> tuple[Scene, Report]:
     """As `load`, with a report of the file's format, its rows and the repairs made while reading."""
     path = Path(path)
     try:
-        return _detect(path).read(path)
+        scene, report = _detect(path).read(path)
     except OSError as error:
         raise FileError(f"cannot read {path}: {error.strerror or error}") from error
+    scene, notes = load_motion(scene, path)
+    return scene, replace(report, notes=(*report.notes, *notes))
 
 
 def _detect(path: Path) -> Format:
@@ -92,7 +98,7 @@ def _by_suffix(path: Path) -> Format | None:
 
 
 def save(scene: Scene, path: str | Path, force: bool = False) -> None:
-    """Write a scene atomically in the format that the file name asks for.
+    """Write a scene atomically in the format that the file name asks for, and its motion beside it.
 
     Rows keep their order, except in formats where neighbouring rows share storage (compressed .ply, SPZ, SOG): there
     they are sorted along a Morton curve, unless the scene has a language field, which refers to rows by number.
@@ -102,11 +108,13 @@ def save(scene: Scene, path: str | Path, force: bool = False) -> None:
         FileError: the folder is missing or cannot be written; an existing file is then unchanged.
     """
     path = Path(path)
-    write = writer(path)
+    known, write = _writable(path)
     if len(scene.cloud) == 0:
         raise UserError("there is nothing to save: the scene holds zero Gaussians")
+    ordered = _ordered(scene, known)
     with writing(path, force) as file:
-        write(scene, file)
+        write(ordered, file)
+    save_motion(ordered, path)
 
 
 def writer(path: Path) -> Callable[[Scene, BinaryIO], None]:
@@ -115,6 +123,17 @@ def writer(path: Path) -> Callable[[Scene, BinaryIO], None]:
     Raises:
         UserError: no writable format has this suffix.
     """
+    known, write = _writable(path)
+    return lambda scene, file: write(_ordered(scene, known), file)
+
+
+def _ordered(scene: Scene, known: Format) -> Scene:
+    """The scene with its rows in the order in which a format stores them; ids stay with their rows."""
+    return morton_sorted(scene) if known.morton_order and scene.language is None else scene
+
+
+def _writable(path: Path) -> tuple[Format, Callable[[Scene, BinaryIO], None]]:
+    """The format of a file name, and its function that writes rows as they are. Raises UserError if there is none."""
     known = _by_suffix(path)
     if known is None:
         writable = ", ".join(s for f in known_formats() if f.write for s in f.suffixes)
@@ -124,5 +143,4 @@ def writer(path: Path) -> Callable[[Scene, BinaryIO], None]:
             f"{known.name} needs levels, which only `scenewright convert SCENE {path.name}` makes: write the scene to "
             f"{path.stem}.ply first"
         )
-    write, sort = known.write, known.morton_order
-    return lambda scene, file: write(morton_sorted(scene) if sort and scene.language is None else scene, file)
+    return known, known.write

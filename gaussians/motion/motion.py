@@ -263,13 +263,13 @@ class Residual:
         ids: `[n]` stable ids, ascending.
         times: `[K]` ascending, seconds.
         basis: `[K, B]`, 0 at the start of the motion.
-        weights: `[n, B, 3]` scene units.
+        weights: `[n, B, 3]` float32, scene units.
     """
 
     ids: I64
     times: F64
     basis: F64
-    weights: F64
+    weights: NDArray[np.float32]
 
     def __post_init__(self) -> None:
         ids = np.asarray(self.ids, dtype=np.int64).reshape(-1)
@@ -279,7 +279,7 @@ class Residual:
         if not len(times) or not (np.diff(times) > 0).all():
             raise UserError("a residual needs at least one key, and the times of its keys must ascend")
         basis = _array(self.basis, "basis", (len(times), -1))
-        weights = _array(self.weights, "weights", (len(ids), basis.shape[1], 3))
+        weights = _array(self.weights, "weights", (len(ids), basis.shape[1], 3)).astype(np.float32)
         for name, value in {"ids": ids, "times": times, "basis": basis, "weights": weights}.items():
             object.__setattr__(self, name, value)
 
@@ -414,6 +414,14 @@ def without_ids(motion: Motion | None, gone: ArrayLike) -> Motion | None:
     held = mentioned_ids(motion)
     kept = held[~np.isin(held, lost)]
     return motion if len(kept) == len(held) else _mapped(motion, kept, kept)
+
+
+def with_only(motion: Motion | None, kept: ArrayLike) -> Motion | None:
+    """The motion of some ids alone, in any order; None if nothing is left that changes with time."""
+    if motion is None:
+        return None
+    held = mentioned_ids(motion)
+    return without_ids(motion, held[~np.isin(held, np.asarray(kept, dtype=np.int64).reshape(-1))])
 
 
 def renumbered(motion: Motion | None, old: ArrayLike, new: ArrayLike) -> Motion | None:

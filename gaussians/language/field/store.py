@@ -9,7 +9,6 @@ group of every Gaussian compressed without loss.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import zlib
 from dataclasses import asdict
@@ -22,6 +21,7 @@ from pydantic import TypeAdapter
 
 from ...errors import FileError, ScenewrightError, UserError
 from ...files.atomic import writing
+from ...files.fingerprint import fingerprint
 from ...files.formats.streamed_sog import scene_folder
 from ...scene import Frame, Scene
 from ...user_cache import user_cache
@@ -40,22 +40,6 @@ _GROUPS = TypeAdapter(tuple[Group, ...])
 _NOTES = TypeAdapter(tuple[str, ...])
 _MAKING = TypeAdapter(Making | None)
 _FRAME = TypeAdapter(Frame)
-
-
-def fingerprint(path: Path) -> str:
-    """Hex SHA-256 of the bytes of a scene file; of the names and bytes of all files if the scene is a folder (SOG)."""
-    h = hashlib.sha256()
-    path = scene_folder(path)
-    try:
-        files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
-        for file in files:
-            h.update(f"{file.relative_to(path).as_posix()};".encode() if path.is_dir() else b"")
-            with file.open("rb") as stream:
-                while block := stream.read(1 << 22):
-                    h.update(block)
-    except OSError as error:
-        raise FileError(f"cannot read {path}: {error.strerror or error}") from error
-    return h.hexdigest()
 
 
 def field_path(scene_path: Path) -> Path:

@@ -16,10 +16,10 @@ import torch
 from scenewright.gaussians import files
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError, UserError
+from scenewright.gaussians.files.fingerprint import fingerprint
 from scenewright.gaussians.files.formats import streamed_sog, streamed_sog_writing
 from scenewright.gaussians.files.formats.morton import morton_sorted
 from scenewright.gaussians.files.formats.streamed_sog import Streamed
-from scenewright.gaussians.language.field.store import fingerprint
 from scenewright.gaussians.levels.levels import Levels
 from scenewright.gaussians.levels.tree import Tree, build
 from scenewright.gaussians.rotations import to_matrix

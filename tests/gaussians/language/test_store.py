@@ -20,13 +20,13 @@ from safetensors import safe_open
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError
 from scenewright.gaussians.files import atomic
+from scenewright.gaussians.files.fingerprint import fingerprint
 from scenewright.gaussians.language.field import store
 from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.language.field.making import Making, MaskSource
 from scenewright.gaussians.language.field.store import (
     cached_field_path,
     field_path,
-    fingerprint,
     load_field,
     mismatch,
     save_field,
