@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import os
+import secrets
+import shutil
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from ..gaussians.errors import FileError, UserError
@@ -62,3 +65,33 @@ def require_png(path: Path) -> None:
     """
     if path.suffix.lower() != ".png":
         raise UserError(f"cannot write {path}: pictures are written as .png")
+
+
+def write_whole(paths: Sequence[Path], make: Callable[[int, Path], None], force: bool) -> None:
+    """Make files of one folder in a hidden one, and move them to their places after the last: all of them or none.
+
+    Args:
+        make: writes the i-th file to a path.
+
+    Raises:
+        UserError: a file was made by others in the meantime and `force` is not set.
+        FileError: they cannot be written.
+    """
+    folder = paths[0].parent
+    make_folder(folder.absolute().parent)
+    fresh = not folder.exists()
+    staged = (folder.parent if fresh else folder) / f".{folder.name[:100]}.{secrets.token_hex(6)}.part"
+    make_folder(staged)
+    try:
+        for i, path in enumerate(paths):
+            make(i, staged / path.name)
+        refuse_existing(paths, force)
+        if fresh and not folder.exists():
+            os.rename(staged, folder)
+            return
+        for path in paths:
+            os.replace(staged / path.name, path)
+    except OSError as error:
+        raise FileError(f"cannot write into {folder}: {error.strerror or error}") from error
+    finally:
+        shutil.rmtree(staged, ignore_errors=True)

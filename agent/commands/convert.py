@@ -14,6 +14,7 @@ from ..terminal.output import terminal
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
+    from ...gaussians.files import Report
     from ...gaussians.scene import Scene
 
 VIEWS = 4  # to measure the loss from
@@ -54,6 +55,15 @@ def command(
         int | None,
         typer.Option("--chunk", min=1024, metavar="N", help="Most Gaussians of a file in a .lod folder (65536)."),
     ] = None,
+    at_time: Annotated[
+        str | None,
+        typer.Option(
+            "--time", metavar="T", help="A moving scene at so many seconds; 0:5 with OUT as %04d.ply: many files."
+        ),
+    ] = None,
+    fps: Annotated[
+        float | None, typer.Option("--fps", metavar="N", help="Files of a sequence that make a second.")
+    ] = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
@@ -64,11 +74,19 @@ def command(
     Niantic .spz (version 1 is read only), antimatter15 .splat (which holds no harmonics above the constant colour).
     A .lod folder (or a lod-meta.json in it) is PlayCanvas' Streamed SOG: levels of detail, each with a quarter of the
     Gaussians of the one before, merged, not dropped; the finest level is the scene that other verbs read.
+
+    A scene with motion keeps it, in a file beside OUT. With --time it is written as it is at that time, or as one file
+    for each time of a range; a sequence of files of the same Gaussians ('frames/*.ply' or frames/%04d.ply) becomes a
+    scene with motion.
     """
-    from ...gaussians.files import load_with_report, writer
+    from ...gaussians.files import writer
     from ..output_files import refuse_existing
+    from ..sequences import is_pattern
     from ..streaming import HELD_OUT, is_streamed, write_levels
 
+    if is_pattern(output):
+        _sequence(scene, output, at_time, fps, force)
+        return
     refuse_existing([output], force)
     streamed = is_streamed(output)
     if not streamed:
@@ -78,13 +96,14 @@ def command(
         views = HELD_OUT if streamed else VIEWS
     box, ball = _numbers(crop, 6, "--crop"), _numbers(crop_sphere, 4, "--crop-sphere")
     start = time.perf_counter()
-    loaded, report = load_with_report(scene)
-    read, size = time.perf_counter() - start, _size(scene)
+    loaded, report, size = _load(scene, fps, at_time)
+    read = time.perf_counter() - start
     cut = _cut(loaded, box, ball)
     cameras = _views(cut, views) if views and not streamed else ()
     smaller = _smaller(cut, sh_degree, max_gaussians, cameras)
     if streamed:
-        for note in report.notes:
+        left_out = () if smaller.motion is None else ("levels of detail hold no motion: it is left out",)
+        for note in (*report.notes, *left_out):
             terminal.say(f"note: {note}")
         write_levels(smaller, cut.cloud, output, (levels, chunk), views, force)
         return
@@ -97,6 +116,45 @@ def command(
     for note in done.notes:
         terminal.say(f"note: {note}")
     terminal.result(done.text(), done.data())
+
+
+def _load(scene: Path, fps: float | None, at_time: str | None) -> tuple[Scene, Report, int]:
+    """The scene to convert, the report of reading it, and its bytes: a file, or a sequence of them."""
+    from ...gaussians.errors import UserError
+    from ...gaussians.files import load_with_report
+    from ...gaussians.motion.at import at
+    from .. import sequences
+    from ..pictures.times import time_span
+
+    if sequences.is_pattern(scene):
+        loaded, report, size = sequences.read(scene, fps)
+    elif fps is not None:
+        raise UserError("--fps is for sequences of files; leave it out, or write OUT as a pattern such as %04d.ply")
+    else:
+        loaded, report = load_with_report(scene)
+        size = _size(scene)
+    if at_time is not None:
+        start, stop = time_span(at_time, loaded.motion, scene.name)
+        if stop > start:
+            raise UserError(f"--time {at_time} is many files; write OUT as a pattern such as frames/%04d.ply")
+        loaded = at(loaded, start)
+    return loaded, report, size
+
+
+def _sequence(scene: Path, output: Path, at_time: str | None, fps: float | None, force: bool) -> None:
+    """Write a scene with motion as one file for each time."""
+    from ...gaussians.files import load_with_report, writer
+    from .. import sequences
+    from ..pictures.times import time_span
+
+    writer(output)
+    loaded, report = load_with_report(scene)
+    for note in report.notes:
+        terminal.say(f"note: {note}")
+    span = time_span(at_time or ":", loaded.motion, scene.name)
+    data = sequences.write(loaded, output, span, fps, force)
+    text = f"{output}: {data['files']} files from {span[0]:g} to {span[1]:g} s, {data['bytes'] / 1e6:.1f} MB"
+    terminal.result(text, data)
 
 
 @dataclass

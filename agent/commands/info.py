@@ -40,6 +40,7 @@ def command(
     from ...gaussians.files import load_with_report
     from ...gaussians.language.field.store import load_field
     from ..streaming import levels_of
+    from ..terminal.motion_text import motion_data
     from ..terminal.thing_names import describe_things
 
     if capture is not None and not budget:
@@ -71,6 +72,7 @@ def command(
         "cameras": [{"name": c.name, "size": [c.width, c.height]} for c in loaded.cameras],
         "notes": list(report.notes),
         "levels": levels,
+        "motion": motion_data(loaded),
         "language": None,
     }
     things_text = "  not embedded yet: run `scenewright embed`"
@@ -109,6 +111,8 @@ def _show_budget(loaded: Scene, capture: Path | None) -> None:
 
 
 def _lines(data: dict[str, Any]) -> list[str]:
+    from ..terminal.motion_text import motion_lines
+
     low, high = data["bounds"]
     span = " x ".join(f"{b - a:.2f}" for a, b in zip(low, high, strict=True))
     scale, source = data["metres_per_unit"]
@@ -118,5 +122,6 @@ def _lines(data: dict[str, Any]) -> list[str]:
         f"  extent {span} units; " + (f"{scale:g} m a unit ({source})" if scale else "scale unknown"),
         f"  up {tuple(round(c, 3) for c in data['up'][0])} ({data['up'][1]})",
         f"  {len(data['cameras'])} cameras",
+        *motion_lines(data["motion"]),
         *(f"  repaired: {note}" for note in data["notes"]),
     ]

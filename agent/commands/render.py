@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..pictures.shots import Shots
     from ..streaming import Drawn
 
+Draw = Callable[["Camera", float | None], Any]  # a picture from a camera at a time, None: of the scene as it is
 Timing = tuple[float | None, float | None]  # seconds of a film, pictures a second
 
 _GIF_SIZE = (480, 320)  # pixels, by default: the files of larger GIFs grow fast
@@ -49,6 +50,12 @@ def command(
     path: Annotated[
         Path | None, typer.Option("--path", metavar="FILE", help="A camera path: keyframes in JSON, or nerfstudio's.")
     ] = None,
+    at_time: Annotated[
+        str | None,
+        typer.Option(
+            "--time", metavar="T", help="Seconds at which a moving scene is shown; 0:5 is a film, : all of it."
+        ),
+    ] = None,
     seconds: Annotated[float | None, typer.Option(help="Length of the film.")] = None,
     fps: Annotated[float | None, typer.Option(help="Pictures a second, 25 by default.")] = None,
     size: Size = None,
@@ -63,27 +70,36 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Render a scene from a camera, or a film: around it, from a capture's cameras, or along a path.
+    """Render a scene from a camera, or a film: around it, from a capture's cameras, along a path, or through time.
 
     A .lod is drawn at its finest level. With --lod each of its parts is drawn at the coarsest level that moves its
     Gaussians by at most so many pixels, and only the files of these levels are read.
     """
+    from dataclasses import replace
+
     from ...gaussians.color import parse
+    from ...gaussians.errors import UserError
     from ...gaussians.files import load
+    from ...gaussians.motion.at import at
     from ...gaussians.render import render
     from ..pictures.film import is_film
+    from ..pictures.shots import timed_shots
+    from ..pictures.times import spread, time_span
     from ..streaming import Drawn
 
     film = is_film(output)
     options = {"--view": view != "auto", "--orbit": orbit is not None, "--cameras": cameras is not None}
     options |= {"--path": path is not None, "--seconds": seconds is not None, "--fps": fps is not None}
-    _check_options([option for option, given in options.items() if given], output, film)
+    _check_options([option for option, given in options.items() if given], output, film, at_time)
+    if at_time is not None and lod is not None:
+        raise UserError("levels of detail hold no motion; leave out --lod or --time")
     _check_channels(alpha, depth, output)
     behind = (0.0, 0.0, 0.0) if alpha else parse(background)
     finish = _transparent if alpha else _thousandths if depth else lambda drawn: drawn.to_uint8()
 
-    def draw(camera: Camera) -> Any:
-        return finish(render(loaded.cloud if leveled is None else leveled.cloud(camera), camera, behind, backend))
+    def draw(camera: Camera, time: float | None = None) -> Any:
+        shown = loaded if time is None else at(loaded, time)
+        return finish(render(shown.cloud if leveled is None else leveled.cloud(camera), camera, behind, backend))
 
     if not film:
         refuse_existing([output], force)
@@ -93,13 +109,21 @@ def command(
     else:
         chosen = (view == "auto" and not leveled.streamed.cameras) if not film else cameras is None or bool(orbit)
         loaded = leveled.scene(whole=chosen)  # all of it where it says which views there are, as without levels
-    if film:
-        _film(draw, _shots(loaded, orbit, cameras, path, (seconds, fps), size, output), output, force, leveled)
+    span = None if at_time is None else time_span(at_time, loaded.motion, scene.name)
+    if not film:
+        _still(draw, choose_view(loaded, view, size), None if span is None else span[0], output, force, leveled)
+        return
+    timing = seconds, fps
+    if span is not None and orbit is None and cameras is None and path is None:
+        small = f"{_GIF_SIZE[0]}x{_GIF_SIZE[1]}" if output.suffix.lower() == ".gif" else None
+        shots = timed_shots(choose_view(loaded, view, size or small), span, *timing)
     else:
-        _still(draw, choose_view(loaded, view, size), output, force, leveled)
+        shots = _shots(loaded, orbit, cameras, path, timing, size, output)
+        shots = shots if span is None else replace(shots, times=spread(span, len(shots.cameras)))
+    _film(draw, shots, output, force, leveled)
 
 
-def _check_options(given: list[str], output: Path, film: bool) -> None:
+def _check_options(given: list[str], output: Path, film: bool, time: str | None) -> None:
     """Check that the given options fit together and fit the output. Raises UserError if they do not; the message names
     them."""
     from ...gaussians.errors import UserError
@@ -107,9 +131,12 @@ def _check_options(given: list[str], output: Path, film: bool) -> None:
     which = [option for option in given if option in ("--view", "--orbit", "--cameras", "--path")]
     if len(which) > 1 and which != ["--orbit", "--cameras"]:
         raise UserError(f"{' and '.join(which)} are different pictures; ask for one")
-    if film and which in ([], ["--view"]):
-        raise UserError(f"{output} is for many pictures; say which: --orbit 75, --cameras CAPTURE or --path FILE")
+    if film and which in ([], ["--view"]) and (time is None or ":" not in time):
+        raise UserError(
+            f"{output} is for many pictures; say which: --orbit 75, --cameras CAPTURE, --path FILE, or --time 0:5"
+        )
     many = [option for option in given if option != "--view"]
+    many += [f"--time {time}"] if time is not None and ":" in time else []
     if not film and many:
         raise UserError(f"{many[0]} is for many pictures; write a .gif, an .mp4 or a folder instead of {output.name}")
 
@@ -125,14 +152,15 @@ def _check_channels(alpha: bool, depth: bool, output: Path) -> None:
         raise UserError(f"{'--alpha' if alpha else '--depth'} needs PNGs; write a folder instead of {output.name}")
 
 
-def _still(draw: Callable[[Camera], Any], camera: Camera, output: Path, force: bool, leveled: Drawn | None) -> None:
+def _still(draw: Draw, camera: Camera, moment: float | None, output: Path, force: bool, leveled: Drawn | None) -> None:
     from ..pictures.image_files import save_png
 
     started = time.perf_counter()
-    picture = draw(camera)
+    picture = draw(camera, moment)
     seconds = round(time.perf_counter() - started, 3)
     save_png(picture, output, force)
     data = {"path": str(output), "size": [camera.width, camera.height], "view": camera.name, "seconds": seconds}
+    data |= {} if moment is None else {"time": moment}
     text = f"{output}: {camera.width}x{camera.height}, drawn in {seconds} s"
     _tell(text, data, leveled)
 
@@ -160,7 +188,7 @@ def _shots(
     return shots.capture_shots(cameras, given, *timing)
 
 
-def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool, leveled: Drawn | None) -> None:
+def _film(draw: Draw, shots: Shots, output: Path, force: bool, leveled: Drawn | None) -> None:
     from ..pictures import film
 
     sizes = {(camera.width, camera.height) for camera in shots.cameras}
@@ -170,7 +198,7 @@ def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool
 
     def drawn(i: int) -> Any:
         terminal.progress(f"drawing {i + 1} of {count}", i / count)
-        return draw(shots.cameras[i])
+        return draw(shots.cameras[i], shots.times[i] if shots.times else None)
 
     with terminal.interruptible():
         size = film.write(output, shots.names, drawn, shots.fps, force)
@@ -179,6 +207,7 @@ def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool
     width, height = next(iter(sizes)) if len(sizes) == 1 else (None, None)
     data = {"path": str(output), "pictures": count, "size": [width, height] if width else None, "bytes": size}
     data |= {"fps": round(shots.fps, 3), "lasts": round(shots.seconds, 3), "seconds": spent}
+    data |= {"time": [shots.times[0], shots.times[-1]]} if shots.times else {}
     of = f" of {width}x{height}" if width else ""
     lasts = "" if film.picture_paths(output, shots.names) else f", {shots.seconds:.1f} s at {shots.fps:g} a second"
     pictures = "1 picture" if count == 1 else f"{count} pictures"

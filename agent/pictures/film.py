@@ -9,7 +9,6 @@ import contextlib
 import itertools
 import os
 import re
-import secrets
 import select
 import shutil
 import subprocess
@@ -22,14 +21,14 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from ...gaussians.errors import BackendError, FileError, UserError
+from ...gaussians.errors import BackendError, UserError
 from ...gaussians.files import writing
-from ..output_files import make_folder, refuse_existing
+from ..output_files import refuse_existing, write_whole
 from .image_files import Picture, save_png
 
 Draw = Callable[[int], Picture]  # the i-th picture, [H, W, 3] or, for PNGs, [H, W, 4] or 16-bit [H, W]
 
-_PATTERN = re.compile(r"%(0\d{1,2})?d")
+PATTERN = re.compile(r"%(0\d{1,2})?d")
 _GIF_MAX_FPS = 50.0  # browsers slow a GIF with delays below two hundredths of a second down to ten pictures a second
 _GIF_MAX_PIXELS = 400_000_000  # of all pictures of a GIF together: they are held in memory until it is written
 _PALETTE_PICTURES = 16  # pictures that a GIF's palette is computed from
@@ -45,7 +44,7 @@ def is_film(output: Path) -> bool:
     """
     suffix = output.suffix.lower()
     if suffix == ".png":
-        return bool(_PATTERN.search(output.name))
+        return bool(PATTERN.search(output.name))
     if output.is_dir() or suffix in ("", ".gif", ".mp4"):
         return True
     raise UserError(f"cannot write {output}: pictures are written as .png, films as .gif, .mp4 or a folder of pictures")
@@ -106,7 +105,7 @@ def write(output: Path, names: Sequence[str], draw: Draw, fps: float, force: boo
     """
     pictures = picture_paths(output, names)
     if pictures:
-        _write_pictures(pictures, draw, force)
+        write_whole(pictures, lambda i, path: save_png(draw(i), path), force)
         return sum(path.stat().st_size for path in pictures)
     with writing(output, force) as file:
         if output.suffix.lower() == ".gif":
@@ -114,28 +113,6 @@ def write(output: Path, names: Sequence[str], draw: Draw, fps: float, force: boo
         else:
             _write_mp4(file, len(names), draw, fps)
     return output.stat().st_size
-
-
-def _write_pictures(paths: Sequence[Path], draw: Draw, force: bool) -> None:
-    """Write all pictures into a hidden folder, and move them to their places after the last one."""
-    folder = paths[0].parent
-    make_folder(folder.absolute().parent)
-    fresh = not folder.exists()
-    staged = (folder.parent if fresh else folder) / f".{folder.name[:100]}.{secrets.token_hex(6)}.part"
-    make_folder(staged)
-    try:
-        for i, path in enumerate(paths):
-            save_png(draw(i), staged / path.name)
-        refuse_existing(paths, force)
-        if fresh and not folder.exists():
-            os.rename(staged, folder)
-            return
-        for path in paths:
-            os.replace(staged / path.name, path)
-    except OSError as error:
-        raise FileError(f"cannot write into {folder}: {error.strerror or error}") from error
-    finally:
-        shutil.rmtree(staged, ignore_errors=True)
 
 
 def _write_gif(file: BinaryIO, count: int, draw: Draw, fps: float) -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import UserError
 from .named_cameras import framed
+from .times import times_within
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
@@ -32,11 +33,13 @@ class Shots:
         cameras: one for each picture.
         names: one for each picture, distinct and valid as file names, without suffix.
         fps: pictures a second.
+        times: of the scene, seconds, one for each picture; empty where it is shown as it is.
     """
 
     cameras: tuple[Camera, ...]
     names: tuple[str, ...]
     fps: float
+    times: tuple[float, ...] = ()
 
     @property
     def seconds(self) -> float:
@@ -104,6 +107,17 @@ def path_shots(
     count = round(length * rate) + 1
     times = [way.seconds * i / max(count - 1, 1) for i in range(count)]
     return _numbered(way.cameras(times, *(size or way.size or default)), rate)
+
+
+def timed_shots(camera: Camera, span: tuple[float, float], seconds: float | None, fps: float | None) -> Shots:
+    """Pictures from one camera while time goes on from the start of a span to its stop; `seconds` stretches it.
+
+    Raises:
+        UserError: the rate or the length is out of range, or there would be too many pictures.
+    """
+    rate = _checked_rate(RATE if fps is None else fps)
+    times = times_within(span, rate, None if seconds is None else _checked_seconds(seconds))
+    return replace(_numbered([camera] * len(times), rate), times=times)
 
 
 def cameras_of(source: Path) -> tuple[Camera, ...]:

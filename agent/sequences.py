@@ -1,0 +1,119 @@
+"""Sequences of scene files, one for each time: written from a scene with motion, and read as one."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..gaussians.errors import FileError, UserError
+from .pictures.film import PATTERN
+from .pictures.times import times_within
+
+if TYPE_CHECKING:
+    from ..gaussians.files import Report
+    from ..gaussians.motion.sequence import Found
+    from ..gaussians.scene import Scene
+
+
+def is_pattern(path: Path) -> bool:
+    """Whether a path means many files: `frames/*.ply` or `frames/%04d.ply`."""
+    return not path.exists() and ("*" in path.name or bool(PATTERN.search(path.name)))
+
+
+def files_of(pattern: Path) -> list[Path]:
+    """The files that a pattern means, by the numbers in their names.
+
+    Raises:
+        FileError: there are fewer than two.
+    """
+    name = pattern.name if "*" in pattern.name else PATTERN.sub("*", pattern.name)
+    found = sorted(pattern.parent.glob(name), key=lambda path: _numbers(path.name))
+    if not PATTERN.search(pattern.name):
+        chosen = found
+    else:
+        number = re.compile(PATTERN.sub("@", re.escape(pattern.name).replace("\\%", "%")).replace("@", r"\d+"))
+        chosen = [path for path in found if number.fullmatch(path.name)]
+    if len(chosen) < 2:
+        raise FileError(f"{pattern} names {len(chosen)} files; a sequence needs two or more")
+    return chosen
+
+
+def _numbers(name: str) -> list[tuple[int, str]]:
+    """A key that sorts names by the numbers in them."""
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
+
+
+def read(pattern: Path, fps: float | None) -> tuple[Scene, Report, int]:
+    """The scene of a sequence with the motion found in it, the report of its first file and of the motion, and the
+    bytes of all.
+
+    Raises:
+        UserError: no rate is given, or the files hold different Gaussians.
+        FileError: they are fewer than two, or one cannot be read.
+    """
+    from ..gaussians.files import load, load_with_report
+    from ..gaussians.motion.sequence import motion_of
+
+    if fps is None or not 0 < fps < 1e4:
+        raise UserError(f"{pattern} is a sequence; say how many of its files make a second: --fps 10")
+    paths = files_of(pattern)
+    first, report = load_with_report(paths[0])
+    frames = [lambda: first.cloud, *(lambda path=path: load(path).cloud for path in paths[1:])]
+    found = motion_of(frames, [i / fps for i in range(len(paths))])
+    report = replace(report, notes=(*report.notes, *told(found, len(paths))))
+    return first.replace(motion=found.motion), report, sum(path.stat().st_size for path in paths)
+
+
+def told(found: Found, files: int) -> tuple[str, ...]:
+    """What was found in so many files, one sentence each."""
+    lines = [f"{files} files: " + (_bodies(found) if found.motion is not None else "nothing moves in them")]
+    if found.left:
+        lines.append(
+            f"{found.left:,} Gaussians follow no body; displacements of rank {found.rank} take them along, "
+            f"within {found.worst:.3g} units"
+        )
+    if found.recolored:
+        lines.append(
+            f"{found.recolored:,} Gaussians change their colour or opacity, which stays that of the first file"
+        )
+    return tuple(lines)
+
+
+def _bodies(found: Found) -> str:
+    if not found.bodies:
+        return "no rows move alike as a body"
+    count = "1 body moves" if len(found.bodies) == 1 else f"{len(found.bodies)} bodies move"
+    return f"{count}, of {', '.join(f'{n:,}' for n in found.bodies)} Gaussians, within {found.worst:.3g} units"
+
+
+def write(scene: Scene, pattern: Path, span: tuple[float, float], fps: float | None, force: bool) -> dict[str, Any]:
+    """Write a scene at times from the start of a span to its stop, one file each; all of them or none.
+
+    Raises:
+        UserError: no rate is given, there would be too many files, or one exists and `force` is not set.
+        FileError: they cannot be written.
+    """
+    from ..gaussians.files import save
+    from ..gaussians.motion.at import at
+    from .output_files import refuse_existing, write_whole
+    from .terminal.output import terminal
+
+    if fps is None or not 0 < fps < 1e4:
+        raise UserError(f"{pattern.name} is a sequence; say how many files make a second: --fps 10")
+    if pattern.name.count("%") != 1 or "*" in pattern.name:
+        raise UserError(f"{pattern.name} is not a pattern for files; write for example %04d{pattern.suffix or '.ply'}")
+    times = times_within(span, fps)
+    paths = [pattern.with_name(pattern.name % i) for i in range(len(times))]
+    refuse_existing(paths, force)
+
+    def make(i: int, path: Path) -> None:
+        terminal.progress(f"writing {i + 1} of {len(times)}", i / len(times))
+        save(at(scene, times[i]), path)
+
+    with terminal.interruptible():
+        write_whole(paths, make, force)
+    terminal.clear()
+    size = sum(path.stat().st_size for path in paths)
+    return {"path": str(pattern), "files": len(paths), "bytes": size, "time": list(span), "fps": fps}

@@ -1,0 +1,34 @@
+"""A session on a moving scene: edits, undo, save and load keep what moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from scenewright.agent.session.session import Session
+from scenewright.gaussians.files import load
+from scenewright.gaussians.motion.at import at
+from scenewright.gaussians.motion.motion import Motion, Track
+from scenewright.gaussians.scene import Scene
+
+
+def test_motion_survives_edits_undo_save_and_load(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
+    green, right = (boxes.cloud.ids[boxes.cloud.group == group].numpy() for group in (1, 2))
+    rising, sliding = Track.slide(green, [0, 2], [0, 1], (0, 0, 1)), Track.slide(right, [0, 2], [0, 1], (0, 1, 0))
+    moving = boxes.replace(motion=Motion((rising, sliding), stop=2.0))
+    session = Session(moving, encoder=encoder, viewer=boxes.cameras[0])
+    session.do("make the green thing blue")
+    assert session.scene.motion is moving.motion
+    session.do("delete the left red thing")  # the rows of all that moves have other numbers now
+    session.do("delete the blue thing")
+    assert session.scene.motion is not None and len(session.scene.motion.tracks) == 1
+    session.undo()
+    assert session.scene.motion is moving.motion
+    session.save(tmp_path / "a.ply")
+    back = load(tmp_path / "a.ply")
+    assert torch.equal(back.cloud.ids, torch.arange(len(back.cloud)))
+    assert torch.equal(at(back, 2.0).cloud.means, at(session.scene, 2.0).cloud.means)
+    assert torch.equal(back.cloud.means, session.scene.cloud.means)
+    assert not torch.equal(at(back, 2.0).cloud.means, back.cloud.means)
