@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 import torch
@@ -25,7 +25,7 @@ from .fingerprint import fingerprint
 from .formats.streamed_sog import scene_folder
 
 SUFFIX = ".motion.safetensors"
-VERSION = 1
+VERSION: Final = 1
 _ENTRY = "scenewright.motion"
 _MOST = 1 << 16  # tracks, looks or residuals of a file
 _MOST_HEADER = 1 << 26  # bytes
