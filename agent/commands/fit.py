@@ -55,6 +55,14 @@ def command(
         Literal["budgeted", "classic"],
         typer.Option("--growth", help="Densification: up to a given number, or as first published."),
     ] = "budgeted",
+    blocks: Annotated[
+        str,
+        typer.Option(
+            "--blocks",
+            metavar="N|auto",
+            help="Fit a large capture by blocks of space, one after the other; auto: as --max-gaussians asks for.",
+        ),
+    ] = "auto",
     device: Annotated[
         Literal["auto", "cpu", "cuda"],
         typer.Option("--device", help="Where to train; auto: an NVIDIA GPU if there is one and gsplat is installed."),
@@ -83,6 +91,7 @@ def command(
     from ...gaussians.files import save
     from ...gaussians.files.captures.capture import unposed_photos
     from ...gaussians.fit import Settings, fit, load_photos
+    from ...gaussians.fit.blocks import fit_by_blocks
     from ...gaussians.fit.checkpoint import delete
     from ...gaussians.fit.engine import resolve_device
 
@@ -97,17 +106,23 @@ def command(
     settings = Settings(
         seconds, steps, max_gaussians, "auto" if degree == "auto" else int(degree), gain, growth, coarse, seed, where
     )
+    parts = _blocks(blocks, settings)
+    if parts > 1 and dial is not None:
+        dial.overrule("--blocks")
     poses = output.with_name(output.name + ".poses")
     if unposed_photos(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
     photos = load_photos(capture, scale, terminal.progress, poses, strict=strict)
     terminal.say(_describe(photos) + (", on the GPU" if where == "cuda" else ""))
-    kept = output.with_name(output.name + ".checkpoint")
+    kept = output.with_name(output.name + (".checkpoint" if parts == 1 else ".blocks"))
     if kept.exists():
         terminal.say(f"going on from {kept}")
     try:
-        free = None if dial is None or dial.overruled else dial
-        done = fit(photos, settings, effort=free, checkpoint_path=kept, on_status=_show_status)
+        if parts > 1:
+            done = fit_by_blocks(photos, settings, parts, folder=kept, on_status=_show_status)
+        else:
+            free = None if dial is None or dial.overruled else dial
+            done = fit(photos, settings, effort=free, checkpoint_path=kept, on_status=_show_status)
     except KeyboardInterrupt:
         terminal.say(_resume_hint(kept))
         raise
@@ -121,6 +136,20 @@ def command(
         _write_report(done, photos, data, report, force)
     terminal.result("\n".join([_summary(done, output), *_chosen(done)]), data | reported(dial))
     tell(dial)
+
+
+def _blocks(said: str, settings: Settings) -> int:
+    """The number of blocks."""
+    from ...gaussians.errors import UserError
+    from ...gaussians.fit.blocks import blocks_for
+
+    if said == "auto":
+        return blocks_for(settings.max_gaussians)
+    if not said.isdecimal() or int(said) < 1:
+        raise UserError(f"--blocks must be a number from 1 or auto, got {said!r}")
+    if int(said) > 1 and settings.growth == "classic":
+        raise UserError("--blocks keeps to a budget of Gaussians; it goes with --growth budgeted")
+    return int(said)
 
 
 def _resume_hint(kept: Path) -> str:

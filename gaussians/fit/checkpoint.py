@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+import shutil
 from collections.abc import Mapping
 from glob import escape
 from pathlib import Path
@@ -48,7 +49,10 @@ def _digest(arrays: Mapping[str, Any], state: str) -> str:
 
 
 def delete(path: Path) -> None:
-    """Delete a checkpoint, and partial files that a crash during writing left behind."""
+    """Delete a checkpoint, or a folder of some, and partial files that a crash during writing left behind."""
+    if path.is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+        return
     for part in (path, *path.parent.glob(f".{escape(path.name)}.*.part")):
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)

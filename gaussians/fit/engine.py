@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from functools import partial
 from typing import Literal, Protocol
 
@@ -16,7 +17,7 @@ from ..camera import Camera, Vec3
 from ..render.cpu import gradient
 from .densify import Strategy
 from .loss import BLACK, Slope, photometric
-from .parameters import Parameters, parameter_gradients
+from .parameters import Columns, Parameters, parameter_gradients
 
 F32 = NDArray[np.float32]
 
@@ -60,10 +61,17 @@ EngineFactory = Callable[[Parameters, Strategy, float], Engine]  # the last is t
 
 
 class CpuEngine:
-    """Trains with numba kernels on the host. Same input, same bytes."""
+    """Trains with numba kernels on the host. Same input, same bytes.
 
-    def __init__(self, parameters: Parameters, strategy: Strategy, ssim_lambda: float) -> None:
+    Args:
+        around: columns (`Parameters.columns`) of Gaussians that are drawn too and stay as they are, of any degree.
+    """
+
+    def __init__(
+        self, parameters: Parameters, strategy: Strategy, ssim_lambda: float, around: Columns | None = None
+    ) -> None:
         self._parameters, self._strategy, self._ssim_lambda = parameters, strategy, ssim_lambda
+        self._around = around
 
     def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
         """See `Engine`."""
@@ -72,9 +80,11 @@ class CpuEngine:
     def learn(self, camera: Camera, background: Vec3, slope: Slope, means_lr: float) -> float:
         """See `Engine`."""
         columns = self._parameters.columns()
-        drawn = gradient.draw(columns, camera, background)
+        shown = columns if self._around is None else with_around(columns, self._around)
+        drawn = gradient.draw(shown, camera, background)
         loss, d_rgb = slope(drawn.rgb)
         found = gradient.draw_backward(drawn, d_rgb, np.zeros(d_rgb.shape[:2], np.float32))
+        found = found if self._around is None else first_rows(found, len(columns[0]))
         gradients = parameter_gradients(found, columns[2], columns[3])
         self._strategy.regularise(gradients, columns[2], columns[3])
         self._parameters.step(gradients, means_lr)
@@ -95,6 +105,22 @@ class CpuEngine:
         return self._parameters.degree
 
 
+def with_around(columns: Columns, around: Columns) -> Columns:
+    """Both sets of columns, `around` after the others and with as many SH bands as they have."""
+    bands = columns[4].shape[1]
+    sh = np.zeros((len(around[4]), bands, 3), np.float32)
+    sh[:, : around[4].shape[1]] = around[4][:, :bands]
+    means, quats, scales, opacities, sh = (
+        np.concatenate([own, other]) for own, other in zip(columns, (*around[:4], sh), strict=True)
+    )
+    return means, quats, scales, opacities, sh
+
+
+def first_rows(found: gradient.Gradients, count: int) -> gradient.Gradients:
+    """The gradients of the first Gaussians."""
+    return gradient.Gradients(**{f.name: getattr(found, f.name)[:count] for f in fields(found)})
+
+
 def resolve_device(device: Literal["auto", "cpu", "cuda"]) -> Literal["cpu", "cuda"]:
     """Resolve "auto": the GPU if gsplat and a device are available, else the CPU.
 
@@ -108,11 +134,15 @@ def resolve_device(device: Literal["auto", "cpu", "cuda"]) -> Literal["cpu", "cu
     return "cpu" if device == "cpu" or cuda.missing() else "cuda"
 
 
-def engine_for(device: Literal["cpu", "cuda"]) -> EngineFactory:
-    """The factory of engines for a device."""
+def engine_for(device: Literal["cpu", "cuda"], around: Columns | None = None) -> EngineFactory:
+    """The factory of engines for a device.
+
+    Args:
+        around: Gaussians that are drawn too and stay as they are, see `CpuEngine`.
+    """
     if device == "cpu":
-        return CpuEngine
+        return CpuEngine if around is None else partial(CpuEngine, around=around)
     from ..render import cuda
     from .engine_torch import TorchEngine
 
-    return partial(TorchEngine, device=cuda.splatting.DEVICE, draw=cuda.draw)
+    return partial(TorchEngine, device=cuda.splatting.DEVICE, draw=cuda.draw, around=around)

@@ -20,9 +20,10 @@ from ..cloud import SH_BANDS
 from .adam import BETAS, EPSILON, Adam
 from .densify import Strategy
 from .loss import BLACK, Slope, reference
-from .parameters import SHN_LR, Parameters, learning_rates
+from .parameters import SHN_LR, Columns, Parameters, learning_rates
 
 F32 = NDArray[np.float32]
+_Tensors = tuple[Tensor, Tensor, Tensor, Tensor, Tensor]
 
 
 class Draw(Protocol):
@@ -43,15 +44,18 @@ class TorchEngine:
         ssim_lambda: weight of D-SSIM in the loss.
         device: torch device.
         draw: rasterises columns that lie on the device.
+        around: columns of Gaussians that are drawn too and stay as they are, of any degree.
     """
 
     shn_lr = SHN_LR  # learning rate of all SH bands but band 0
 
     def __init__(
-        self, parameters: Parameters, strategy: Strategy, ssim_lambda: float, *, device: str, draw: Draw
-    ) -> None:
+        self, parameters: Parameters, strategy: Strategy, ssim_lambda: float, *, device: str, draw: Draw,
+        around: Columns | None = None,
+    ) -> None:  # fmt: skip
         self._strategy, self._ssim_lambda = strategy, ssim_lambda
         self._device, self._draw = device, draw
+        self._around = None if around is None else tuple(torch.tensor(column, device=device) for column in around)
         self._host: Parameters | None = parameters  # None: the device holds the only copy
 
     def send(self, parameters: Parameters) -> None:
@@ -110,8 +114,8 @@ class TorchEngine:
         leaves = {name: values.detach().requires_grad_() for name, values in self._values.items()}
         scales, opacities = leaves["log_scales"].exp(), leaves["logit_opacities"].sigmoid()
         centers = torch.zeros(len(scales), 2, device=self._device, requires_grad=True)
-        columns = (leaves["means"], leaves["quats"], scales, opacities, leaves["sh"])
-        rgb, _ = self._draw(*columns, camera, background, centers)
+        columns = self._with_around((leaves["means"], leaves["quats"], scales, opacities, leaves["sh"]))
+        rgb, _ = self._draw(*columns, camera, background, self._with_room(centers))
         loss = learnt(rgb)
         with torch.no_grad():
             gradients = {n: torch.zeros_like(x) if x.grad is None else x.grad for n, x in leaves.items()}
@@ -120,6 +124,21 @@ class TorchEngine:
             d_centers = torch.zeros_like(centers) if centers.grad is None else centers.grad
             self._strategy.after_step_torch(self._values, d_centers, (camera.width, camera.height), means_lr)
         return loss
+
+    def _with_around(self, columns: _Tensors) -> _Tensors:
+        """The columns with those around after them, with as many SH bands."""
+        if self._around is None:
+            return columns
+        bands = columns[4].shape[1]
+        sh = self._around[4][:, :bands]
+        sh = torch.cat([sh, sh.new_zeros(len(sh), bands - sh.shape[1], 3)], dim=1)
+        around = (*self._around[:4], sh)
+        means, quats, scales, opacities, sh = (torch.cat(pair) for pair in zip(columns, around, strict=True))
+        return means, quats, scales, opacities, sh
+
+    def _with_room(self, centers: Tensor) -> Tensor:
+        """The centres with those of the Gaussians around, whose gradients nobody wants."""
+        return centers if self._around is None else torch.cat([centers, centers.new_zeros(len(self._around[0]), 2)])
 
     def _adam_step(self, gradients: dict[str, Tensor], means_lr: float) -> None:
         """One step of Adam, as `adam.Adam`."""

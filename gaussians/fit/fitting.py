@@ -106,8 +106,8 @@ class Fitted:
 
 
 @dataclass
-class _Record:
-    """Results of a training so far."""
+class Record:
+    """Results of a training so far, as in `Fitted`."""
 
     curve: list[tuple[float, float]] = field(default_factory=list)
     choices: list[Choice] = field(default_factory=list)
@@ -148,9 +148,9 @@ def fit(
     if settings.growth == "budgeted":
         strategy = MCMCStrategy(settings.max_gaussians, rng)
     trainer = Trainer(photos.shots, Parameters.of(initial), strategy, photos.extent, schedule, rng, engine)
-    name = _training_id(photos, settings)
-    record = _resume(trainer, checkpoint_path, name) if checkpoint_path is not None else _Record()
-    _train(trainer, photos, settings, record, None if checkpoint_path is None else (checkpoint_path, name), on_status)
+    name = training_id(photos, settings)
+    record = resume(trainer, checkpoint_path, name) if checkpoint_path is not None else Record()
+    train(trainer, photos, settings, record, None if checkpoint_path is None else (checkpoint_path, name), on_status)
     cloud = trainer.parameters.cloud()
     cameras = tuple(sorted((s.camera for s in (*photos.shots, *photos.held_out)), key=lambda camera: camera.name))
     scene = Scene(cloud, cameras=cameras)
@@ -163,17 +163,18 @@ def megapixels(photos: Photos) -> float:
     return sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in photos.held_out) / 1e6
 
 
-def _train(
+def train(
     trainer: Trainer,
     photos: Photos,
     settings: Settings,
-    record: _Record,
+    record: Record,
     target: tuple[Path, str] | None,
     on_status: Callable[[Status], None],
 ) -> None:
     """Step until the end, with evaluations, reductions, checkpoints and progress reports.
 
     Args:
+        photos: the held-out ones are evaluated, and decide reductions.
         target: path of the checkpoint and identifier of the training; None: no checkpoints.
     """
     reporter, saved = _Reporter(trainer, record, on_status), time.monotonic()
@@ -203,7 +204,7 @@ def _reduce(trainer: Trainer, photos: Photos, settings: Settings, choices: list[
 class _Reporter:
     """Reports the status of a training every `REPORT_EVERY` seconds."""
 
-    def __init__(self, trainer: Trainer, record: _Record, on_status: Callable[[Status], None]) -> None:
+    def __init__(self, trainer: Trainer, record: Record, on_status: Callable[[Status], None]) -> None:
         self._trainer, self._record, self._on_status = trainer, record, on_status
         self._loss, self._reported = math.nan, time.monotonic()
 
@@ -219,7 +220,7 @@ class _Reporter:
         self._reported = now
 
 
-def _training_id(photos: Photos, settings: Settings) -> str:
+def training_id(photos: Photos, settings: Settings) -> str:
     """Identifies the training that a checkpoint belongs to: digest of photographs and settings without length and
     device."""
     digest = hashlib.sha256(repr({**asdict(settings), "seconds": None, "steps": None, "device": None}).encode())
@@ -228,17 +229,17 @@ def _training_id(photos: Photos, settings: Settings) -> str:
     return digest.hexdigest()
 
 
-def _resume(trainer: Trainer, path: Path, name: str) -> _Record:
+def resume(trainer: Trainer, path: Path, name: str) -> Record:
     """Continue from a checkpoint if there is one; returns its record."""
     found = checkpoint.load(path)
     if found is None:
-        return _Record()
+        return Record()
     arrays, values = found
     if values.get("name") != name:
         raise FileError(f"{path} is of another training (other photographs or settings); delete it to start over")
     try:
         trainer.restore(arrays, values)
         choices = [Choice(**{**c, "psnr": tuple(c["psnr"])}) for c in values["choices"]]
-        return _Record([(float(s), float(p)) for s, p in values["curve"]], choices)
+        return Record([(float(s), float(p)) for s, p in values["curve"]], choices)
     except (KeyError, ValueError, TypeError) as error:
         raise FileError(f"cannot resume from {path} ({error}); delete it to start over") from error

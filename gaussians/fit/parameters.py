@@ -18,6 +18,7 @@ from ..cloud import SH_BANDS, GaussianCloud
 from .adam import Adam
 
 F32 = NDArray[np.float32]
+Columns = tuple[F32, F32, F32, F32, F32]  # means, quats, scales, opacities, harmonics
 I64 = NDArray[np.int64]
 
 QUATS_LR, SCALES_LR, OPACITIES_LR = 1e-3, 5e-3, 5e-2
@@ -76,7 +77,7 @@ class Parameters:
         with np.errstate(over="ignore"):  # exp may overflow to infinity; 1 / infinity is the right limit
             return np.float32(1) / (np.float32(1) + np.exp(-self.logit_opacities))
 
-    def columns(self) -> tuple[F32, F32, F32, F32, F32]:
+    def columns(self) -> Columns:
         """Means, quats, scales, opacities and harmonics as a renderer takes them, with activations applied."""
         return self.means, self.quats, np.exp(self.log_scales), self.opacities, self.sh
 

@@ -1,0 +1,156 @@
+"""Fits by blocks: space is divided once, parts of photographs are views, blocks learn among what stays, stops cost
+nothing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scenewright.gaussians.camera import Camera
+from scenewright.gaussians.cloud import GaussianCloud, concat
+from scenewright.gaussians.errors import FileError, UserError
+from scenewright.gaussians.files.captures.colmap import Points
+from scenewright.gaussians.fit import Photos, Settings, fit
+from scenewright.gaussians.fit import blocks as by_blocks
+from scenewright.gaussians.fit.blocks import blocks_for, cells, cropped, fit_by_blocks, parts_of
+from scenewright.gaussians.fit.densify import MCMCStrategy
+from scenewright.gaussians.fit.engine import CpuEngine, EngineFactory
+from scenewright.gaussians.fit.engine_torch import TorchEngine
+from scenewright.gaussians.fit.parameters import Parameters
+from scenewright.gaussians.fit.train import Shot
+from scenewright.gaussians.render import differentiable, render
+
+
+def street(count: int = 240, seed: int = 1) -> GaussianCloud:
+    """Coloured blobs along x, 6 units long."""
+    g = torch.Generator().manual_seed(seed)
+    means = (torch.rand(count, 3, generator=g) - 0.5) * torch.tensor([6.0, 1.0, 1.0])
+    quats = torch.nn.functional.normalize(torch.randn(count, 4, generator=g), dim=1)
+    return GaussianCloud.create(
+        means, quats, torch.rand(count, 3, generator=g) * 0.08 + 0.05, torch.rand(count, generator=g) * 0.5 + 0.4,
+        torch.randn(count, 1, 3, generator=g),
+    )  # fmt: skip
+
+
+def photos(count: int = 20) -> Photos:
+    """Photographs on both sides of the street, each of about half of it."""
+    cloud = street()
+    shots = []
+    for i, x in enumerate(np.linspace(-2.5, 2.5, count)):
+        eye = (float(x), 2.5 if i % 2 else -2.5, 0.6 * math.sin(i))
+        camera = Camera.look_at(eye, (float(x), 0, 0), (0, 0, 1), 72, 40, name=f"p{i:03d}")
+        shots.append(Shot(camera, render(cloud, camera).to_uint8()))
+    rng = np.random.default_rng(0)
+    points = Points(cloud.means.double().numpy() + rng.normal(0, 0.02, (len(cloud), 3)), rng.random((len(cloud), 3)))
+    held_out = tuple(shots[3::8])
+    return Photos(tuple(s for s in shots if s not in held_out), held_out, points, 3.8)
+
+
+SETTINGS = Settings(steps=500, max_gaussians=400, degree=0, gain=None)
+
+
+def bytes_of(cloud: GaussianCloud) -> bytes:
+    return b"".join(column.numpy().tobytes() for _, column in cloud.columns())
+
+
+@given(st.integers(1, 9), st.integers(9, 60), st.integers(0, 10))
+def test_every_point_lies_in_one_cell_and_cells_hold_about_as_many(count: int, points: int, seed: int) -> None:
+    where = np.random.default_rng(seed).normal(size=(points, 3)).astype(np.float32)
+    division = cells(where, count)
+    held = np.stack([cell.holds(where) for cell in division])
+    assert len(division) == count and (held.sum(axis=0) == 1).all()
+    assert (np.abs(held.sum(axis=1) - points / count) <= 1 + math.log2(count)).all()
+    far = np.array([[1e6, -1e6, 0], [-1e6, 1e6, 1e6]], np.float32)  # space has no end
+    assert (np.stack([cell.holds(far) for cell in division]).sum(axis=0) == 1).all()
+    for cell in division:
+        assert cell.wider(where).holds(where)[cell.holds(where)].all()
+
+
+def test_a_part_of_a_photograph_is_what_its_camera_sees() -> None:
+    shot = photos().shots[0]
+    part = cropped(shot, 10, 5, 50, 33)
+    assert part.photo.shape == (28, 40, 3)
+    np.testing.assert_array_equal(part.photo, render(street(), part.camera).to_uint8())
+
+
+def test_parts_show_the_block_and_photographs_that_do_not_are_left_out() -> None:
+    shown = photos().shots
+    end = street().means.numpy()
+    end = end[end[:, 0] > 2]
+    parts = parts_of(shown, end)
+    assert 0 < len(parts) < len(shown)
+    assert {p.camera.name for p in parts} <= {s.camera.name for s in shown if s.camera.position[0] > 0}
+    assert min(p.camera.width for p in parts) < 72  # some are cut
+
+
+@pytest.mark.parametrize("engine", [CpuEngine, partial(TorchEngine, device="cpu", draw=differentiable.draw)])
+def test_a_block_learns_as_if_all_were_trained_and_what_is_around_it_stays(engine: EngineFactory) -> None:
+    """The same gradients as in a training of all Gaussians, of which only the first are looked at."""
+    own, other, shot = street(30), street(40, 2).with_degree(1), photos().shots[0]
+    other = other.replace(ids=other.ids + 30, first_free=70)
+    around = Parameters.of(other).columns()
+    before = [column.copy() for column in around]
+    made = []
+    for start, factory in ((own, partial(engine, around=around)), (concat([own, other.with_degree(0)]), engine)):  # type: ignore[call-arg]
+        quiet = MCMCStrategy(100, np.random.default_rng(0), opacity_reg=0.0, scale_reg=0.0, noise_lr=0.0)
+        stepped = factory(Parameters.of(start), quiet, 0.2)
+        loss = stepped.train_step(shot.camera, shot.colors, 1e-3)
+        made.append((loss, stepped.fetch()))
+    (loss, block), (whole_loss, whole) = made
+    assert loss == pytest.approx(whole_loss, rel=1e-6) and len(block) == 30
+    for name, values in block.arrays().items():
+        close = np.abs(values - whole.arrays()[name][:30]) <= 1e-6
+        # Adam makes a whole step of the sign of a gradient that is rounding alone; torch sums in another order.
+        assert close.mean() >= (1 if engine is CpuEngine else 0.98), name
+    assert all(np.array_equal(a, b) for a, b in zip(before, around, strict=True))
+
+
+def test_blocks_learn_what_they_are_shown_to_the_same_bytes_and_go_on_after_a_stop(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = photos()
+    whole, coarse = fit(shown, SETTINGS), fit(shown, replace(SETTINGS, steps=200, max_gaussians=160))
+    once = fit_by_blocks(shown, SETTINGS, 3)
+    assert once.quality.psnr > coarse.quality.psnr + 1  # dB: the blocks learnt more
+    assert once.quality.psnr > whole.quality.psnr - 1.5  # a third of 500 steps, each with less than a third to learn
+    assert len(once.scene.cloud) <= 400 and len(once.scene.cameras) == 20
+
+    folder, made = tmp_path / "out.blocks", by_blocks._block
+    calls = []
+
+    def stopped(*given: object) -> object:
+        calls.append(given)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return made(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(by_blocks, "_block", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        fit_by_blocks(shown, SETTINGS, 3, folder=folder)
+    assert sorted(p.name for p in folder.iterdir()) == ["block-0", "coarse"]
+    statuses: list[float] = []
+    again = fit_by_blocks(shown, SETTINGS, 3, folder=folder, on_status=lambda s: statuses.append(s.share))
+    assert len(calls) == 4  # the first block was kept
+    assert bytes_of(again.scene.cloud) == bytes_of(once.scene.cloud)
+    assert statuses == sorted(statuses) and statuses[0] > 0.4 and statuses[-1] == pytest.approx(1)
+    with pytest.raises(FileError, match=r"of another training.*delete it"):
+        fit_by_blocks(shown, replace(SETTINGS, seed=1), 3, folder=folder)
+    (folder / "block-1").write_bytes(b"torn")
+    with pytest.raises(FileError, match=r"cannot resume from .*block-1"):
+        fit_by_blocks(shown, SETTINGS, 3, folder=folder)
+
+
+def test_numbers_of_blocks() -> None:
+    assert blocks_for(200_000) == 1 and blocks_for(500_001) == 2 and blocks_for(10**9) == by_blocks.MOST_BLOCKS
+    with pytest.raises(UserError, match="--blocks must be from 2 to"):
+        fit_by_blocks(photos(), SETTINGS, 1)
+    with pytest.raises(UserError, match="cannot be divided into 300 blocks"):
+        cells(np.zeros((20, 3), np.float32), 300)
