@@ -16,6 +16,7 @@ LESS = (
     "ran beside each other with one thread each: their times are of the processor, or describe a core beside a busy "
     "one; all other times were measured alone",
     *(f"{part} is left out: {reason}" for part, reason in running.LEFT_OUT.items()),
+    *(f"{name} is left out: it is long, and its figures are in {page}" for name, page in running.ALONE.items()),
     "fit: the default for five minutes only; `scenewright bench fit` compares eight settings in an hour",
     "fit_sizes: a minute for each degree on one core, not a minute and a half on two",
     "select: every second kind of composed room, faults of masks in one furnished room and the chart in two, not three",

@@ -45,6 +45,8 @@ TOGETHER = frozenset(
         "structure",
     }
 )
+# What no run of all measures: each takes long by itself, and its figures stand on a page of its own.
+ALONE = {"batch": "docs/batch.md", "fit_blocks": "docs/fit.md"}
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
 LONG = frozenset({"dream", "edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure", "view"})
 # Parts that whole runs leave out, with the reason.
@@ -132,7 +134,7 @@ def measured(
     """Run benchmarks once, and the shortest of those that are timed again while time is left.
 
     Jobs that are timed run first, one after the other, with the machine to themselves; then those that share the cores,
-    as many at a time as there are cores. Quick runs leave out `LONG`.
+    as many at a time as there are cores. `ALONE` is left out; quick runs leave out `LONG` too.
 
     Args:
         say: gets a sentence about each run.
@@ -143,7 +145,7 @@ def measured(
     found: dict[Job, list[Result]] = {}
     failed: dict[str, str] = {}
     revision = _machine.revision()
-    names = [name for name in names if not (quick and name in LONG)]
+    names = [name for name in names if name not in ALONE and not (quick and name in LONG)]
     for job, outcome in _once(jobs(names, quick), quick, kept):
         if isinstance(outcome, Result) and outcome.revision == revision:
             found[job] = [outcome]
