@@ -20,6 +20,7 @@ from .working import Outcome, Task, work
 
 TRIES = 4  # workers that may die with the same job
 _THREADS = ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+_QUIET = {"log_to_driver": False, "logging_level": "ERROR"}  # settings of Ray
 _DIED = "the worker died {times} times while it ran this job; run it alone with --debug"
 
 
@@ -148,23 +149,33 @@ class OnRay:
     """Tasks of a Ray cluster, or of one that is started here; `address` "local" or the cluster's."""
 
     def __init__(self, address: str, workers: int) -> None:
+        if address == "local":  # read when ray is imported: without clusters it listens on the loopback address
+            os.environ.setdefault("RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER", "0")
         try:
             import ray
         except ImportError as error:
             raise BackendError("--ray needs the package ray; run: pip install 'scenewright[ray]'") from error
         self._ray: Any = ray
-        self._workers = max(1, workers)
-        if not ray.is_initialized():
+        self._workers, self._started = max(1, workers), not ray.is_initialized()
+        if self._started:
             try:
                 if address == "local":
-                    ray.init(num_cpus=self._workers, include_dashboard=False, log_to_driver=False)
+                    ray.init(num_cpus=self._workers, include_dashboard=False, **_QUIET)
                 else:
-                    ray.init(address=address, log_to_driver=False)
+                    ray.init(address=address, **_QUIET)
             except Exception as error:  # Ray raises whatever its parts raise
                 raise BackendError(f"cannot reach Ray at {address!r}: {error}") from error
 
     def outcomes(self, tasks: Mapping[str, Task]) -> Iterator[tuple[str, Outcome]]:
         """See `Engine`. Paths go through the wire, no scenes: workers need the same files at the same places."""
+        with contextlib.redirect_stdout(sys.stderr):  # where Ray's own thread prints what befell its workers
+            try:
+                yield from self._outcomes(tasks)
+            finally:
+                if self._started:
+                    self._ray.shutdown()
+
+    def _outcomes(self, tasks: Mapping[str, Task]) -> Iterator[tuple[str, Outcome]]:
         ray, here = self._ray, os.getcwd()
         remote = ray.remote(max_retries=TRIES - 1)(_work_in)
         waiting = {remote.remote(here, task): name for name, task in tasks.items()}

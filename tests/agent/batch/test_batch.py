@@ -256,3 +256,55 @@ def test_a_head_that_is_killed_loses_nothing(chair: Path, tmp_path: Path) -> Non
     told = json.loads(ended.stdout)
     assert told["kept"] == len(before) and told["done"] == 12 - len(before)
     assert all((receipts / name).read_bytes() == data for name, data in before.items())
+
+
+@pytest.mark.slow
+def test_ray_does_what_the_loop_does_listens_on_loopback_alone_and_outlives_killed_workers(
+    chair: Path, tmp_path: Path
+) -> None:
+    pytest.importorskip("ray")
+    jobs, out = tmp_path / "jobs.jsonl", tmp_path / "out"
+    run = ["convert", str(chair), "{out}/c.splat", "--crop-sphere"]
+    lines = [{"id": f"j{k}", "run": [*run, f"0,0,0,{1 + k}"]} for k in range(12)]
+    jobs.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    command = [sys.executable, "-m", "scenewright", "batch", str(jobs), "--json"]
+    head = subprocess.Popen(
+        [*command, "-o", str(out), "--ray", "local", "--workers", "2"], stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL, start_new_session=True,
+    )  # fmt: skip
+    killed, open_to_all = 0, set[str]()
+    while head.poll() is None:
+        of_session = ["ps", "-o", "pid=,args=", "--sid", str(head.pid)]
+        told = subprocess.run(of_session, capture_output=True, text=True, check=False).stdout.splitlines()
+        open_to_all |= _open_to_all([int(line.split()[0]) for line in told])
+        busy = [int(line.split()[0]) for line in told if "ray::_work_in" in line]
+        if killed < 2 and busy:
+            os.kill(busy[0], signal.SIGKILL)
+            killed += 1
+        time.sleep(0.2)
+    assert head.stdout is not None
+    told_all = json.loads(head.stdout.read())
+    assert killed == 2 and (told_all["done"], told_all["failed"]) == (12, [])
+    assert not open_to_all
+    subprocess.run([*command, "-o", str(tmp_path / "plain"), "--workers", "0"], capture_output=True, check=True)
+    for k in range(12):
+        assert (out / f"j{k}/c.splat").read_bytes() == (tmp_path / f"plain/j{k}/c.splat").read_bytes()
+
+
+def _open_to_all(processes: list[int]) -> set[str]:
+    """Addresses at which some processes listen, unless of the loopback interface, as the system writes them."""
+    sockets = set[str]()
+    for pid in processes:
+        for handle in Path(f"/proc/{pid}/fd").glob("*"):
+            try:
+                sockets.add(os.readlink(handle))
+            except OSError:  # closed meanwhile
+                continue
+    found = set[str]()
+    for table in ("tcp", "tcp6"):
+        for line in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
+            words = line.split()
+            address = words[1].partition(":")[0]
+            if words[3] == "0A" and f"socket:[{words[9]}]" in sockets and not address.endswith("0100007F"):
+                found.add(words[1])
+    return found
