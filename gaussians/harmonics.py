@@ -90,15 +90,27 @@ def rotate(sh: Tensor, rotation: Tensor) -> Tensor:
     Raises:
         UserError: `rotation` is not a rotation (mirrored, scaled or not finite).
     """
+    return turned(sh, turning(rotation, int(sh.shape[-2])).to(sh.device, sh.dtype))
+
+
+def turning(rotation: Tensor, bands: int) -> Tensor:
+    """`[3 K, 3 K]` float64 matrix by which `turned` rotates K = `bands` coefficients of three channels.
+
+    Raises:
+        UserError: as `rotate`.
+    """
     matrix = rotation.detach().to("cpu", torch.float64)
     if tuple(matrix.shape) != (3, 3) or not _is_rotation(matrix):
         raise UserError("harmonics can only be rotated by a proper 3x3 rotation; remove scale and mirroring first")
     # One product over all bands and channels is three times as fast as a small one for each band.
-    turn = _all_bands(tuple(matrix.flatten().tolist()), int(sh.shape[-2]))
-    every_channel = torch.kron(turn, torch.eye(3, dtype=torch.float64)).to(sh.device, sh.dtype)
-    turned = (sh.flatten(-2) @ every_channel.T).reshape(sh.shape)
-    turned[..., 0, :] = sh[..., 0, :]
-    return turned
+    return torch.kron(_all_bands(tuple(matrix.flatten().tolist()), bands), torch.eye(3, dtype=torch.float64))
+
+
+def turned(sh: Tensor, turn: Tensor) -> Tensor:
+    """`rotate` of harmonics `[N, K, 3]` by a matrix of `turning`: one for many blocks of a cloud."""
+    out = (sh.flatten(-2) @ turn.T).reshape(sh.shape)
+    out[..., 0, :] = sh[..., 0, :]
+    return out
 
 
 @functools.lru_cache(maxsize=4)  # clouds are rotated block by block

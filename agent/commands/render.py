@@ -80,7 +80,7 @@ def command(
     from ...gaussians.color import parse
     from ...gaussians.errors import UserError
     from ...gaussians.files import load
-    from ...gaussians.motion.at import at
+    from ...gaussians.motion.at import cloud_at
     from ...gaussians.render import render
     from ..pictures.film import is_film
     from ..pictures.shots import timed_shots
@@ -98,8 +98,11 @@ def command(
     finish = _transparent if alpha else _thousandths if depth else lambda drawn: drawn.to_uint8()
 
     def draw(camera: Camera, time: float | None = None) -> Any:
-        shown = loaded if time is None else at(loaded, time)
-        return finish(render(shown.cloud if leveled is None else leveled.cloud(camera), camera, behind, backend))
+        if leveled is not None:
+            shown = leveled.cloud(camera)
+        else:
+            shown = loaded.cloud if time is None else cloud_at(loaded, time)
+        return finish(render(shown, camera, behind, backend))
 
     if not film:
         refuse_existing([output], force)

@@ -16,12 +16,12 @@ from torch import Tensor
 
 from ..cloud import GaussianCloud
 from ..errors import UserError
-from ..harmonics import rotate
+from ..harmonics import turned, turning
 from ..kept import Kept
 from ..language.field.language_field import Group, LanguageField
 from ..language.field.measure import lab_of_cloud
-from ..rotations import from_matrix, multiply, normalize
-from ..rows import copied, rows_of_ids, rows_where
+from ..rotations import from_matrix, multiply
+from ..rows import copied, empty, rows_of_ids, rows_where
 from ..scene import Scene
 from .boxes import boxes_over
 from .motion import Look, Motion, chained, combinations
@@ -60,18 +60,27 @@ def at(scene: Scene, time: float) -> Scene:
     Raises:
         UserError: the time is not finite.
     """
-    if not math.isfinite(time):
-        raise UserError(f"a time must be a finite number of seconds, not {time}")
     motion = scene.motion
     if motion is None:
         return scene
-    cloud, seen = _cloud_at(scene.cloud, motion, time)
+    cloud, seen = _moved(scene.cloud, motion, time)
     moved = replace(scene, cloud=cloud, motion=None)
     return replace(moved, language=_language_at(scene, moved, seen, time))
 
 
-def _cloud_at(cloud: GaussianCloud, motion: Motion, time: float) -> tuple[GaussianCloud, tuple[Look, ...]]:
-    """The cloud at a time, and the looks that hold then."""
+def cloud_at(scene: Scene, time: float) -> GaussianCloud:
+    """The cloud of `at` alone, as a picture needs it.
+
+    Raises:
+        UserError: the time is not finite.
+    """
+    return scene.cloud if scene.motion is None else _moved(scene.cloud, scene.motion, time)[0]
+
+
+def _moved(cloud: GaussianCloud, motion: Motion, time: float) -> tuple[GaussianCloud, tuple[Look, ...]]:
+    """The cloud at a time, and the looks that hold then. Raises UserError if the time is not finite."""
+    if not math.isfinite(time):
+        raise UserError(f"a time must be a finite number of seconds, not {time}")
     draft = _Draft(cloud)
     _displace(draft, cloud, motion, time)
     seen = tuple(look for look in motion.looks if look.lasts_at(time))
@@ -152,8 +161,16 @@ class _Draft:
         self._own(name).index_copy_(0, rows, values)
 
     def change(self, name: str, rows: Tensor, to: Callable[[Tensor], Tensor]) -> None:
-        column = self._own(name)
-        column.index_copy_(0, rows, to(column.index_select(0, rows)).to(column.dtype))
+        """Replace rows `[M]`, ascending, of a column by `to` of them, a block at a time."""
+        span, source = _side_by_side(rows), self._written.get(name, getattr(self._cloud, name))
+        column = self._own(name, span)
+        if span is None:
+            for block in torch.split(rows, _BLOCK):
+                column.index_copy_(0, block, to(source.index_select(0, block)).to(column.dtype))
+            return
+        for start in range(span.start, span.stop, _BLOCK):
+            part = slice(start, min(start + _BLOCK, span.stop))
+            column[part] = to(source[part])
 
     def carry(self, rows: Tensor, turn: F64, shift: F64) -> None:
         """Map rows by `x -> turn @ x + shift`, with their rotations and harmonics."""
@@ -161,19 +178,38 @@ class _Draft:
         if not turns and not shift.any():
             return
         matrix, away = torch.from_numpy(turn).to(rows.device), torch.from_numpy(shift).to(rows.device)
-        quat = from_matrix(matrix)
-        for block in torch.split(rows, _BLOCK):
-            # float64: a point far from the origin is turned to the last bit of its float32
-            self.change("means", block, lambda means: means.double() @ matrix.T + away)
-            if turns:
-                self.change("quats", block, lambda quats: normalize(multiply(quat.to(quats), quats)))
-                if self._cloud.sh.shape[1] > 1:
-                    self.change("sh", block, lambda sh: rotate(sh, matrix))
+        # float64: a point far from the origin is turned to the last bit of its float32
+        self.change("means", rows, lambda means: means.double() @ matrix.T + away)
+        if not turns:
+            return
+        # The product of quaternions is linear in each: row i is what it makes of the i-th basis quaternion.
+        product = multiply(from_matrix(matrix), torch.eye(4, dtype=torch.float64, device=rows.device))
+        self.change("quats", rows, lambda quats: quats @ product.to(quats))
+        bands = int(self._cloud.sh.shape[1])
+        if bands > 1:
+            harmonics = turning(matrix, bands).to(self._cloud.sh)
+            self.change("sh", rows, lambda sh: turned(sh, harmonics))
 
-    def _own(self, name: str) -> Tensor:
+    def _own(self, name: str, written_next: slice | None = None) -> Tensor:
+        """The column to write to; the rows that are all written next are not copied first."""
         if name not in self._written:
-            self._written[name] = copied(getattr(self._cloud, name))
+            column = getattr(self._cloud, name)
+            if written_next is None:
+                self._written[name] = copied(column)
+            else:
+                out = empty(column.shape, column)
+                out[: written_next.start] = column[: written_next.start]
+                out[written_next.stop :] = column[written_next.stop :]
+                self._written[name] = out
         return self._written[name]
+
+
+def _side_by_side(rows: Tensor) -> slice | None:
+    """The slice that ascending rows are, None if there are gaps."""
+    if not len(rows):
+        return None
+    first, last = int(rows[0]), int(rows[-1])
+    return slice(first, last + 1) if last - first == len(rows) - 1 else None
 
 
 def _language_at(scene: Scene, moved: Scene, seen: Sequence[Look], time: float) -> LanguageField | None:
