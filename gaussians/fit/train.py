@@ -32,10 +32,14 @@ REFINE_STOP = 0.8  # share of the training after which the numbers of Gaussians 
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """A posed photograph: `photo [H, W, 3]` uint8, undistorted, of the camera's size."""
+    """A posed photograph: `photo [H, W, 3]` uint8, undistorted, of the camera's size.
+
+    `time`: seconds, of a frame of a film; None: the photograph has none.
+    """
 
     camera: Camera
     photo: NDArray[np.uint8]
+    time: float | None = None
 
     @property
     def colors(self) -> F32:

@@ -1,0 +1,198 @@
+"""Fit a scene with time to posed frames (`fit_film`).
+
+```
+first frames ─stereo─► start ─changes─► seeds ─track─► bodies ─train all together─► few keys ─► scene with motion
+```
+
+The scene at its start is trained first. Of its Gaussians those may move whose pixels change wherever they are seen; what
+touches and goes at one time is one body. A body is kept if a path of it explains the frames. Then all Gaussians and all
+poses are trained together on the frames of every time.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from ...cloud import NO_GROUP, GaussianCloud
+from ...errors import UserError
+from ...fit.fitting import Settings, Status
+from ...fit.photographs.photos import Photos
+from ...fit.quality import Quality, measure
+from ...fit.train import Schedule, Shot
+from ...scene import Scene
+from ..at import at
+from ..motion import Motion
+from .bodies import Body, Labelled
+from .footage import Footage
+from .seeds import seeds
+from .simplify import track_of
+from .start import trainer
+from .tracking import Tracker
+from .training import Joint
+
+F64 = NDArray[np.float64]
+
+START = 0.3  # share of the training that goes to the scene at its start
+EXPLAINS = 0.85  # of the difference without a body, to which its path must bring the pictures
+MOST_BODIES = 12
+TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
+MORE = 1.2  # times the Gaussians of the start: greatest number at the end, for what was hidden at the start
+REPORT_EVERY = 0.5  # seconds
+
+
+@dataclass(frozen=True, eq=False)
+class FittedFilm:
+    """A fitted scene with time.
+
+    Attributes:
+        scene: with `motion` if something moves; the group of a Gaussian is the number of its track, from 0 on.
+        quality: on held-out frames, each at its time.
+        steps, seconds: of the training.
+        tried: how many bodies were tracked; those that no path explained stand still.
+    """
+
+    scene: Scene
+    quality: Quality
+    steps: int
+    seconds: float
+    tried: int
+
+
+def fit_film(
+    photos: Photos, settings: Settings | None = None, *, on_status: Callable[[Status], None] = lambda status: None
+) -> FittedFilm:
+    """Fit a scene with time to frames whose `Shot.time` differ.
+
+    Args:
+        settings: of the length, the greatest number of Gaussians and the seed; degree 0 only. Default: five minutes.
+
+    Raises:
+        UserError: a frame has no time or all have one; or the cameras do not stand.
+    """
+    settings = settings or Settings(seconds=300.0)
+    return _Film(photos, settings, on_status).fit()
+
+
+class _Film:
+    """A fit in progress."""
+
+    def __init__(self, photos: Photos, settings: Settings, on_status: Callable[[Status], None]) -> None:
+        self._photos, self._settings, self._on_status = photos, settings, on_status
+        self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])  # type: ignore[misc]
+        if not self._footage.stands:
+            raise UserError(
+                "a film needs two or more cameras that stand and have a frame at the first time; "
+                "of one moving camera only what stands still can be fitted: leave out `time`"
+            )
+        self._rng = np.random.default_rng(settings.seed)
+        self._started, self._told, self._loss = time.perf_counter(), 0.0, math.nan
+
+    def fit(self) -> FittedFilm:
+        """All steps."""
+        footage, settings = self._footage, self._settings
+        steps = settings.steps and max(1, round(START * settings.steps))
+        schedule = Schedule(steps, settings.seconds and START * settings.seconds, settings.coarse)
+        first = [footage.shots[i] for i in footage.first]
+        start = trainer(first, self._photos, settings.max_gaussians, schedule, self._rng)
+        while start.progress < 1:
+            self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
+        labelled, bodies, tried = self._bodies(start.parameters)
+        budget = min(settings.max_gaussians, int(MORE * len(labelled)))
+        joint = Joint(labelled, bodies, footage, budget, self._rng)
+        left = None if settings.seconds is None else max(0.2 * settings.seconds, settings.seconds - self._seconds)
+        more = None if settings.steps is None else settings.steps - start.steps
+        while (share := _share(joint, more, left)) < 1:
+            self._tell(joint.step(share), start.steps + joint.steps, START + (1 - START) * share, len(labelled))
+        scene = self._scene(labelled, bodies)
+        return FittedFilm(
+            scene, measure_film(scene, self._photos.held_out), start.steps + joint.steps, self._seconds, tried
+        )
+
+    @property
+    def _seconds(self) -> float:
+        return time.perf_counter() - self._started
+
+    def _bodies(self, start: object) -> tuple[Labelled, list[Body], int]:
+        """What moves, by the number of its label, and its path."""
+        from ...fit.parameters import Parameters
+
+        assert isinstance(start, Parameters)
+        columns, footage = start.columns(), self._footage
+        found = seeds(columns, footage)[:MOST_BODIES]
+        still = np.ones(len(start), bool)
+        for rows in found:
+            still[rows] = False
+        labels, bodies = np.zeros(len(start), np.int32), list[Body]()
+        for k, rows in enumerate(found):
+            self._tell(math.nan, 0, START, len(start))
+            tracked = Tracker(columns, rows, still, footage, self._settings.seed + k).track()
+            if tracked.gain < EXPLAINS:
+                bodies.append(tracked.body)
+                labels[rows] = len(bodies)
+        return Labelled.labelled(start, labels), bodies, len(found)
+
+    def _scene(self, labelled: Labelled, bodies: Sequence[Body]) -> Scene:
+        """The scene, rows by body, with tracks of few keys."""
+        footage = self._footage
+        order = np.argsort(labelled.labels, kind="stable")
+        labels = labelled.labels[order]
+        cloud = labelled.cloud()[torch.from_numpy(order)]
+        cloud = cloud.replace(ids=torch.arange(len(cloud)))
+        group = np.full(len(cloud), NO_GROUP, np.int32)
+        tracks = []
+        for number, body in enumerate(bodies, 1):
+            rows = np.flatnonzero(labels == number)
+            if not len(rows):
+                continue
+            track = track_of(
+                body, rows, footage.times, _size(cloud, rows), TOLERANCE * footage.radius, f"thing {number}"
+            )  # fmt: skip
+            if track is not None:
+                group[rows] = len(tracks)
+                tracks.append(track)
+        cameras = tuple(sorted(footage.cameras, key=lambda camera: camera.name))
+        scene = Scene(cloud.replace(group=torch.from_numpy(group)), cameras=cameras)
+        if not tracks:
+            return scene
+        first, last = float(footage.times[0]), float(footage.times[-1])
+        return scene.replace(motion=Motion(tuple(tracks), start=first, stop=last))
+
+    def _tell(self, loss: float, steps: int, share: float, gaussians: int) -> None:
+        """Report progress now and then."""
+        if not math.isnan(loss):
+            self._loss = loss if math.isnan(self._loss) else 0.95 * self._loss + 0.05 * loss
+        now = self._seconds
+        if now - self._told >= REPORT_EVERY:
+            self._told = now
+            left = now * (1 / max(share, 1e-9) - 1)
+            self._on_status(Status(steps, min(share, 1.0), self._loss, math.nan, gaussians, left))
+
+
+def _share(joint: Joint, steps: int | None, seconds: float | None) -> float:
+    """Completed share of the training of all together."""
+    return min(1.0, joint.steps / max(steps, 1) if steps is not None else joint.seconds / max(seconds or 0.0, 1e-6))
+
+
+def _size(cloud: GaussianCloud, rows: NDArray[np.int64]) -> float:
+    """How far the Gaussians of a body reach from its middle, scene units."""
+    means = cloud.means.numpy()[rows]
+    return float(np.sqrt(((means - means.mean(axis=0)) ** 2).sum(axis=1).mean()))
+
+
+def measure_film(scene: Scene, shots: Sequence[Shot]) -> Quality:
+    """PSNR and SSIM of a scene against frames, each at its time; means over frames."""
+    each: dict[str, tuple[float, float]] = {}
+    for shot in shots:
+        cloud = scene.cloud if shot.time is None else at(scene, shot.time).cloud
+        each |= measure(cloud, [shot]).each
+    means = np.mean(list(each.values()), axis=0).tolist() if each else (math.nan, math.nan)
+    return Quality(means[0], means[1], each)
+
+

@@ -1,0 +1,112 @@
+"""Posed frames with times, by camera and time (`Footage`), and which of their pixels change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from ...camera import Camera
+from ...errors import UserError
+from ...fit.train import Shot
+
+F32 = NDArray[np.float32]
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+SAME_PLACE = 1e-4  # of the numbers of a pose: cameras within it are one camera that stands
+CHANGED = 0.05  # least difference of a colour, of 1, that counts as a change; more where frames are noisy
+NOISES = 4.0  # times the frames' own noise, from which a difference counts
+
+
+@dataclass(frozen=True, eq=False)
+class Footage:
+    """Frames of a scene that moves.
+
+    Attributes:
+        shots: the frames.
+        seconds: `[F]` the time of each.
+        times: `[T]` the different times, ascending.
+        when: `[F]` index into `times`.
+        cameras: the different cameras.
+        who: `[F]` index into `cameras`.
+    """
+
+    shots: tuple[Shot, ...]
+    seconds: F64
+    times: F64
+    when: I64
+    cameras: tuple[Camera, ...]
+    who: I64
+
+    @classmethod
+    def of(cls, shots: Sequence[Shot], seconds: Sequence[float]) -> Footage:
+        """Sort frames.
+
+        Raises:
+            UserError: a time is missing or not finite, or all are the same.
+        """
+        taken = np.array([np.nan if s is None else s for s in seconds], dtype=np.float64)
+        if not np.isfinite(taken).all():
+            bad = int(np.flatnonzero(~np.isfinite(taken))[0])
+            raise UserError(f"frame {shots[bad].camera.name!r} has no finite time; every frame of a film needs one")
+        times, when = np.unique(taken, return_inverse=True)
+        if len(times) < 2:
+            raise UserError(f"all frames are of one time ({times[0]:g} s); a film needs two or more different times")
+        cameras: list[Camera] = []
+        who = []
+        for shot in shots:
+            same = next((i for i, c in enumerate(cameras) if _same(c, shot.camera)), None)
+            if same is None:
+                same = len(cameras)
+                cameras.append(shot.camera)
+            who.append(same)
+        return cls(tuple(shots), taken, times, when.reshape(-1), tuple(cameras), np.array(who))
+
+    @cached_property
+    def frames(self) -> dict[tuple[int, int], int]:
+        """Number of the frame of a camera at a time, by both indices."""
+        return {(int(c), int(t)): i for i, (c, t) in enumerate(zip(self.who, self.when, strict=True))}
+
+    @cached_property
+    def first(self) -> I64:
+        """`[C]` the first frame of each camera."""
+        return np.array([min(np.flatnonzero(self.who == c), key=lambda i: self.when[i]) for c in range(len(self.cameras))])
+
+    @property
+    def stands(self) -> bool:
+        """Whether the cameras stand: each has frames at several times, among them the first."""
+        return len(self.cameras) > 1 and bool((self.when[self.first] == 0).all())
+
+    @property
+    def radius(self) -> float:
+        """1.1 times the radius of the cameras around their middle, scene units."""
+        eyes = np.stack([c.position for c in self.cameras])
+        return 1.1 * float(np.linalg.norm(eyes - eyes.mean(axis=0), axis=1).max())
+
+    @cached_property
+    def least(self) -> float:
+        """The difference of colour that counts as a change: above the noise between successive frames."""
+        noises = []
+        for c in range(len(self.cameras)):
+            own = sorted(np.flatnonzero(self.who == c), key=lambda i: self.when[i])
+            for a, b in zip(own[:-1:4], own[1::4], strict=False):
+                off = self.shots[a].photo.astype(np.int16) - self.shots[b].photo
+                noises.append(float(np.median(np.abs(off))) / 255 / 0.6745 / np.sqrt(2))
+        return max(CHANGED, NOISES * float(np.median(noises or [0.0])))
+
+    def changed(self, frame: int, other: int) -> NDArray[np.bool_]:
+        """`[H, W]` pixels whose colour differs between two frames of one camera."""
+        off = np.abs(self.shots[frame].photo.astype(np.int16) - self.shots[other].photo).max(axis=2) > 255 * self.least
+        return np.asarray(ndimage.median_filter(off, 3), dtype=bool)
+
+
+def _same(a: Camera, b: Camera) -> bool:
+    """Whether two frames are of one camera that stood still."""
+    size = 1 + float(np.abs(a.world_to_camera).max())
+    inner = (a.width, a.height) == (b.width, b.height) and abs(a.fx - b.fx) <= SAME_PLACE * a.fx
+    return inner and float(np.abs(a.world_to_camera - b.world_to_camera).max()) < SAME_PLACE * size

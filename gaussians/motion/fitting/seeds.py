@@ -1,0 +1,83 @@
+"""Which Gaussians of the scene at its start move (`seeds`): those whose pixels change in every picture that shows them.
+
+A pixel also changes where something arrives. What is only covered for a while is told apart later, since no path of it
+explains a picture.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ...camera import Camera
+from ...harmonics import SH_C0
+from ...render.cpu import gradient
+from .bodies import Columns
+from .footage import Footage
+
+F32 = NDArray[np.float32]
+Flags = NDArray[np.bool_]
+
+SEEN = 0.2  # of the largest weight of a Gaussian in any picture, from which a picture counts as showing it
+GONE = 0.75  # share of a Gaussian's weight on changed pixels, over the pictures that show it, from which it is gone
+FAINT = 0.15  # opacity below which a Gaussian says nothing
+ALIKE = 0.5  # overlap of the times at which two neighbours are gone, from which they are of one thing
+NEAR = 3.0  # times the distance to its third neighbour: as near are Gaussians that touch
+LEAST = 12  # Gaussians of the smallest thing
+
+
+def weights(columns: Columns, camera: Camera, masks: list[Flags]) -> F32:
+    """`[N, M]` blending weight of each Gaussian within masks of a picture, pixels."""
+    plain = (*columns[:4], np.zeros_like(columns[4][:, :1]))  # gray, so that no colour is clipped
+    drawn = gradient.draw(plain, camera, (0.0, 0.0, 0.0))
+    found = []
+    for k in range(0, len(masks), 3):
+        slope = np.zeros((camera.height, camera.width, 3), np.float32)
+        for channel, mask in enumerate(masks[k : k + 3]):
+            slope[..., channel] = mask
+        back = gradient.draw_backward(drawn, slope, np.zeros(slope.shape[:2], np.float32))
+        found.append(back.sh[:, 0, : len(masks[k : k + 3])] / np.float32(SH_C0))
+    return np.concatenate(found, axis=1)
+
+
+def gone(columns: Columns, footage: Footage) -> Flags:
+    """`[N, T]` whether each Gaussian of the start is gone at each time: hidden or elsewhere."""
+    count, times = len(columns[0]), len(footage.times)
+    total, changed, known = np.zeros((3, count, times), np.float32)
+    each, most = [], np.zeros(count, np.float32)
+    for c, camera in enumerate(footage.cameras):
+        own = [t for t in range(times) if (c, t) in footage.frames]
+        everything = np.ones((camera.height, camera.width), bool)
+        masks = [footage.changed(footage.frames[c, t], int(footage.first[c])) for t in own]
+        found = weights(columns, camera, [everything, *masks])
+        each.append((own, found))
+        most = np.maximum(most, found[:, 0])
+    for own, found in each:
+        shows = np.where(found[:, 0] >= SEEN * np.maximum(most, 1e-6), found[:, 0], 0)
+        total[:, own] += shows[:, None]
+        changed[:, own] += np.where(shows[:, None] > 0, found[:, 1:], 0)
+        known[:, own] += shows[:, None] > 0
+    opaque = (columns[3] > FAINT) & (most > 0.02)
+    return np.asarray(opaque[:, None] & (known > 0) & (changed > GONE * total))
+
+
+def seeds(columns: Columns, footage: Footage) -> list[NDArray[np.int64]]:
+    """Rows of the start that may be of one moving thing each, the most evident first."""
+    flags = gone(columns, footage)
+    rows = np.flatnonzero(flags.sum(axis=1) >= min(2, len(footage.times) - 1))
+    if len(rows) < LEAST:
+        return []
+    means, own = columns[0][rows], flags[rows].astype(np.float32)
+    tree = cKDTree(means)
+    reach, _ = tree.query(means, k=min(4, len(rows)))
+    pairs = tree.query_pairs(NEAR * float(np.median(reach[:, -1])), output_type="ndarray")
+    both = (own[pairs[:, 0]] * own[pairs[:, 1]]).sum(axis=1)
+    either = np.maximum(own[pairs[:, 0]], own[pairs[:, 1]]).sum(axis=1)
+    pairs = pairs[both >= ALIKE * either]
+    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(rows), len(rows)))
+    _, labels = connected_components(graph, directed=False)
+    found = [rows[labels == k] for k in np.flatnonzero(np.bincount(labels) >= LEAST)]
+    return sorted(found, key=lambda r: -float(flags[r].sum()))

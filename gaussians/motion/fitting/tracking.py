@@ -1,0 +1,280 @@
+"""The path of a body through the frames: searched by the colours of some of its points, then refined by rendering.
+
+From time to time: candidates around the pose that the last two times predict are scored by how well points of the body
+match the pictures where they would be seen, and the best are drawn around again (the cross-entropy method, Rubinstein
+1999). The best of all is refined by the gradient of the rendered difference, in pictures cropped to the body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from ...camera import Camera
+from ...render.cpu import gradient
+from .. import keys
+from .bodies import Body, Columns, moved, multiplied, pose_gradient, turned
+from .footage import Footage
+
+F32 = NDArray[np.float32]
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+SAMPLES = 160  # points of a body that candidates are scored by
+CANDIDATES, ROUNDS, ELITE = 300, 4, 24  # of the search at a time
+BLURS = (2.0, 1.2)  # standard deviations of the pictures' blur during the search, pixels: first rounds, last rounds
+CLIP = 0.35  # difference of a colour beyond which it does not matter
+VIEWS = 6  # cameras that a pose is refined in
+STEPS = 14  # of the refinement at each time
+MARGIN = 10  # pixels around a body that are rendered
+STILL = 0.004  # share of the pixels around a body that may change while it is taken to be at rest
+LOST = 0.7  # of the difference without the body, above which it was not found and is searched farther away
+
+
+@dataclass(frozen=True, eq=False)
+class Tracked:
+    """A body's path, and how well it explains the frames.
+
+    Attributes:
+        body: its poses.
+        found: `[T]` whether the body explains the pictures at each time better than nothing in its place.
+        gain: mean difference of the pictures without the body over that with it, at times when it is not at rest.
+    """
+
+    body: Body
+    found: NDArray[np.bool_]
+    gain: float
+
+
+class Tracker:
+    """Tracks one body.
+
+    Args:
+        columns: all Gaussians at the start.
+        rows: those of the body.
+        footage: frames from cameras that stand.
+        seed: of the search.
+    """
+
+    def __init__(self, columns: Columns, rows: I64, others: NDArray[np.bool_], footage: Footage, seed: int) -> None:
+        self._footage, self._rng = footage, np.random.default_rng([seed, len(rows)])
+        self._own: Columns = tuple(np.ascontiguousarray(c[rows]) for c in columns)  # type: ignore[assignment]
+        self._rest: Columns = tuple(np.ascontiguousarray(c[others]) for c in columns)  # type: ignore[assignment]
+        means, weight = self._own[0], self._own[3] * self._own[2].max(axis=1) ** 2
+        self.pivot = np.average(means, axis=0, weights=weight).astype(np.float64)
+        self._size = float(np.sqrt(np.average(((means - self.pivot) ** 2).sum(axis=1), weights=weight)))
+        some = self._rng.choice(len(rows), min(SAMPLES, len(rows)), replace=False, p=weight / weight.sum())
+        self._points = means[some].astype(np.float64) - self.pivot
+        self._colors = (self._own[4][some, 0] * 0.28209479177387814 + 0.5).clip(0, 1)
+        self._near = [_seen(self._rest, camera) for camera in footage.cameras]
+        self._blurred: dict[tuple[int, float], F32] = {}
+        every = np.concatenate([self._rest[0], means])
+        self._low, self._high = np.quantile(every, 0.02, axis=0), np.quantile(every, 0.98, axis=0)
+
+    def track(self) -> Tracked:
+        """The path through all times."""
+        times = len(self._footage.times)
+        body, found, ratios = Body.at_rest(self.pivot, times), np.ones(times, bool), []
+        speed, spin = np.zeros(3), np.zeros(3)
+        for t in range(1, times):
+            step = self._footage.times[t] - self._footage.times[t - 1]
+            body.quats[t], body.offsets[t] = body.quats[t - 1], body.offsets[t - 1]
+            views = self._views(body, t, speed * step)
+            if not views or self._rests(body, t, views):
+                speed, spin = np.zeros(3), np.zeros(3)
+                continue
+            body.offsets[t] += speed * step
+            body.quats[t] = turned(body.quats[t], spin * step)
+            self._search(body, t, wide=False)
+            self._refine(body, t)
+            ratio = self._ratio(body, t)
+            if ratio > LOST:
+                ratio = self._elsewhere(body, t, ratio)
+            found[t] = ratio < LOST
+            ratios.append(ratio)
+            if found[t]:
+                speed = (body.offsets[t] - body.offsets[t - 1]) / step
+                spin = _vector(multiplied(body.quats[t], body.quats[t - 1] * [1, -1, -1, -1])) / step
+            else:
+                body.quats[t], body.offsets[t] = body.quats[t - 1], body.offsets[t - 1]
+        gain = float(np.mean(ratios)) if ratios else 1.0
+        return Tracked(body, found, gain)
+
+    # --- the search ----------------------------------------------------------------------------------------------
+
+    def _elsewhere(self, body: Body, t: int, ratio: float) -> float:
+        """Search the whole scene where the prediction was wrong; the better of both poses stays."""
+        kept = body.quats[t].copy(), body.offsets[t].copy()
+        body.offsets[t], body.quats[t] = body.offsets[t - 1], body.quats[t - 1]
+        self._search(body, t, wide=True)
+        self._refine(body, t)
+        other = self._ratio(body, t)
+        if other >= ratio:
+            body.quats[t], body.offsets[t] = kept
+        return min(ratio, other)
+
+    def _search(self, body: Body, t: int, wide: bool) -> None:
+        """Candidates around the predicted pose, drawn ever closer around the best."""
+        mean, spread = np.zeros(6), np.r_[np.full(3, 0.6 * self._size), np.full(3, 0.25)]
+        offset, quat = body.offsets[t].copy(), body.quats[t].copy()
+        for k in range(ROUNDS):
+            drawn = mean + spread * self._rng.standard_normal((CANDIDATES, 6))
+            drawn[0] = mean
+            if wide and k == 0:
+                places = self._rng.uniform(self._low, self._high, (8 * CANDIDATES, 3))
+                drawn = np.concatenate([places - self.pivot - offset, 0.5 * self._rng.standard_normal((8 * CANDIDATES, 3))], axis=1)
+            if not k:
+                drawn = np.concatenate([drawn, np.r_[body.offsets[t - 1] - offset, 0, 0, 0][None]])
+            turns = np.stack([turned(quat, d[3:]) for d in drawn])
+            scores = self._scores(turns, offset + drawn[:, :3], t, BLURS[0 if k < ROUNDS // 2 else 1])
+            best = drawn[np.argsort(scores, kind="stable")[:ELITE]]
+            mean, spread = best.mean(axis=0), best.std(axis=0) + 1e-6
+            if wide and k == 0:  # places may be far apart: go on around the best
+                mean, spread = best[0], np.r_[np.full(3, 0.6 * self._size), np.full(3, 0.4)]
+        body.offsets[t], body.quats[t] = offset + mean[:3], turned(quat, mean[3:])
+
+    def _scores(self, turns: F64, offsets: F64, t: int, blur: float) -> F64:
+        """`[M]` mean difference of colours of the body's points at poses, where cameras see them."""
+        matrices = keys.matrices(turns)
+        points = np.einsum("mij,nj->mni", matrices, self._points) + self.pivot + offsets[:, None, :]
+        total, count = np.zeros(len(turns)), np.zeros(len(turns))
+        flat = points.reshape(-1, 3)
+        for c, camera in enumerate(self._footage.cameras):
+            if (c, t) not in self._footage.frames:
+                continue
+            pixels, depth = camera.project(flat)
+            inside = camera.contains(pixels, depth)
+            x = np.clip(pixels[:, 0].astype(np.int64), 0, camera.width - 1)
+            y = np.clip(pixels[:, 1].astype(np.int64), 0, camera.height - 1)
+            seen = self._picture(self._footage.frames[c, t], blur)[y, x].reshape(len(turns), -1, 3)
+            off = np.minimum(np.abs(seen - self._colors).mean(axis=2), CLIP)
+            own = inside.reshape(len(turns), -1)
+            total += np.where(own, off, CLIP * 0.5).sum(axis=1)
+            count += own.shape[1]
+        return np.asarray(total / np.maximum(count, 1))
+
+    def _picture(self, frame: int, blur: float) -> F32:
+        if (frame, blur) not in self._blurred:
+            if len(self._blurred) > 64:
+                self._blurred.clear()
+            self._blurred[frame, blur] = ndimage.gaussian_filter(self._footage.shots[frame].colors, (blur, blur, 0))
+        return self._blurred[frame, blur]
+
+    # --- the refinement ------------------------------------------------------------------------------------------
+
+    def _refine(self, body: Body, t: int) -> None:
+        """Adam on the pose, by the squared difference of the rendered to the taken pictures."""
+        views = self._views(body, t, np.zeros(3))
+        if not views:
+            return
+        first, second, best = np.zeros(6), np.zeros(6), (np.inf, body.quats[t], body.offsets[t])
+        for k in range(1, STEPS + 1):
+            slope, loss = np.zeros(6), 0.0
+            means, quats = body.placed(t, self._own[0], self._own[1])
+            for view in views:
+                value, turn, shift = self._slope(view, means, quats, body.pivot + body.offsets[t])
+                slope, loss = slope + np.r_[shift, turn / self._size], loss + value
+            if loss < best[0]:
+                best = (loss, body.quats[t].copy(), body.offsets[t].copy())
+            first, second = 0.7 * first + 0.3 * slope, 0.9 * second + 0.1 * slope**2
+            rate = 0.06 * self._size * 0.12 ** ((k - 1) / STEPS)
+            move = rate * first / (1 - 0.7**k) / (np.sqrt(second / (1 - 0.9**k)) + 1e-12)
+            body.offsets[t] -= move[:3]
+            body.quats[t] = turned(body.quats[t], -move[3:] / self._size)
+        _, body.quats[t], body.offsets[t] = best
+
+    def _slope(self, view: _View, means: F32, quats: F32, centre: F64) -> tuple[float, F64, F64]:
+        own = (means, quats, *self._own[2:])
+        columns = tuple(np.concatenate([a, b]) for a, b in zip(view.rest, own, strict=True))
+        drawn = gradient.draw(columns, view.camera, (0.0, 0.0, 0.0))
+        off = drawn.rgb - view.photo
+        found = gradient.draw_backward(drawn, 2 * off, np.zeros(off.shape[:2], np.float32))
+        start = len(view.rest[0])
+        turn, shift = pose_gradient(means, quats, centre, found.means[start:], found.quats[start:])
+        return float((off**2).sum()), turn, shift
+
+    def _views(self, body: Body, t: int, ahead: F64) -> list[_View]:
+        """The pictures around a body at a time, those that show it largest; and what else is in them."""
+        means, _ = body.placed(t, self._own[0], self._own[1])
+        found: list[tuple[float, int, tuple[int, int, int, int]]] = []
+        for c, camera in enumerate(self._footage.cameras):
+            if (c, t) not in self._footage.frames:
+                continue
+            pixels, depth = camera.project(means)
+            if not ((depth > 0.05) & camera.contains(pixels, depth)).mean() > 0.3:
+                continue
+            moves = np.linalg.norm(ahead) * camera.fx / max(float(np.median(depth)), 1e-6)
+            reach = MARGIN + min(0.5 * moves, 30.0)
+            low = np.floor(np.clip(pixels[depth > 0.05].min(axis=0) - reach, 0, None)).astype(int)
+            high = np.ceil(pixels[depth > 0.05].max(axis=0) + reach).astype(int)
+            high = np.minimum(high, [camera.width, camera.height])
+            if (high - low).min() >= 4:
+                area = float(np.prod(np.ptp(pixels[depth > 0.05], axis=0)))
+                found.append((-area, c, (low[0], low[1], high[0], high[1])))
+        return [self._view(c, t, window) for _, c, window in sorted(found)[:VIEWS]]
+
+    def _view(self, c: int, t: int, window: tuple[int, int, int, int]) -> _View:
+        x0, y0, x1, y1 = (int(v) for v in window)
+        camera = self._footage.cameras[c]
+        pixels, reach, depth = self._near[c]
+        inside = (depth > 0) & (pixels > np.array([x0, y0]) - reach[:, None]).all(axis=1)
+        inside &= (pixels < np.array([x1, y1]) + reach[:, None]).all(axis=1)
+        part = replace(camera, cx=camera.cx - x0, cy=camera.cy - y0, width=x1 - x0, height=y1 - y0)
+        rest: Columns = tuple(np.ascontiguousarray(col[inside]) for col in self._rest)  # type: ignore[assignment]
+        photo = self._footage.shots[self._footage.frames[c, t]].colors[y0:y1, x0:x1]
+        return _View(c, part, rest, np.ascontiguousarray(photo), (x0, y0, x1, y1))
+
+    def _rests(self, body: Body, t: int, views: Sequence[_View]) -> bool:
+        """Whether nothing changes around a body since the time before."""
+        changed = area = 0
+        for view in views:
+            before = self._footage.frames.get((view.number, t - 1))
+            if before is None:
+                return False
+            x0, y0, x1, y1 = view.window
+            off = self._footage.changed(self._footage.frames[view.number, t], before)[y0:y1, x0:x1]
+            changed, area = changed + int(off.sum()), area + off.size
+        return changed <= STILL * area
+
+    def _ratio(self, body: Body, t: int) -> float:
+        """The difference to the pictures with the body, over that without it."""
+        with_it = without = 1e-6
+        means, quats = body.placed(t, self._own[0], self._own[1])
+        for view in self._views(body, t, np.zeros(3)):
+            both = tuple(np.concatenate([a, b]) for a, b in zip(view.rest, (means, quats, *self._own[2:]), strict=True))
+            for number, columns in enumerate((both, view.rest)):
+                off = gradient.draw(columns, view.camera, (0.0, 0.0, 0.0)).rgb - view.photo
+                if number:
+                    without += float((off**2).sum())
+                else:
+                    with_it += float((off**2).sum())
+        return with_it / without
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """A picture around a body: which camera took it, the camera of the cropped picture, what stands still in it."""
+
+    number: int
+    camera: Camera
+    rest: Columns
+    photo: F32
+    window: tuple[int, int, int, int]
+
+
+def _seen(columns: Columns, camera: Camera) -> tuple[F64, F64, F64]:
+    """Pixels `[N, 2]` of Gaussians, their reach in pixels `[N]`, and depth `[N]`."""
+    pixels, depth = camera.project(columns[0])
+    reach = 3 * columns[2].max(axis=1) * camera.fx / np.maximum(depth, 1e-3)
+    return pixels, np.minimum(reach, 1e4), depth
+
+
+def _vector(q: F64) -> F64:
+    """The rotation vector `[3]` of a unit quaternion."""
+    w, v = (q[0], q[1:]) if q[0] >= 0 else (-q[0], -q[1:])
+    length = float(np.linalg.norm(v))
+    return np.asarray(2 * np.arctan2(length, w) / length * v if length > 1e-12 else np.zeros(3))

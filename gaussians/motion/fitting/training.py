@@ -1,0 +1,114 @@
+"""Training of all Gaussians and all poses together, on frames of every time (`Joint`)."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...fit.densify import MCMCStrategy
+from ...fit.loss import BLACK, photometric
+from ...fit.parameters import parameter_gradients
+from ...fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, morton_order
+from ...render.cpu import gradient
+from .. import keys
+from .bodies import Body, Labelled, left, pose_gradient, turned
+from .footage import Footage
+
+F64 = NDArray[np.float64]
+
+SSIM = 0.2
+OFFSETS_LR, TURNS_LR = 4e-4, 3e-3  # of poses: of the radius of the cameras, and radians
+SMOOTH = 0.03  # share by which a pose is drawn, at each of its steps, towards the middle of the two beside it
+GROWS_UNTIL = 0.7  # share of the training after which no Gaussians are added
+WARM = 0.35  # the learning rate of means at the start, of that of a training from nothing
+
+
+@dataclass(eq=False)
+class _Moments:
+    """Adam's moments of the six numbers of each pose."""
+
+    first: F64
+    second: F64
+    steps: NDArray[np.int64]
+
+
+class Joint:
+    """A training in progress.
+
+    Args:
+        parameters: changed in place.
+        bodies: changed in place; those of label 1, 2, ...
+        footage: frames to train on.
+        budget: greatest number of Gaussians.
+        rng: draws the order of frames, and copies and noise of Gaussians.
+        poses: whether poses are trained; else they stay.
+    """
+
+    def __init__(
+        self, parameters: Labelled, bodies: list[Body], footage: Footage, budget: int, rng: np.random.Generator,
+        poses: bool = True,
+    ) -> None:  # fmt: skip
+        self.parameters, self.bodies, self._footage, self._rng, self._poses = parameters, bodies, footage, rng, poses
+        self._strategy = MCMCStrategy(budget, rng)
+        times = len(footage.times)
+        self._moments = [_Moments(np.zeros((times, 6)), np.zeros((times, 6)), np.zeros(times, np.int64)) for _ in bodies]
+        self._order: list[int] = []
+        self.steps, self.seconds = 0, 0.0
+
+    def step(self, progress: float) -> float:
+        """Train on one frame; returns its loss.
+
+        Args:
+            progress: completed share of the training, in [0, 1].
+        """
+        started = time.perf_counter()
+        if not self._order:
+            self._order = self._rng.permutation(len(self._footage.shots)).tolist()
+        frame = self._order.pop()
+        shot, t = self._footage.shots[frame], int(self._footage.when[frame])
+        parameters = self.parameters
+        columns = parameters.at(self.bodies, t)
+        drawn = gradient.draw(columns, shot.camera, BLACK)
+        loss, slope = photometric(drawn.rgb, shot.colors, SSIM)
+        found = gradient.draw_backward(drawn, slope, np.zeros(slope.shape[:2], np.float32))
+        rate = WARM * LR_DECAY**progress
+        self._pull_back(columns, found, t, rate)
+        gradients = parameter_gradients(found, columns[2], columns[3])
+        self._strategy.regularise(gradients, columns[2], columns[3])
+        means_lr = MEANS_LR * self._footage.radius * rate
+        parameters.step(gradients, means_lr)
+        self._strategy.after_step(parameters, found.centers, (shot.camera.width, shot.camera.height), means_lr)
+        self.steps += 1
+        if self.steps % REFINE_EVERY == 0 and progress < GROWS_UNTIL:
+            self._strategy.refine(parameters, self.steps)
+            parameters.take(morton_order(parameters.means))
+        self.seconds += time.perf_counter() - started
+        return loss
+
+    def _pull_back(self, columns: tuple[NDArray[np.float32], ...], found: gradient.Gradients, t: int, rate: float) -> None:
+        """Step the poses of this time, and turn the gradients of bodies back to the start."""
+        for number, body in enumerate(self.bodies, 1):
+            rows = np.flatnonzero(self.parameters.labels == number)
+            if not len(rows):
+                continue
+            d_means, d_quats = found.means[rows], found.quats[rows]
+            if self._poses and t > 0 and np.any(d_means):
+                centre = body.pivot + body.offsets[t]
+                turn, shift = pose_gradient(columns[0][rows], columns[1][rows], centre, d_means, d_quats)
+                self._step_pose(number - 1, t, np.r_[shift, turn], rate)
+            matrix = keys.matrices(body.quats[t])
+            found.means[rows] = (d_means @ matrix).astype(np.float32)
+            found.quats[rows] = (d_quats @ left(body.quats[t])).astype(np.float32)
+
+    def _step_pose(self, number: int, t: int, slope: F64, rate: float) -> None:
+        body, m = self.bodies[number], self._moments[number]
+        m.steps[t] += 1
+        m.first[t] = 0.9 * m.first[t] + 0.1 * slope
+        m.second[t] = 0.99 * m.second[t] + 0.01 * slope**2
+        n = int(m.steps[t])
+        move = m.first[t] / (1 - 0.9**n) / (np.sqrt(m.second[t] / (1 - 0.99**n)) + 1e-15)
+        body.offsets[t] -= OFFSETS_LR * self._footage.radius * rate / WARM * move[:3]
+        body.quats[t] = turned(body.quats[t], -TURNS_LR * rate / WARM * move[3:])
