@@ -84,7 +84,8 @@ def command(
 
     Every eighth photograph is held out to measure the quality. An interrupted training resumes from its last checkpoint
     (OUTPUT.checkpoint). If the photographs have no poses, these are estimated first (extra sfm) and kept in
-    OUTPUT.poses; they are estimated again only if the photographs change.
+    OUTPUT.poses; they are estimated again only if the photographs change. Frames with different times, from cameras
+    that stand, become a scene with motion.
     """
     started = time.perf_counter()
     from ...gaussians.errors import FileError, UserError
@@ -94,6 +95,7 @@ def command(
     from ...gaussians.fit.blocks import fit_by_blocks
     from ...gaussians.fit.checkpoint import delete
     from ...gaussians.fit.engine import resolve_device
+    from ...gaussians.motion.fitting.fit import stands
 
     if minutes is not None and steps is not None:
         raise UserError("give --minutes or --steps, not both")
@@ -113,6 +115,11 @@ def command(
     if unposed_photos(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
     photos = load_photos(capture, scale, terminal.progress, poses, strict=strict)
+    if photos.film and stands(photos):
+        _fit_film(photos, settings, output, report, force)
+        return
+    if photos.film:
+        terminal.say("the frames have times, but one camera moves: only what stands still is fitted")
     terminal.say(_describe(photos) + (", on the GPU" if where == "cuda" else ""))
     kept = output.with_name(output.name + (".checkpoint" if parts == 1 else ".blocks"))
     if kept.exists():
@@ -150,6 +157,39 @@ def _blocks(said: str, settings: Settings) -> int:
     if int(said) > 1 and settings.growth == "classic":
         raise UserError("--blocks keeps to a budget of Gaussians; it goes with --growth budgeted")
     return int(said)
+
+
+def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | None, force: bool) -> None:
+    """Fit a scene with motion to the frames of a film, and write it."""
+    from ...gaussians.files import save
+    from ...gaussians.motion.fitting.fit import fit_film
+
+    times = {shot.time for shot in (*photos.shots, *photos.held_out)}
+    terminal.say(
+        f"a film of {len(times)} times: what moves is fitted too, on the CPU, without harmonics and checkpoints; "
+        + _describe(photos)
+    )
+    done = fit_film(photos, settings, on_status=_show_status)
+    save(done.scene, output, force=force)
+    tracks = done.scene.motion.tracks if done.scene.motion is not None else ()
+    data = {
+        "path": str(output), "gaussians": len(done.scene.cloud), "bytes": output.stat().st_size,
+        "psnr": round(done.quality.psnr, 4), "ssim": round(done.quality.ssim, 4), "times": len(times),
+        "tracks": [{"name": t.name, "kind": t.kind, "keys": len(t.times), "gaussians": len(t)} for t in tracks],
+        "steps": done.steps, "seconds": round(done.seconds, 2), "seed": settings.seed,
+    }  # fmt: skip
+    if report is not None:
+        from ...gaussians.files import writing
+
+        with writing(report / "report.json", force=force) as file:
+            file.write((json.dumps(data, indent=2) + "\n").encode())
+    told = ", ".join(f"{t.name} ({t.kind}, {len(t.times)} keys, {len(t):,} Gaussians)" for t in tracks)
+    how = f"{done.quality.psnr:.2f} dB, SSIM {done.quality.ssim:.3f} on {len(done.quality.each)} held-out frames"
+    moves = f"moves: {told}" if tracks else "nothing that moves was found"
+    terminal.result(
+        f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s\n{moves}",
+        data,
+    )
 
 
 def _resume_hint(kept: Path) -> str:

@@ -43,12 +43,14 @@ class Capture:
         cameras: one per photograph, of its full size, named by its file name without suffix.
         photos: the photographs' paths, which need not exist.
         lenses: the lens distortion of each camera, which `Camera` does not hold.
+        times: seconds, of each frame of a film; None where frames have no `time`.
     """
 
     path: Path
     cameras: tuple[Camera, ...]
     photos: tuple[Path, ...]
     lenses: tuple[Lens, ...]
+    times: tuple[float, ...] | None = None
 
     def camera(self, name: str) -> Camera | None:
         """The camera of the photograph `name` (with or without folder and suffix), or None."""
@@ -95,7 +97,32 @@ def read_capture(path: Path) -> Capture:
             reason = f"has no {error}" if isinstance(error, KeyError) else f"is invalid: {error}"
             raise FileError(f"{file}: frame {i} {reason}") from error
         photos.append(photo)
-    return _capture(file, cameras, photos, lenses)
+    return replace(_capture(file, cameras, photos, lenses), times=_times(file, frames))
+
+
+def _times(file: Path, frames: Sequence[Mapping[str, Any]]) -> tuple[float, ...] | None:
+    """The `time` of each frame; None if no frame has one.
+
+    Raises:
+        FileError: some frames have one and others do not, or one is not a finite number.
+    """
+    without = [i for i, frame in enumerate(frames) if frame.get("time") is None]
+    if len(without) == len(frames):
+        return None
+    if without:
+        raise FileError(
+            f"{file}: frame {without[0]} has no time, and {len(frames) - len(without)} other frames have one; give "
+            "every frame its time in seconds, or none"
+        )
+    found = []
+    for i, frame in enumerate(frames):
+        try:
+            found.append(_number(frame, "time"))
+        except ValueError as error:
+            raise FileError(f"{file}: frame {i} is invalid: {error}") from error
+        if not math.isfinite(found[-1]):
+            raise FileError(f"{file}: frame {i} has the time {found[-1]}; give a finite number of seconds")
+    return tuple(found)
 
 
 def unposed_photos(path: Path) -> list[Path]:

@@ -5,8 +5,8 @@ All errors of a capture are raised here, before training starts.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +55,15 @@ class Photos:
     missing: tuple[str, ...] = ()
     frame_note: str | None = None
 
+    @property
+    def film(self) -> bool:
+        """Whether the photographs are frames of a film: their times differ."""
+        return _is_film(self.shots)
+
+
+def _is_film(shots: Sequence[Shot]) -> bool:
+    return len({shot.time for shot in shots}) > 1
+
 
 def load_photos(
     path: Path,
@@ -98,14 +107,20 @@ def load_photos(
     check_views(capture.path, capture.cameras, points)
     shots = []
     for i, (camera, photo, lens) in enumerate(zip(capture.cameras, capture.photos, capture.lenses, strict=True)):
-        shots.append(_shot(photo, camera, lens, scale))
+        time = None if capture.times is None else capture.times[i]
+        shots.append(replace(_shot(photo, camera, lens, scale), time=time))
         progress("reading photographs", (i + 1) / len(capture.photos))
     if all(shot.photo.std(axis=(0, 1)).max() < MIN_STD for shot in shots):
         raise FileError(f"every photograph of {capture.path} is of one plain colour; there is nothing to train on")
     warning = check_colors(capture.path, shots, points)
     order = sorted(range(len(shots)), key=lambda i: capture.photos[i].name)
-    held_out = [shots[i] for k, i in enumerate(order) if k % TEST_EVERY == 0]
-    train = [shots[i] for k, i in enumerate(order) if k % TEST_EVERY]
+    if _is_film(shots):  # the first frame of every camera shows the start, which all later ones are compared with
+        first = min(shot.time for shot in shots if shot.time is not None)
+        order = [*(i for i in order if shots[i].time != first), *(i for i in order if shots[i].time == first)]
+        apart = {i for k, i in enumerate(order) if k % TEST_EVERY == TEST_EVERY // 2 and shots[i].time != first}
+    else:
+        apart = {i for k, i in enumerate(order) if k % TEST_EVERY == 0}
+    held_out, train = [shots[i] for i in order if i in apart], [shots[i] for i in order if i not in apart]
     if len(train) < MIN_PHOTOS:
         raise FileError(f"{capture.path} has {len(shots)} photographs; at least {MIN_PHOTOS + 1} are needed")
     return Photos(tuple(train), tuple(held_out), points, extent, warning, poses_folder, unplaced, missing, frame_note)
@@ -142,7 +157,8 @@ def _present(capture: Capture) -> tuple[Capture, tuple[str, ...]]:
         return capture, ()
     missing = tuple(p.name for i, p in enumerate(capture.photos) if i not in set(there))
     cameras, photos = tuple(capture.cameras[i] for i in there), tuple(capture.photos[i] for i in there)
-    return Capture(capture.path, cameras, photos, tuple(capture.lenses[i] for i in there)), missing
+    times = None if capture.times is None else tuple(capture.times[i] for i in there)
+    return Capture(capture.path, cameras, photos, tuple(capture.lenses[i] for i in there), times), missing
 
 
 def _points(folder: Path, capture: Capture) -> tuple[colmap.Points, str | None]:

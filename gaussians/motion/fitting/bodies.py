@@ -113,9 +113,7 @@ def turned(q: F64, vector: F64) -> F64:
     return multiplied(np.array([np.cos(angle / 2), *(np.sin(angle / 2) / angle * vector)]), q)
 
 
-def pose_gradient(
-    at: F32, quats: F32, centre: F64, d_means: F32, d_quats: F32
-) -> tuple[F64, F64]:
+def pose_gradient(at: F32, quats: F32, centre: F64, d_means: F32, d_quats: F32) -> tuple[F64, F64]:
     """Gradient by a further turn about `centre` (a rotation vector, world) and by a shift, from those by the placed
     means `[N, 3]` and quaternions `[N, 4]`."""
     slope = d_means.astype(np.float64)

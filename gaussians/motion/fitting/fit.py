@@ -4,9 +4,9 @@
 first frames ─stereo─► start ─changes─► seeds ─track─► bodies ─train all together─► few keys ─► scene with motion
 ```
 
-The scene at its start is trained first. Of its Gaussians those may move whose pixels change wherever they are seen; what
-touches and goes at one time is one body. A body is kept if a path of it explains the frames. Then all Gaussians and all
-poses are trained together on the frames of every time.
+The scene at its start is trained first. Of its Gaussians those may move whose pixels change wherever they are seen;
+what touches and goes at one time is one body. A body is kept if a path of it explains the frames. Then all Gaussians
+and all poses are trained together on the frames of every time.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from ...fit.quality import Quality, measure
 from ...fit.train import Schedule, Shot
 from ...scene import Scene
 from ..at import at
-from ..motion import Motion
+from ..motion import Motion, Track
 from .bodies import Body, Labelled
 from .footage import Footage
 from .seeds import seeds
@@ -80,12 +80,17 @@ def fit_film(
     return _Film(photos, settings, on_status).fit()
 
 
+def stands(photos: Photos) -> bool:
+    """Whether the frames of a film are of cameras that stand, so that what moves can be fitted."""
+    return Footage.of(photos.shots, [s.time for s in photos.shots]).stands
+
+
 class _Film:
     """A fit in progress."""
 
     def __init__(self, photos: Photos, settings: Settings, on_status: Callable[[Status], None]) -> None:
         self._photos, self._settings, self._on_status = photos, settings, on_status
-        self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])  # type: ignore[misc]
+        self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
         if not self._footage.stands:
             raise UserError(
                 "a film needs two or more cameras that stand and have a frame at the first time; "
@@ -146,7 +151,7 @@ class _Film:
         cloud = labelled.cloud()[torch.from_numpy(order)]
         cloud = cloud.replace(ids=torch.arange(len(cloud)))
         group = np.full(len(cloud), NO_GROUP, np.int32)
-        tracks = []
+        tracks = list[Track]()
         for number, body in enumerate(bodies, 1):
             rows = np.flatnonzero(labels == number)
             if not len(rows):
@@ -194,5 +199,3 @@ def measure_film(scene: Scene, shots: Sequence[Shot]) -> Quality:
         each |= measure(cloud, [shot]).each
     means = np.mean(list(each.values()), axis=0).tolist() if each else (math.nan, math.nan)
     return Quality(means[0], means[1], each)
-
-

@@ -44,7 +44,7 @@ class Footage:
     who: I64
 
     @classmethod
-    def of(cls, shots: Sequence[Shot], seconds: Sequence[float]) -> Footage:
+    def of(cls, shots: Sequence[Shot], seconds: Sequence[float | None]) -> Footage:
         """Sort frames.
 
         Raises:
@@ -75,7 +75,9 @@ class Footage:
     @cached_property
     def first(self) -> I64:
         """`[C]` the first frame of each camera."""
-        return np.array([min(np.flatnonzero(self.who == c), key=lambda i: self.when[i]) for c in range(len(self.cameras))])
+        return np.array(
+            [min(np.flatnonzero(self.who == c), key=lambda i: self.when[i]) for c in range(len(self.cameras))]
+        )
 
     @property
     def stands(self) -> bool:

@@ -33,12 +33,12 @@ def track_of(body: Body, ids: NDArray[np.int64], times: F64, size: float, tolera
     rested = _rested(body, size, tolerance)
     found = []
     for smooth in (True, False):
-        axial = _slide(rested, ids, times, size, tolerance, smooth) or _hinge(rested, ids, times, size, tolerance, smooth)
+        for axial in (_slide, _hinge):
+            if (track := axial(rested, ids, times, size, tolerance, smooth)) is not None:
+                found.append(_fewest(track, rested, times, size, AXIS_SLACK * tolerance))
+                break
         whole = Track.rigid(ids, times, rested.quats, rested.offsets, rested.pivot, smooth)
-        found += [_fewest(t, rested, times, size, limit) for t, limit in ((axial, AXIS_SLACK), (whole, 1.0)) if t is not None
-                  for limit in [limit * tolerance]]  # fmt: skip
-        if axial is not None:
-            continue
+        found.append(_fewest(whole, rested, times, size, tolerance))
     best = min(found, key=lambda t: (t.kind == "rigid", len(t.times)))
     return replace(best, name=name)
 
@@ -120,7 +120,9 @@ def _hinge(body: Body, ids: NDArray[np.int64], times: F64, size: float, toleranc
     turns = keys.matrices(body.quats)
     # The line: points that all poses leave where they are.
     matrix = np.concatenate([*(turns - np.eye(3)), 0.01 * axis[None]])
-    wanted = np.concatenate([-(body.offsets + body.pivot - turns @ body.pivot).reshape(-1), [0.01 * float(axis @ body.pivot)]])
+    wanted = np.concatenate(
+        [-(body.offsets + body.pivot - turns @ body.pivot).reshape(-1), [0.01 * float(axis @ body.pivot)]]
+    )
     pivot = np.linalg.lstsq(matrix, wanted, rcond=None)[0]
     found = Track.hinge(ids, times, turned - turned[0], axis, pivot, smooth)
     return found if _misses(found, body, times, size).max() <= AXIS_SLACK * tolerance else None

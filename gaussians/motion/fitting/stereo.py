@@ -1,9 +1,9 @@
 """Depth of pictures from a few posed cameras, as points to start from (`points_of`).
 
-For each picture: the cost of a pixel at each of a number of depths is how much its colour differs from where the nearest
-cameras see that point (plane sweep; Collins 1996). Costs are summed along paths in four directions with a penalty for
-changes of depth (Hirschmueller 2008), so that plain walls take the depth of their borders. Depths that other
-pictures confirm come first.
+For each picture: the cost of a pixel at each of a number of depths is how much its colour differs from where the
+nearest cameras see that point (plane sweep; Collins 1996). Costs are summed along paths in four directions with a
+penalty for changes of depth (Hirschmueller 2008), so that plain walls take the depth of their borders. Depths that
+other pictures confirm come first.
 """
 
 from __future__ import annotations
@@ -84,7 +84,9 @@ def _depth(own: int, cameras: Sequence[Camera], photos: Sequence[F32], radius: f
     costs = np.empty((camera.height, camera.width, DEPTHS), np.float32)
     pictures = np.stack([np.ascontiguousarray(photos[k], np.float32) for k in others])
     count = compiled.workers()
-    compiled.run(_sweep, count, np.ascontiguousarray(photo, np.float32), pictures, maps, (1 / inverse).astype(f4), costs)
+    compiled.run(
+        _sweep, count, np.ascontiguousarray(photo, np.float32), pictures, maps, (1 / inverse).astype(f4), costs
+    )
     total = np.zeros_like(costs)
     for flipped in (False, True):
         for turned in (False, True):

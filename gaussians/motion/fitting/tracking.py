@@ -17,7 +17,7 @@ from scipy import ndimage
 from ...camera import Camera
 from ...render.cpu import gradient
 from .. import keys
-from .bodies import Body, Columns, moved, multiplied, pose_gradient, turned
+from .bodies import Body, Columns, multiplied, pose_gradient, turned
 from .footage import Footage
 
 F32 = NDArray[np.float32]
@@ -126,7 +126,9 @@ class Tracker:
             drawn[0] = mean
             if wide and k == 0:
                 places = self._rng.uniform(self._low, self._high, (8 * CANDIDATES, 3))
-                drawn = np.concatenate([places - self.pivot - offset, 0.5 * self._rng.standard_normal((8 * CANDIDATES, 3))], axis=1)
+                drawn = np.concatenate(
+                    [places - self.pivot - offset, 0.5 * self._rng.standard_normal((8 * CANDIDATES, 3))], axis=1
+                )
             if not k:
                 drawn = np.concatenate([drawn, np.r_[body.offsets[t - 1] - offset, 0, 0, 0][None]])
             turns = np.stack([turned(quat, d[3:]) for d in drawn])
@@ -207,14 +209,14 @@ class Tracker:
             pixels, depth = camera.project(means)
             if not ((depth > 0.05) & camera.contains(pixels, depth)).mean() > 0.3:
                 continue
-            moves = np.linalg.norm(ahead) * camera.fx / max(float(np.median(depth)), 1e-6)
+            moves = float(np.linalg.norm(ahead)) * camera.fx / max(float(np.median(depth)), 1e-6)
             reach = MARGIN + min(0.5 * moves, 30.0)
-            low = np.floor(np.clip(pixels[depth > 0.05].min(axis=0) - reach, 0, None)).astype(int)
-            high = np.ceil(pixels[depth > 0.05].max(axis=0) + reach).astype(int)
+            low = np.floor(np.clip(pixels[depth > 0.05].min(axis=0) - reach, 0, None)).astype(np.int64)
+            high = np.ceil(pixels[depth > 0.05].max(axis=0) + reach).astype(np.int64)
             high = np.minimum(high, [camera.width, camera.height])
             if (high - low).min() >= 4:
                 area = float(np.prod(np.ptp(pixels[depth > 0.05], axis=0)))
-                found.append((-area, c, (low[0], low[1], high[0], high[1])))
+                found.append((-area, c, (int(low[0]), int(low[1]), int(high[0]), int(high[1]))))
         return [self._view(c, t, window) for _, c, window in sorted(found)[:VIEWS]]
 
     def _view(self, c: int, t: int, window: tuple[int, int, int, int]) -> _View:

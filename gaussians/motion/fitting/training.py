@@ -54,7 +54,9 @@ class Joint:
         self.parameters, self.bodies, self._footage, self._rng, self._poses = parameters, bodies, footage, rng, poses
         self._strategy = MCMCStrategy(budget, rng)
         times = len(footage.times)
-        self._moments = [_Moments(np.zeros((times, 6)), np.zeros((times, 6)), np.zeros(times, np.int64)) for _ in bodies]
+        self._moments = [
+            _Moments(np.zeros((times, 6)), np.zeros((times, 6)), np.zeros(times, np.int64)) for _ in bodies
+        ]
         self._order: list[int] = []
         self.steps, self.seconds = 0, 0.0
 
@@ -88,7 +90,9 @@ class Joint:
         self.seconds += time.perf_counter() - started
         return loss
 
-    def _pull_back(self, columns: tuple[NDArray[np.float32], ...], found: gradient.Gradients, t: int, rate: float) -> None:
+    def _pull_back(
+        self, columns: tuple[NDArray[np.float32], ...], found: gradient.Gradients, t: int, rate: float
+    ) -> None:
         """Step the poses of this time, and turn the gradients of bodies back to the start."""
         for number, body in enumerate(self.bodies, 1):
             rows = np.flatnonzero(self.parameters.labels == number)
