@@ -21,7 +21,7 @@ from .terminal.output import error_json, terminal
 
 VERBS = (
     "demo", "info", "embed", "name-all", "select", "ask", "describe", "plan", "schema", "check", "compose", "edit",
-    "chat", "view", "render", "find-view", "convert", "export", "mesh", "slim", "mcp", "fit", "dream", "batch",
+    "chat", "view", "render", "find-view", "convert", "tile", "export", "mesh", "slim", "mcp", "fit", "dream", "batch",
     "bench", "doctor",
 )  # fmt: skip
 

@@ -35,6 +35,16 @@ def _window(value: str | None) -> str | None:
     return value
 
 
+def _memory(value: str | None) -> str | None:
+    """The memory for this run; what reads tiles looks the variable up."""
+    if value is not None:
+        from ..gaussians.tiles.budget import VARIABLE, parse_memory
+
+        parse_memory(value)
+        os.environ[VARIABLE] = value
+    return value
+
+
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="A scene file or folder (see `convert --help`).")]
 Output = Annotated[
     Path | None,
@@ -47,6 +57,13 @@ Debug = Annotated[
         "--debug", callback=_debug, is_eager=True, help="Show errors with their traceback, and what starting took."
     ),
 ]
+Memory = Annotated[
+    str | None,
+    typer.Option(
+        "--memory", metavar="SIZE", callback=_memory,
+        help="Memory for a scene in tiles, as in 4GB (the default) or 500MB; also SCENEWRIGHT_MEMORY.",
+    ),
+]  # fmt: skip
 Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
 Yes = Annotated[
     bool, typer.Option("--yes", "-y", help="Go on with what was chosen although its name is not confirmed; do not ask.")

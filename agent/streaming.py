@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from .terminal.output import terminal
 
 if TYPE_CHECKING:
-    from ..gaussians.camera import Camera
+    from ..gaussians.camera import Camera, Render, Vec3
     from ..gaussians.cloud import GaussianCloud
     from ..gaussians.files.formats.streamed_sog import Streamed
     from ..gaussians.levels.making import Level
@@ -104,6 +104,7 @@ class Drawn:
     pixels: float
     gaussians: list[int] = field(default_factory=list)
     leaves: Counter[int] = field(default_factory=Counter)
+    KEY = "lod"
 
     @classmethod
     def of(cls, path: Path, pixels: float) -> Drawn:
@@ -133,6 +134,12 @@ class Drawn:
 
         last = max(k for k, count in enumerate(self.streamed.counts) if count)
         return Scene(self.streamed.level(last)[0], self.streamed.frame, self.streamed.cameras)
+
+    def render(self, camera: Camera, background: Vec3, backend: str) -> Render:
+        """A picture from this camera."""
+        from ..gaussians.render import render
+
+        return render(self.cloud(camera), camera, background, backend)
 
     def cloud(self, camera: Camera) -> GaussianCloud:
         """What a picture from this camera is drawn of."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import itertools
 from dataclasses import dataclass, fields, replace
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import torch
 from torch import Tensor
@@ -18,6 +18,23 @@ from .rows import rows_where, taken
 
 SH_BANDS = {1: 0, 4: 1, 9: 2, 16: 3}  # coefficients per channel K = (degree + 1)^2 -> degree
 NO_GROUP = -1
+
+
+class Rest(Protocol):
+    """A scene of which only a window is in memory."""
+
+    def evenly(self, cloud: GaussianCloud, step: int, near: tuple[Tensor, float] | None = None) -> GaussianCloud:
+        """Each `step`-th row of the whole scene, as it is with the rows of its window as they are in `cloud`.
+
+        Args:
+            near: of these rows only those whose centres may lie within a distance of a point `[3]`, scene units.
+        """
+
+    def count(self, cloud: GaussianCloud) -> int:
+        """Rows of the whole scene, as it is with its window as it is in `cloud`."""
+
+    def owned(self, groups: int) -> Tensor:
+        """Rows outside of the window of each of so many groups, `[groups]` int64."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +55,8 @@ class GaussianCloud:
         ids: `[N]` int64, stable identity; the row number in the file that was loaded, new ones above.
         first_free: no column: ids below it were given, if only to Gaussians that are deleted by now; new ones get none
             of them.
+        rest: no column: the scene that these rows are a window of, where it does not fit into memory; None if they are
+            all of it, or some things of it. Rows that are taken from a cloud have none.
     """
 
     means: Tensor
@@ -48,6 +67,7 @@ class GaussianCloud:
     group: Tensor
     ids: Tensor
     first_free: int = 0
+    rest: Rest | None = None
 
     def __post_init__(self) -> None:
         n = self.means.shape[0] if self.means.ndim else -1
@@ -131,8 +151,8 @@ class GaussianCloud:
             rows = rows_where(index)  # one scan of the mask instead of one a column
         if isinstance(rows, Tensor) and rows.ndim == 1 and (not len(rows) or int(rows.min()) >= 0):
             # Unlike `column[rows]` this does not wait for threads that other processes keep busy: 0.02 ms, not 16.
-            return self.replace(**{name: taken(column, rows) for name, column in self.columns()})
-        return self.replace(**{name: column[rows] for name, column in self.columns()})
+            return self.replace(**{name: taken(column, rows) for name, column in self.columns()}, rest=None)
+        return self.replace(**{name: column[rows] for name, column in self.columns()}, rest=None)
 
     def replace(self, **columns: Any) -> Self:
         """A new cloud with some columns replaced; the others are shared."""
@@ -161,7 +181,7 @@ class GaussianCloud:
         return h.hexdigest()
 
 
-_COLUMNS = tuple(f.name for f in fields(GaussianCloud) if f.name != "first_free")
+_COLUMNS = tuple(f.name for f in fields(GaussianCloud) if f.name not in ("first_free", "rest"))
 
 
 def concat(clouds: list[GaussianCloud]) -> GaussianCloud:
@@ -176,7 +196,7 @@ def concat(clouds: list[GaussianCloud]) -> GaussianCloud:
     clouds = [c.with_degree(degree) for c in clouds]
     parts = [dict(c.columns()) for c in clouds]
     columns = {name: torch.cat([p[name] for p in parts]) for name in parts[0]}
-    joined = type(clouds[0])(**columns, first_free=max(c.first_free for c in clouds))
+    joined = type(clouds[0])(**columns, first_free=max(c.first_free for c in clouds), rest=None)
     if len(clouds) > 1 and _ranges_overlap(clouds) and len(torch.unique(joined.ids)) != len(joined):
         raise UserError("concat: two Gaussians share an id; renumber the added ones above the largest id")
     return joined

@@ -32,7 +32,7 @@ def fresh_ids(cloud: GaussianCloud, count: int) -> Tensor:
 
 def without(cloud: GaussianCloud, gone: Tensor) -> GaussianCloud:
     """The rows of a cloud outside the mask `gone` `[N]`, whose ids are given to nothing else."""
-    return cloud[~gone].replace(first_free=_first_free(cloud))
+    return cloud[~gone].replace(first_free=_first_free(cloud), rest=cloud.rest)
 
 
 def _first_free(cloud: GaussianCloud) -> int:
@@ -60,7 +60,7 @@ def joined(cloud: GaussianCloud, without: Tensor | None, added: list[GaussianClo
             torch.index_select(column, 0, keep, out=out[:n])
         torch.cat([getattr(c, name) for c in added], out=out[n:])
         columns[name] = out
-    return GaussianCloud(**columns, first_free=max(_first_free(c) for c in (cloud, *added)))
+    return GaussianCloud(**columns, first_free=max(_first_free(c) for c in (cloud, *added)), rest=cloud.rest)
 
 
 class Draft:

@@ -32,7 +32,8 @@ def recount(field: LanguageField | None, cloud: GaussianCloud) -> LanguageField 
     """The table with the counts of `cloud`; an object's count includes its parts."""
     if field is None:
         return None
-    own = _counts(cloud.group, field)[: len(field.groups)].tolist()
+    counts = _counts(cloud.group, field)[: len(field.groups)]
+    own = (counts if cloud.rest is None else counts + cloud.rest.owned(len(field.groups))).tolist()
     total = list(own)
     for group in field.groups:
         if group.parent >= 0:

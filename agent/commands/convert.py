@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Debug, Force, Json, SceneFile
+from ..options import Debug, Force, Json, Memory, SceneFile
 from ..terminal.output import terminal
 
 if TYPE_CHECKING:
@@ -64,6 +64,7 @@ def command(
     fps: Annotated[
         float | None, typer.Option("--fps", metavar="N", help="Files of a sequence that make a second.")
     ] = None,
+    memory: Memory = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,

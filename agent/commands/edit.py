@@ -25,6 +25,7 @@ from ..options import (
     Json,
     Judge,
     Log,
+    Memory,
     NoInfill,
     Output,
     Picture,
@@ -89,6 +90,13 @@ def command(
         str | None,
         typer.Option("--session", metavar="ID", help="With --replay: the session, by id or number; default the last."),
     ] = None,
+    undo: Annotated[
+        bool, typer.Option("--undo", help="Of a scene in tiles: undo its last edit, instead of an instruction.")
+    ] = False,
+    redo: Annotated[
+        bool, typer.Option("--redo", help="Of a scene in tiles: redo the edit that was undone last.")
+    ] = False,
+    memory: Memory = None,
     up: Up = None,
     metres_per_unit: Scale = None,
     view: View = "auto",
@@ -120,17 +128,29 @@ def command(
     What is chosen by its colour, as its name could not be confirmed, is edited only if you say so, or with --yes.
 
     A language field saved beside SCENE (see `embed`) is used, and then saved beside the edited scene too.
+
+    A scene in tiles (see `tile`) is edited where it lies, without -o; --undo and --redo reach the edits that were made.
     """
     started = time.perf_counter()
     from ...gaussians.errors import UserError
+    from ...gaussians.tiles.store import is_tiles
     from ..session.opening import SessionOptions, open_session
 
+    tiled = is_tiles(scene)
+    if undo or redo:
+        _step_back(scene, tiled, undo, any(value is not None for value in (text, replay, output)) or undo == redo)
+        return
     if (text is None) == (replay is None):
         raise UserError('give either TEXT or --replay LOG: scenewright edit SCENE "make the sofa teal" -o out.ply')
     if preview is not None and replay is not None:
         raise UserError("--preview shows what one instruction would change: give TEXT, or --replay LOG without it")
     dry_run = dry_run or preview is not None
-    if output is None and not dry_run:
+    if tiled and (output is not None or replay is not None or pictures is not None):
+        raise UserError(
+            f"{scene} is edited where it lies, one instruction at a time: leave out -o, --replay and --pictures; "
+            "`scenewright convert` writes it to another file"
+        )
+    if output is None and not dry_run and not tiled:
         raise UserError("say where to write the edited scene: -o out.ply (or try it first with --preview change.png)")
     if session_of_log is not None and replay is None:
         raise UserError("--session names a session of a log; give the log with --replay")
@@ -165,7 +185,7 @@ def command(
     spent = {**data.pop("seconds", {}), **seconds, "total": time.perf_counter() - started}
     data["seconds"] = {stage: round(value, 3) for stage, value in spent.items()}
     lines += [data["change"]] if "change" in data else []
-    lines += ["dry run: no scene was written"] if dry_run else [f"wrote {data['output']}"]
+    lines += ["dry run: no scene was written"] if dry_run else [f"wrote {data.get('output', scene)}"]
     lines += [f"wrote {path}" for path in data.get("pictures", ())]
     terminal.result("\n".join(lines), data | reported(dial))
     tell(dial)
@@ -175,6 +195,19 @@ def command(
         for line in usage_lines(session.planned):
             terminal.say(line)
         terminal.say("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in data["seconds"].items()))
+
+
+def _step_back(scene: Path, tiled: bool, undo: bool, more: bool) -> None:
+    """Undo or redo an edit of a scene in tiles."""
+    from ...gaussians.errors import UserError
+    from ...gaussians.tiles import changing
+
+    if not tiled or more:
+        raise UserError("--undo and --redo stand alone and are for scenes in tiles: scenewright edit NAME.tiles --undo")
+    tiles, text = (changing.undo if undo else changing.redo)(scene)
+    done = "undone" if undo else "done again"
+    data = {"verdict": "ok", "text": text, "step": "undo" if undo else "redo", "gaussians": len(tiles)}
+    terminal.result(f"{done}: {text}", data)
 
 
 def _check_targets(output: Path | None, preview: Path | None, pictures: Path | None, force: bool) -> None:

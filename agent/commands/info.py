@@ -12,6 +12,7 @@ from ..options import Capture, Debug, Json, SceneFile
 from ..terminal.output import terminal
 
 if TYPE_CHECKING:
+    from ...gaussians.language.field.language_field import LanguageField
     from ...gaussians.scene import Scene
 
 
@@ -34,17 +35,18 @@ def command(
     With --budget, what each part of its model buys: harmonics, Gaussians, things, views and the language field, with
     the bytes that dropping it saves and the PSNR or names that are left; --capture gives the views for it.
     """
-    from dataclasses import asdict
-
     from ...gaussians.errors import UserError
     from ...gaussians.files import load_with_report
     from ...gaussians.language.field.store import load_field
+    from ...gaussians.tiles.store import is_tiles
     from ..streaming import levels_of
     from ..terminal.motion_text import motion_data
-    from ..terminal.thing_names import describe_things
 
     if capture is not None and not budget:
         raise UserError("--capture gives the views of --budget; add --budget or leave it out")
+    if is_tiles(scene) and not (budget or graph):
+        _show_tiles(scene)
+        return
     loaded, report = load_with_report(scene)
     loaded = load_field(loaded, scene) or loaded
     if budget:
@@ -56,7 +58,7 @@ def command(
         nodes = SceneGraph.from_scene(loaded).model_dump(mode="json", exclude_none=True)
         terminal.result(json.dumps(nodes, indent=1, ensure_ascii=False), nodes)
         return
-    cloud, frame, language = loaded.cloud, loaded.frame, loaded.language
+    cloud, frame = loaded.cloud, loaded.frame
     low, high = (getattr(cloud.means, f)(dim=0).values.tolist() for f in ("min", "max"))
     levels_text, levels = levels_of(scene)
     data: dict[str, Any] = {
@@ -75,18 +77,59 @@ def command(
         "motion": motion_data(loaded),
         "language": None,
     }
-    things_text = "  not embedded yet: run `scenewright embed`"
-    if language is not None:
-        shown = [g for g in language.objects() if g.count]
-        things = [{"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "count": g.count} for g in shown]
-        making = language.making
-        data["language"] = {
-            "encoder": language.encoder, "things": things, "notes": list(language.notes),
-            "making": None if making is None else asdict(making),
-        }  # fmt: skip
-        made = [f"embedded with {language.encoder}"] if making is None else making.lines()
-        things_text = "\n".join(f"  {line}" for line in (describe_things(shown), *made))
+    data["language"], things_text = _things(loaded.language)
     terminal.result("\n".join([*_lines(data), *levels_text, things_text]), data)
+
+
+def _things(language: LanguageField | None) -> tuple[dict[str, Any] | None, str]:
+    """The things of a scene as data and as lines."""
+    from dataclasses import asdict
+
+    from ..terminal.thing_names import describe_things
+
+    if language is None:
+        return None, "  not embedded yet: run `scenewright embed`"
+    shown = [g for g in language.objects() if g.count]
+    things = [{"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "count": g.count} for g in shown]
+    making = language.making
+    data = {
+        "encoder": language.encoder, "things": things, "notes": list(language.notes),
+        "making": None if making is None else asdict(making),
+    }  # fmt: skip
+    made = [f"embedded with {language.encoder}"] if making is None else making.lines()
+    return data, "\n".join(f"  {line}" for line in (describe_things(shown), *made))
+
+
+def _show_tiles(path: Path) -> None:
+    """Print the contents of a scene in tiles; no tile is read."""
+    from ...gaussians.tiles.records import row_bytes
+    from ...gaussians.tiles.store import Tiles
+
+    tiles = Tiles.open(path)
+    low, high = tiles.bounds
+    size = len(tiles) * row_bytes(tiles.state.degree)
+    frame, edits = tiles.frame, [step.text for step in (*tiles.head.past, tiles.head.present) if step.text]
+    data: dict[str, Any] = {
+        "path": str(path),
+        "format": "tiles",
+        "gaussians": len(tiles),
+        "degree": tiles.state.degree,
+        "megabytes": round(size / 1e6, 1),
+        "bounds": [low.tolist(), high.tolist()],
+        "up": [frame.up, frame.up_source],
+        "floor": frame.floor,
+        "metres_per_unit": [frame.metres_per_unit, frame.scale_source],
+        "cameras": [{"name": c.name, "size": [c.width, c.height]} for c in tiles.cameras],
+        "notes": list(tiles.state.notes),
+        "tiles": [{"gaussians": tile.rows, "low": tile.low, "high": tile.high} for tile in tiles.state.tiles],
+        "edits": edits,
+        "undone": [step.text for step in reversed(tiles.head.future)],
+    }
+    data["language"], things_text = _things(tiles.field)
+    rows = [tile.rows for tile in tiles.state.tiles]
+    more = [f"  {len(rows)} tiles of {min(rows):,} to {max(rows):,} Gaussians"]
+    more += [f"  {len(edits)} edits, the last: {edits[-1]}"] if edits else []
+    terminal.result("\n".join([*_lines(data), *more, things_text]), data)
 
 
 def _show_budget(loaded: Scene, capture: Path | None) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Debug, Force, Json, Lod, SceneFile, Size, View
+from ..options import Debug, Force, Json, Lod, Memory, SceneFile, Size, View
 from ..output_files import refuse_existing
 from ..pictures.named_cameras import PICTURE, choose_view, parse_size
 from ..terminal.output import terminal
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from ...gaussians.scene import Scene
     from ..pictures.shots import Shots
     from ..streaming import Drawn
+    from ..tiled_pictures import DrawnTiles
+
+    Partly = Drawn | DrawnTiles | None  # a scene of which each picture reads a part; None: it is read whole
 
 Draw = Callable[["Camera", float | None], Any]  # a picture from a camera at a time, None: of the scene as it is
 Timing = tuple[float | None, float | None]  # seconds of a film, pictures a second
@@ -66,6 +69,7 @@ def command(
     ] = False,
     backend: Annotated[str, typer.Option(help="Renderer: 'auto', 'cpu', 'reference' or 'cuda'.")] = "auto",
     lod: Lod = None,
+    memory: Memory = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
@@ -74,6 +78,8 @@ def command(
 
     A .lod is drawn at its finest level. With --lod each of its parts is drawn at the coarsest level that moves its
     Gaussians by at most so many pixels, and only the files of these levels are read.
+
+    A scene in tiles is drawn exactly, in slabs of depth that fit into --memory.
     """
     from dataclasses import replace
 
@@ -82,10 +88,12 @@ def command(
     from ...gaussians.files import load
     from ...gaussians.motion.at import cloud_at
     from ...gaussians.render import render
+    from ...gaussians.tiles.store import is_tiles
     from ..pictures.film import is_film
     from ..pictures.shots import timed_shots
     from ..pictures.times import spread, time_span
     from ..streaming import Drawn
+    from ..tiled_pictures import DrawnTiles
 
     film = is_film(output)
     options = {"--view": view != "auto", "--orbit": orbit is not None, "--cameras": cameras is not None}
@@ -99,15 +107,16 @@ def command(
 
     def draw(camera: Camera, time: float | None = None) -> Any:
         if leveled is not None:
-            shown = leveled.cloud(camera)
-        else:
-            shown = loaded.cloud if time is None else cloud_at(loaded, time)
-        return finish(render(shown, camera, behind, backend))
+            return finish(leveled.render(camera, behind, backend))
+        return finish(render(loaded.cloud if time is None else cloud_at(loaded, time), camera, behind, backend))
 
     if not film:
         refuse_existing([output], force)
-    leveled = None if lod is None else Drawn.of(scene, lod)
-    if leveled is None:
+    leveled: Partly = None if lod is None else Drawn.of(scene, lod)
+    if is_tiles(scene):
+        leveled = DrawnTiles.of(scene, backend)
+        loaded = leveled.scene()
+    elif not isinstance(leveled, Drawn):
         loaded = load(scene)
     else:
         chosen = (view == "auto" and not leveled.streamed.cameras) if not film else cameras is None or bool(orbit)
@@ -155,7 +164,7 @@ def _check_channels(alpha: bool, depth: bool, output: Path) -> None:
         raise UserError(f"{'--alpha' if alpha else '--depth'} needs PNGs; write a folder instead of {output.name}")
 
 
-def _still(draw: Draw, camera: Camera, moment: float | None, output: Path, force: bool, leveled: Drawn | None) -> None:
+def _still(draw: Draw, camera: Camera, moment: float | None, output: Path, force: bool, leveled: Partly) -> None:
     from ..pictures.image_files import save_png
 
     started = time.perf_counter()
@@ -168,10 +177,10 @@ def _still(draw: Draw, camera: Camera, moment: float | None, output: Path, force
     _tell(text, data, leveled)
 
 
-def _tell(text: str, data: dict[str, Any], leveled: Drawn | None) -> None:
+def _tell(text: str, data: dict[str, Any], leveled: Partly) -> None:
     """Print the result, with what was drawn of which levels."""
     if leveled is not None:
-        text, data = f"{text}\n  {leveled.text()}", data | {"lod": leveled.data()}
+        text, data = f"{text}\n  {leveled.text()}", data | {leveled.KEY: leveled.data()}
     terminal.result(text, data)
 
 
@@ -191,7 +200,7 @@ def _shots(
     return shots.capture_shots(cameras, given, *timing)
 
 
-def _film(draw: Draw, shots: Shots, output: Path, force: bool, leveled: Drawn | None) -> None:
+def _film(draw: Draw, shots: Shots, output: Path, force: bool, leveled: Partly) -> None:
     from ..pictures import film
 
     sizes = {(camera.width, camera.height) for camera in shots.cameras}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Batch, Debug, Effort, Encoder, Force, Json, Planner, SceneFile, View, Vlm
+from ..options import Batch, Debug, Effort, Encoder, Force, Json, Memory, Planner, SceneFile, View, Vlm
 from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import read_batch, terminal
 
@@ -53,6 +53,7 @@ def command(
     vlm: Vlm = "auto",
     view: View = "auto",
     effort: Effort = None,
+    memory: Memory = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from ...gaussians.effort import Dial
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.scene import Frame, Scene
+    from ...gaussians.tiles.store import Tiles
     from .session import Progress, Session
 
 
@@ -81,20 +83,16 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         UserError: the view, size, planner or budget is not valid.
         BackendError: a package, key or file that the planner needs is missing.
     """
-    from ...gaussians.files import load_with_report
-    from ..pictures.named_cameras import choose_view, with_frame
+    from ...gaussians.tiles.store import Tiles, is_tiles
+    from ..pictures.named_cameras import choose_view
     from .own_references import own_references
-    from .session import Session
 
     startup.end()
     photographs = own_references(options.references, options.reference_width)  # a bad file is told first
-    loaded, report = load_with_report(options.path)
-    for note in report.notes:
-        terminal.say(f"note: {note}")
-    scene = with_frame(loaded, options.up, options.metres_per_unit)
-    scene, encoder = _with_saved_field(loaded, scene, options)
-    session = Session(
-        scene,
+    make, encoder, had_field = (
+        _on_tiles(Tiles.open(options.path), options) if is_tiles(options.path) else _on_file(options)
+    )
+    session = make(
         planner=options.planner,
         encoder=encoder,
         log=options.log,
@@ -118,7 +116,42 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         terminal.say(f"note: {note}")
     if options.view != "auto" or options.size is not None:
         session.viewer = choose_view(session.scene, options.view, options.size)
-    return session, scene.language is not None
+    return session, had_field
+
+
+Made = tuple[Callable[..., "Session"], "str | Encoder", bool]  # makes the session; its encoder; whether it has a field
+
+
+def _on_file(options: SessionOptions) -> Made:
+    """How to make a session on a scene file."""
+    from ...gaussians.files import load_with_report
+    from ..pictures.named_cameras import with_frame
+    from .session import Session
+
+    loaded, report = load_with_report(options.path)
+    for note in report.notes:
+        terminal.say(f"note: {note}")
+    scene = with_frame(loaded, options.up, options.metres_per_unit)
+    scene, encoder = _with_saved_field(loaded, scene, options)
+    return partial(Session, scene), encoder, scene.language is not None
+
+
+def _on_tiles(tiles: Tiles, options: SessionOptions) -> Made:
+    """How to make a session on a scene in tiles.
+
+    Raises:
+        UserError: the options are for scenes that fit into memory.
+    """
+    from ...gaussians.errors import UserError
+    from ...gaussians.tiles.budget import memory
+    from .tiled import TiledSession
+
+    given = {"--up": options.up, "--metres-per-unit": options.metres_per_unit, "--capture": options.capture}
+    if said := [name for name, value in given.items() if value is not None]:
+        raise UserError(
+            f"{said[0]} is for scenes that are read whole: give it when the files are embedded, then tile them"
+        )
+    return partial(TiledSession, tiles, memory()), options.encoder, tiles.state.table is not None
 
 
 def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> tuple[Scene, str | Encoder]:

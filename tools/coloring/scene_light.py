@@ -90,7 +90,8 @@ def scene_light(cloud: GaussianCloud) -> SceneLight:
     A cloud does not change, so its light is estimated once.
     """
     if (found := _KNOWN.get(cloud)) is None:
-        found = _KNOWN[cloud] = light_of(sample(cloud, size=_SAMPLE))
+        there = cloud if cloud.rest is None else cloud.rest.evenly(cloud, -(-cloud.rest.count(cloud) // _SAMPLE))
+        found = _KNOWN[cloud] = light_of(sample(there, size=_SAMPLE))
     return found
 
 
@@ -155,8 +156,14 @@ def _dimness(cloud: GaussianCloud, rows: Tensor, light: SceneLight) -> float:
     middle = few.median(dim=0).values
     apart = torch.linalg.vector_norm(few - middle, dim=1)
     radius = float(apart.kthvalue(max(1, int(0.9 * len(apart)))).values)
-    every = torch.arange(0, len(cloud), max(1, len(cloud) // (2 * _SAMPLE)))
-    near = every[torch.linalg.vector_norm(cloud.means[every] - middle, dim=1) < _AROUND * radius]
+    around = _AROUND * radius
+    if cloud.rest is None:
+        every = torch.arange(0, len(cloud), max(1, len(cloud) // (2 * _SAMPLE)))
+    else:
+        step = max(1, cloud.rest.count(cloud) // (2 * _SAMPLE))
+        cloud = cloud.rest.evenly(cloud, step, (middle, around))
+        every = torch.arange(len(cloud))
+    near = every[torch.linalg.vector_norm(cloud.means[every] - middle, dim=1) < around]
     if light.share <= 0 or len(near) < _FEWEST:
         return 1.0
     colors = sample(cloud, near, _SAMPLE)

@@ -7,12 +7,13 @@ store frame and cameras in header comments (see `comments`).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 
-from ...cloud import SH_BANDS
+from ...cloud import SH_BANDS, GaussianCloud
 from ...errors import FileError
 from ...scene import Scene
 from ..format import Format, Report
@@ -37,18 +38,57 @@ def read(path: Path) -> tuple[Scene, Report]:
         FileError: the file is cut off, malformed or empty, or lacks properties of Gaussians.
     """
     with open(path, "rb") as file:
-        header = ply.read_header(file, path)
-        vertex = header.element("vertex")
+        head = ply.read_header(file, path)
+        vertex = head.element("vertex")
         degree = _degree(path, vertex)
         assert vertex is not None
-        blocks = ply.read_rows(file, path, header, "vertex")
+        blocks = ply.read_rows(file, path, head, "vertex")
         means, quats, logs, logits, sh = _gather(blocks, vertex.count, degree)
-        more = ply.left_over(file, header, "vertex")
+        more = ply.left_over(file, head, "vertex")
     scales, opacities = values.scales_from_logs(logs), values.opacities_from_logits(logits)
     cloud, notes = values.sound_cloud(means, quats, scales, opacities, sh)
-    frame, cameras, ignored = comments.parse(header.comments)
+    frame, cameras, ignored = comments.parse(head.comments)
     scene = Scene(cloud, frame, cameras, path=path)
     return scene, Report(NAME, vertex.count, len(cloud), notes + ignored + more)
+
+
+def outline(path: Path) -> tuple[Scene, int, int]:
+    """Frame and cameras of a file, in a scene without Gaussians; its number of rows, and its harmonics degree.
+
+    Raises:
+        FileError: as `read`.
+    """
+    with open(path, "rb") as file:
+        head = ply.read_header(file, path)
+        vertex = head.element("vertex")
+        degree = _degree(path, vertex)
+        assert vertex is not None
+        ply.read_rows(file, path, head, "vertex")  # compares the counts with the size
+    frame, cameras, _ = comments.parse(head.comments)
+    return Scene(GaussianCloud.empty(degree), frame, cameras, path=path), vertex.count, degree
+
+
+def blocks(path: Path, rows: int, every: int = 1) -> Iterator[tuple[GaussianCloud, int]]:
+    """The sound Gaussians of a file, `rows` of its rows at a time, with row numbers as ids; and how many of their
+    quaternions became the identity. No more than one block is in memory.
+
+    Args:
+        every: read only each so many-th block, for a sample; those between are passed over.
+
+    Raises:
+        FileError: as `read`.
+    """
+    with open(path, "rb") as file:
+        head = ply.read_header(file, path)
+        vertex = head.element("vertex")
+        degree = _degree(path, vertex)
+        assert vertex is not None
+        for first, found in ply.read_blocks(file, path, head, "vertex", rows, every):
+            means, quats, logs, logits, sh = _gather(
+                ((k, found[k : k + ply.BLOCK_ROWS]) for k in range(0, len(found), ply.BLOCK_ROWS)), len(found), degree
+            )
+            scales, opacities = values.scales_from_logs(logs), values.opacities_from_logits(logits)
+            yield values.sound_rows(means, quats, scales, opacities, sh, first)
 
 
 def _degree(path: Path, vertex: ply.Element | None) -> int:
@@ -94,18 +134,20 @@ def _gather(blocks: Any, count: int, degree: int) -> tuple[values.Floats, ...]:
 
 def write(scene: Scene, file: BinaryIO) -> None:
     """Write the scene in row order, little-endian float32, with the zero normals that INRIA's viewer expects."""
-    cloud = {name: column.detach().cpu().numpy() for name, column in scene.cloud.columns()}
-    means, scales, opacities, sh = (cloud[name] for name in ("means", "scales", "opacities", "sh"))
-    quats, _ = values.unit_quats(cloud["quats"])
+    file.write(header(len(scene.cloud), scene.cloud.degree, comments.describe(scene)))
+    write_rows(scene.cloud, file)
+
+
+def write_rows(cloud: GaussianCloud, file: BinaryIO) -> None:
+    """Write the rows of a cloud, as they follow a `header`."""
+    columns = {name: column.detach().cpu().numpy() for name, column in cloud.columns()}
+    means, scales, opacities, sh = (columns[name] for name in ("means", "scales", "opacities", "sh"))
+    quats, _ = values.unit_quats(columns["quats"])
     k = sh.shape[1]
-    names = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"]
-    names += [f"f_rest_{i}" for i in range(3 * (k - 1))]
-    names += ["opacity", *(f"scale_{i}" for i in range(3)), *(f"rot_{i}" for i in range(4))]
-    file.write(_header(names, len(means), comments.describe(scene)))
     rest = 9 + 3 * (k - 1)
     for start in range(0, len(means), ply.BLOCK_ROWS):
         span = slice(start, start + ply.BLOCK_ROWS)
-        rows = np.zeros((len(means[span]), len(names)), "<f4")
+        rows = np.zeros((len(means[span]), rest + 8), "<f4")
         rows[:, 0:3] = means[span]
         rows[:, 6:9] = sh[span, 0]
         rows[:, 9:rest] = sh[span, 1:].transpose(0, 2, 1).reshape(len(rows), -1)  # to channel-major
@@ -115,8 +157,14 @@ def write(scene: Scene, file: BinaryIO) -> None:
         file.write(rows.data)
 
 
-def _header(names: list[str], count: int, notes: tuple[str, ...]) -> bytes:
-    """The header's bytes. Comments come last: INRIA's viewer reads the vertex count from the third line."""
+def header(count: int, degree: int, notes: tuple[str, ...]) -> bytes:
+    """The header of a file of `count` rows, with comments.
+
+    They come last: INRIA's viewer reads the vertex count from the third line.
+    """
+    names = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"]
+    names += [f"f_rest_{i}" for i in range(3 * ((degree + 1) ** 2 - 1))]
+    names += ["opacity", *(f"scale_{i}" for i in range(3)), *(f"rot_{i}" for i in range(4))]
     lines = ["ply", "format binary_little_endian 1.0", f"element vertex {count}"]
     lines += [f"property float {name}" for name in names]
     lines += [f"comment {note}" for note in notes]

@@ -119,10 +119,25 @@ def read_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Iterator
     Raises:
         FileError: the file holds fewer rows than its header declares, or an ASCII row cannot be parsed.
     """
+    return read_blocks(file, path, header, name, BLOCK_ROWS)
+
+
+def read_blocks(
+    file: BinaryIO, path: Path, header: Header, name: str, rows: int, every: int = 1
+) -> Iterator[tuple[int, NDArray[Any]]]:
+    """As `read_rows`, in blocks of `rows` rows.
+
+    Args:
+        every: of these blocks only the first, and each so many-th after it.
+
+    Raises:
+        FileError: as `read_rows`.
+    """
     _check_size(file, path, header)
     if header.encoding == "ascii":
-        return _ascii_rows(file, path, header, name)
-    return _binary_rows(file, path, header, name)
+        found = _ascii_rows(file, path, header, name, rows)
+        return (block for k, block in enumerate(found) if k % every == 0)
+    return _binary_rows(file, path, header, name, rows, every)
 
 
 def _check_size(file: BinaryIO, path: Path, header: Header) -> None:
@@ -163,15 +178,19 @@ def left_over(file: BinaryIO, header: Header, name: str) -> tuple[str, ...]:
     )
 
 
-def _binary_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Iterator[tuple[int, NDArray[Any]]]:
+def _binary_rows(
+    file: BinaryIO, path: Path, header: Header, name: str, block: int, every: int
+) -> Iterator[tuple[int, NDArray[Any]]]:
     file.seek(header.size)
     for element in header.elements:
         dtype = element.dtype(header.encoding)
         if element.name != name:
             file.seek(element.count * dtype.itemsize, 1)
             continue
-        for start in range(0, element.count, BLOCK_ROWS):
-            rows = min(BLOCK_ROWS, element.count - start)
+        body = file.tell()
+        for start in range(0, element.count, block * every):
+            rows = min(block, element.count - start)
+            file.seek(body + start * dtype.itemsize)
             data = file.read(rows * dtype.itemsize)
             if len(data) < rows * dtype.itemsize:
                 raise FileError(f"{path}: the file was truncated while it was read")
@@ -179,12 +198,14 @@ def _binary_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Itera
         return
 
 
-def _ascii_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Iterator[tuple[int, NDArray[Any]]]:
+def _ascii_rows(
+    file: BinaryIO, path: Path, header: Header, name: str, block: int
+) -> Iterator[tuple[int, NDArray[Any]]]:
     file.seek(header.size)
     for element in header.elements:
         dtype = element.dtype(header.encoding)
-        for start in range(0, element.count, BLOCK_ROWS):
-            wanted = min(BLOCK_ROWS, element.count - start)
+        for start in range(0, element.count, block):
+            wanted = min(block, element.count - start)
             lines = list(itertools.islice(file, wanted))
             if element.name == name:
                 yield start, _parse_ascii(lines, wanted, dtype, f"{path}: {name} rows {start}–{start + wanted - 1}")

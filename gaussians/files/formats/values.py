@@ -142,24 +142,41 @@ def sound_cloud(
     Raises:
         FileError: no row is usable.
     """
-    notes: list[str] = []
-    rows = len(means)
+    cloud, turned = sound_rows(means, quats, scales, opacities, sh)
+    if not len(cloud):
+        raise FileError(f"none of its {len(means):,} Gaussians is usable: every row holds NaN or infinite values")
+    return cloud, repairs(len(means), len(cloud), turned)
+
+
+def sound_rows(
+    means: Floats, quats: Floats, scales: Floats, opacities: Floats, sh: Floats, first: int = 0
+) -> tuple[GaussianCloud, int]:
+    """A cloud of the finite rows, which may be none, and the number of quaternions that became the identity.
+
+    Args:
+        means, quats, scales, opacities, sh: as in `sound_cloud`, of some rows of a file.
+        first: row number in the file of the first of them.
+    """
     sound = np.isfinite(opacities)
     for column in (means, quats, scales, sh):
         sound &= _finite_rows(column)
-    ids = np.arange(rows, dtype=np.int64)
+    ids = np.arange(first, first + len(means), dtype=np.int64)
     if not sound.all():
-        lost = int(rows - sound.sum())
-        if lost == rows:
-            raise FileError(f"none of its {rows:,} Gaussians is usable: every row holds NaN or infinite values")
-        notes.append(f"{lost:,} of {rows:,} Gaussians were dropped: NaN or infinite values")
         means, quats, scales, opacities, sh = (c[sound] for c in (means, quats, scales, opacities, sh))
         ids = ids[sound]
     quats, turned = unit_quats(quats)
+    columns = {"means": means, "quats": quats, "scales": scales, "opacities": opacities, "sh": sh, "ids": ids}
+    return GaussianCloud.create(**{name: torch.from_numpy(c) for name, c in columns.items()}), turned
+
+
+def repairs(rows: int, loaded: int, turned: int) -> tuple[str, ...]:
+    """What was repaired in a file of `rows`, of which `loaded` were sound, a sentence for each kind."""
+    notes = []
+    if loaded < rows:
+        notes.append(f"{rows - loaded:,} of {rows:,} Gaussians were dropped: NaN or infinite values")
     if turned:
         notes.append(f"{turned:,} zero quaternions were replaced by the identity rotation")
-    columns = {"means": means, "quats": quats, "scales": scales, "opacities": opacities, "sh": sh, "ids": ids}
-    return GaussianCloud.create(**{name: torch.from_numpy(c) for name, c in columns.items()}), tuple(notes)
+    return tuple(notes)
 
 
 def _finite_rows(column: Floats) -> NDArray[np.bool_]:

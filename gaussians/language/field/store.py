@@ -11,12 +11,15 @@ from __future__ import annotations
 
 import json
 import zlib
-from dataclasses import asdict
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
 from ...errors import FileError, ScenewrightError, UserError
@@ -90,7 +93,8 @@ def save_field(scene: Scene, scene_path: Path, packed: bool = False) -> Path:
 
 
 def load_field(scene: Scene, scene_path: Path, encoder: str | None = None) -> Scene | None:
-    """`scene`, just loaded from `scene_path`, with its saved field; None if no field matches.
+    """`scene`, just loaded from `scene_path`, with its saved field; None if no field matches. A scene that is stored
+    with its field (tiles) has it already.
 
     A field matches if it was made for these bytes of the scene file and, if `encoder` is given, with that encoder. Of
     two that match the newer is loaded: if the folder of the scene has become read-only, that is the one in the cache.
@@ -98,6 +102,8 @@ def load_field(scene: Scene, scene_path: Path, encoder: str | None = None) -> Sc
     Raises:
         FileError: a field file exists but is damaged.
     """
+    if scene.language is not None:
+        return scene
     mark = fingerprint(scene_path)
     existing = [target for target in (field_path(scene_path), cached_field_path(mark)) if target.is_file()]
     for target in sorted(existing, key=lambda path: -path.stat().st_mtime_ns):
@@ -212,24 +218,89 @@ def _read(path: Path) -> tuple[dict[str, torch.Tensor], dict[str, Any]]:
 
 
 def _attach(scene: Scene, tensors: dict[str, torch.Tensor], header: dict[str, Any], source: Path) -> Scene:
+    if "group" not in tensors:
+        raise FileError(f"{source} is damaged (it has no groups); delete it and embed the scene again")
+    table, frame = _table(tensors, header, source)
+    column = tensors["group"]
+    fits = (column.shape, column.dtype) == ((len(scene.cloud),), torch.int32) and column_fits(column.numpy(), table)
+    if not fits:
+        raise FileError(f"{source} is damaged (its columns do not fit); delete it and embed the scene again")
+    if scene.frame.up_source == "given":  # a direction given now takes precedence over the saved estimate
+        frame = scene.frame
+    return scene.replace(cloud=scene.cloud.replace(group=column), language=table, frame=frame)
+
+
+def column_fits(column: NDArray[np.int32], table: LanguageField) -> bool:
+    """Whether all numbers in a column of groups are of a table, or `NO_GROUP`."""
+    return not len(column) or -1 <= int(column.min()) <= int(column.max()) < len(table.groups)
+
+
+def _table(tensors: Tensors, header: Header, source: Path) -> tuple[LanguageField, Frame]:
+    """The table in a field file, and its frame."""
     try:
         groups = _GROUPS.validate_python(header["groups"])
         notes = _NOTES.validate_python(header["notes"])
         making = _MAKING.validate_python(header["making"])
         frame = _FRAME.validate_python(header["frame"])
-        column, embeddings = tensors["group"], tensors["embeddings"]
+        embeddings = tensors["embeddings"]
         table = LanguageField(groups, embeddings.numpy(), str(header["encoder"]), notes, making)
         fits = (
-            (column.shape, column.dtype) == ((len(scene.cloud),), torch.int32)
-            and (embeddings.ndim, embeddings.dtype) == (2, torch.float32)
+            (embeddings.ndim, embeddings.dtype) == (2, torch.float32)
             and bool(embeddings.isfinite().all())
-            and (not len(column) or -1 <= int(column.min()) <= int(column.max()) < len(groups))
             and all(-1 <= g.parent < len(groups) for g in groups)
         )
     except (KeyError, TypeError, ValueError, ScenewrightError) as error:
         raise FileError(f"{source} is damaged ({error}); delete it and embed the scene again") from error
     if not fits:
         raise FileError(f"{source} is damaged (its columns do not fit); delete it and embed the scene again")
-    if scene.frame.up_source == "given":  # a direction given now takes precedence over the saved estimate
-        frame = scene.frame
-    return scene.replace(cloud=scene.cloud.replace(group=column), language=table, frame=frame)
+    return table, frame
+
+
+@dataclass(frozen=True, eq=False)
+class SlicedField:
+    """A saved field whose column of groups is read a piece at a time, for scenes that do not fit into memory.
+
+    Attributes:
+        table: without the column.
+        frame: that it was made in.
+        rows: length of the column.
+        column: its entries from one row to another, `[M]` int32.
+    """
+
+    table: LanguageField
+    frame: Frame
+    rows: int
+    column: Callable[[int, int], NDArray[np.int32]]
+
+
+def sliced_field(scene_path: Path, rows: int) -> SlicedField | None:
+    """The field that was saved for a scene file of so many Gaussians, None if there is none.
+
+    Raises:
+        FileError: it exists but is damaged.
+    """
+    from safetensors import SafetensorError, safe_open
+
+    mark = fingerprint(scene_path)
+    targets = [t for t in (field_path(scene_path), cached_field_path(mark)) if t.is_file()]
+    for target in targets:
+        header = _header(target)
+        if header.get("scene") != mark or header.get("version") not in (VERSION, PACKED_VERSION):
+            continue
+        if header["version"] == PACKED_VERSION:
+            tensors, header = _unpacked(*_read(target), rows, target)
+            whole: NDArray[np.int32] = tensors["group"].numpy()
+            return SlicedField(*_table(tensors, header, target), len(whole), partial(_slice, whole))
+        try:
+            stream: Any = safe_open(target, framework="numpy")
+            vectors = {"embeddings": torch.from_numpy(stream.get_tensor("embeddings"))}
+            column = stream.get_slice("group")
+            return SlicedField(*_table(vectors, header, target), column.get_shape()[0], partial(_slice, column))
+        except SafetensorError as error:
+            raise FileError(f"{target} is damaged ({error}); delete it and embed the scene again") from error
+    return None
+
+
+def _slice(column: Any, start: int, end: int) -> NDArray[np.int32]:
+    found: NDArray[np.int32] = np.asarray(column[start:end], np.int32)
+    return found

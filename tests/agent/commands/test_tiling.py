@@ -1,0 +1,82 @@
+"""`scenewright tile`, and the verbs on the folder that it makes."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from scenewright.gaussians import files
+from scenewright.gaussians.language.field.loading import load
+
+
+@pytest.fixture(autouse=True)
+def unsynced(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "fsync", lambda handle: None)
+
+
+@pytest.fixture
+def folder(call: Any, room: Path, tmp_path: Path) -> Path:
+    answer = call("tile", room, "-o", tmp_path / "boxes.tiles", "--json")
+    assert answer.code == 0, answer.err
+    assert (answer.data["gaussians"], answer.data["tiles"], answer.data["things"]) == (1173, 1, 3)
+    return tmp_path / "boxes.tiles"
+
+
+def test_a_folder_of_tiles_is_told_selected_from_drawn_and_converted(
+    call: Any, room: Path, folder: Path, tmp_path: Path
+) -> None:
+    told = call("info", folder, "--json").data
+    assert told["format"] == "tiles" and told["gaussians"] == 1173 and len(told["language"]["things"]) == 3
+    assert "3 things" in call("info", folder).out
+    chosen = call("select", folder, "the green thing", "--ids", tmp_path / "ids.npy", "--json")
+    assert chosen.code == 0, chosen.err
+    whole = call("select", room, "the green thing", "--ids", tmp_path / "whole.npy", "--json")
+    assert chosen.data["groups"] == whole.data["groups"]
+    assert np.array_equal(np.load(tmp_path / "ids.npy"), np.load(tmp_path / "whole.npy"))
+    drawn = call("render", folder, "-o", tmp_path / "tiled.png", "--view", "door", "--json")
+    assert drawn.code == 0 and drawn.data["tiles"]["exact"] and drawn.data["tiles"]["in_view"] == 1
+    assert call("render", room, "-o", tmp_path / "whole.png", "--view", "door").code == 0
+    assert (tmp_path / "tiled.png").read_bytes() == (tmp_path / "whole.png").read_bytes()
+    assert call("convert", folder, tmp_path / "back.ply", "--views", "0").code == 0
+    assert (tmp_path / "back.ply").read_bytes() == room.read_bytes()
+
+
+def test_edits_stay_in_the_folder_until_they_are_undone(call: Any, room: Path, folder: Path, tmp_path: Path) -> None:
+    answer = call("edit", folder, "make the green thing blue", "--no-infill", "--json")
+    assert answer.code == 0, answer.err
+    assert call("edit", room, "make the green thing blue", "-o", tmp_path / "out.ply", "--no-infill").code == 0
+    assert (
+        load(folder).cloud.digest()
+        == files.load(tmp_path / "out.ply").cloud.replace(group=load(folder).cloud.group).digest()
+    )
+    assert call("info", folder, "--json").data["edits"] == ["make the green thing blue"]
+    undone = call("edit", folder, "--undo", "--json")
+    assert undone.code == 0 and undone.data["text"] == "make the green thing blue"
+    assert load(folder).cloud.digest() == load(room).cloud.digest()
+    assert call("info", folder, "--json").data["undone"] == ["make the green thing blue"]
+    assert "done again" in call("edit", folder, "--redo").out
+    assert call("edit", folder, "--redo").code == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("edit", "FOLDER", "delete it", "-o", "x.ply"), "leave out -o"),
+        (("edit", "FOLDER", "delete it", "--undo"), "stand alone"),
+        (("edit", "ROOM", "--undo"), "for scenes in tiles"),
+        (("edit", "FOLDER", "delete it", "--memory", "lots"), "4GB"),
+        (("render", "FOLDER", "-o", "x.png", "--backend", "cuda"), "leave out --backend"),
+        (("select", "FOLDER", "the green thing", "--memory", "3"), "amount of memory"),
+        (("tile", "ROOM", "-o", "x.ply"), ".tiles"),
+    ],
+)
+def test_what_does_not_fit_together_is_told(
+    call: Any, room: Path, folder: Path, arguments: tuple[str, ...], said: str
+) -> None:
+    names = {"FOLDER": folder, "ROOM": room}
+    answer = call(*(names.get(word, word) for word in arguments))
+    assert answer.code == 2 and said in answer.err
