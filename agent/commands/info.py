@@ -124,6 +124,7 @@ def _show_tiles(path: Path) -> None:
         "tiles": [{"gaussians": tile.rows, "low": tile.low, "high": tile.high} for tile in tiles.state.tiles],
         "edits": edits,
         "undone": [step.text for step in reversed(tiles.head.future)],
+        "motion": None,
     }
     data["language"], things_text = _things(tiles.field)
     rows = [tile.rows for tile in tiles.state.tiles]

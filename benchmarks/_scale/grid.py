@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 from ...gaussians.camera import Camera
 from ...gaussians.cloud import GaussianCloud
+from ...gaussians.files.fingerprint import fingerprint
 from ...gaussians.files.formats import comments, inria_ply
 from ...gaussians.language.field.language_field import Group
-from ...gaussians.language.field.store import VERSION, field_path, fingerprint
+from ...gaussians.language.field.store import VERSION, field_path
 from ...gaussians.scene import Scene
 from ...planners.compose.api import compose
 from ...planners.rooms.build import build

@@ -13,6 +13,7 @@ from ..errors import FileError
 from ..files import load_with_report
 from ..files.format import HEAD_BYTES
 from ..files.formats import inria_ply, values
+from ..files.motion_file import motion_path
 from ..language.field.language_field import LanguageField
 from ..language.field.store import column_fits, load_field, sliced_field
 from ..scene import Scene
@@ -83,6 +84,8 @@ def _streamed(path: Path) -> Source:
             source.notes += [f"{path.name}: {note}" for note in values.repairs(rows, loaded, turned)]
 
     source = Source(path, scene, rows, degree, blocks)
+    if motion_path(path).is_file():
+        source.notes.append(f"{path.name}: its motion was left out: tiles stand still")
     return source
 
 

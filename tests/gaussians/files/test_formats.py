@@ -21,6 +21,7 @@ def test_formats_have_distinct_names_and_suffixes() -> None:
         "Niantic SPZ",
         "antimatter15 .splat",
         "Streamed SOG",
+        "tiles",
     }
     suffixes = [s for f in found for s in f.suffixes]
     assert len(set(suffixes)) == len(suffixes) and all(s == s.lower() and s.startswith(".") for s in suffixes)
