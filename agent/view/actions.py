@@ -22,6 +22,7 @@ from ..toolbox.saving import SaveArguments, save_scene
 from ..toolbox.tool import Desk
 from . import messages
 from .commands import PageCommands
+from .frames import frame
 from .messages import Asked, Operate, Save, Say, Select, SelectSlots, Step
 from .slots import EMPTY, slots_of
 from .state import camera_json, numbered
@@ -81,6 +82,8 @@ class Actions:
             return self._operate(message)
         if isinstance(message, Save):
             return self._save(message)
+        if isinstance(message, messages.Frame):
+            return frame(self._stage.shown, message.time, message.id)
         assert isinstance(message, Step)
         if message.type == "before":
             return self._stage.before()

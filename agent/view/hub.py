@@ -30,7 +30,7 @@ from . import state, wire
 from .actions import Actions
 from .changes import Changes, Shown, changes
 from .gallery import Gallery
-from .messages import Asked
+from .messages import Asked, Frame
 from .preview import Preview
 from .standalone import page
 
@@ -201,7 +201,7 @@ class Hub:
     def settle(self) -> None:
         """Show the session's present scene and state to all tabs."""
         scene, before = self.session.scene, self.shown
-        if scene.cloud is not before.scene.cloud or scene.language is not before.scene.language:
+        if any(getattr(scene, part) is not getattr(before.scene, part) for part in ("cloud", "language", "motion")):
             shown = before.then(scene)
             changed = changes(before, shown)
             if changed or changed is None:
@@ -252,6 +252,9 @@ class Hub:
         finally:
             timer.cancel()
             self._running = None
+        if isinstance(message, Frame) and isinstance(answer, bytes):  # nothing changed that a state tells
+            tab.tell(answer)
+            return
         try:
             self.settle()
         except Exception:

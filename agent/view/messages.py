@@ -130,6 +130,13 @@ class Step(Asked):
     type: Literal["undo", "redo", "before", "export"]
 
 
+class Frame(Asked):
+    """The scene at a time, seconds."""
+
+    type: Literal["frame"]
+    time: Number
+
+
 class Save(Asked):
     """Write the scene beside its file."""
 
@@ -139,7 +146,7 @@ class Save(Asked):
 
 
 AnyMessage = Annotated[
-    Resume | Say | Answer | Select | SelectSlots | Operate | Step | Save, Field(discriminator="type")
+    Resume | Say | Answer | Select | SelectSlots | Operate | Step | Frame | Save, Field(discriminator="type")
 ]
 _ADAPTER: TypeAdapter[Any] = TypeAdapter(AnyMessage)
 

@@ -20,6 +20,7 @@ from ...gaussians.rows import rows_of_ids
 from ...gaussians.world.box import Box
 from ..pictures.named_cameras import framed
 from ..session.pointing import whole_groups
+from .frames import span
 from .slots import ranges_of
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ def of(session: Session, shown: Shown) -> dict[str, Any]:
         "can_undo": len(states) > 1,
         "can_redo": session.redoable,
         "embedded": shown.scene.language is not None,
+        "motion": span(shown.scene.motion),
     }
 
 

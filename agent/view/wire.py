@@ -70,9 +70,10 @@ def message(
     base: int | None,
     parts: list[Part],
     chunk: tuple[int, int],
-    kind: Literal["columns", "before"] = "columns",
+    kind: Literal["columns", "before", "frame"] = "columns",
+    more: Mapping[str, float] | None = None,
 ) -> bytes:
-    """One binary message."""
+    """One binary message, with more fields in its header."""
     told: list[dict[str, Any]] = []
     body: list[bytes] = []
     offset = 0
@@ -85,7 +86,7 @@ def message(
     header = {
         "type": kind, "revision": shown.revision, "base": base, "slots": max(shown.slots.count, reach),
         "degree": shown.degree,
-        "chunk": list(chunk), "parts": told,
+        "chunk": list(chunk), "parts": told, **(more or {}),
     }  # fmt: skip
     text = json.dumps(header, separators=(",", ":")).encode()
     text += b" " * (-(8 + len(text)) % 8)

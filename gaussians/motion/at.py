@@ -79,6 +79,17 @@ def cloud_at(scene: Scene, time: float) -> GaussianCloud:
 
 def _moved(cloud: GaussianCloud, motion: Motion, time: float) -> tuple[GaussianCloud, tuple[Look, ...]]:
     """The cloud at a time, and the looks that hold then. Raises UserError if the time is not finite."""
+    whole, gone = rows_at(cloud, motion, time)
+    seen = tuple(look for look in motion.looks if look.lasts_at(time))
+    return (whole if gone is None else whole[~gone]), seen
+
+
+def rows_at(cloud: GaussianCloud, motion: Motion, time: float) -> tuple[GaussianCloud, Tensor | None]:
+    """The cloud at a time with all its rows, and `[N]` bool: which of them are left out then (None: none is).
+
+    Raises:
+        UserError: the time is not finite.
+    """
     if not math.isfinite(time):
         raise UserError(f"a time must be a finite number of seconds, not {time}")
     draft = _Draft(cloud)
@@ -88,8 +99,7 @@ def _moved(cloud: GaussianCloud, motion: Motion, time: float) -> tuple[GaussianC
     for body in bodies(cloud, motion):
         turns, shifts = chained([motion.tracks[i] for i in body.tracks], (time,))
         draft.carry(body.rows, turns[0], shifts[0])
-    out = draft.done()
-    return (out if gone is None else out[~gone]), seen
+    return draft.done(), gone
 
 
 def bodies(cloud: GaussianCloud, motion: Motion) -> tuple[_Body, ...]:

@@ -59,7 +59,11 @@ export class Connection {
   }
 
   #take(data) {
-    if (data instanceof ArrayBuffer) return this.onColumns(headerOf(data), data);
+    if (data instanceof ArrayBuffer) {
+      const header = headerOf(data);
+      if (header.id !== undefined) this.#unanswered.delete(header.id);
+      return this.onColumns(header, data);
+    }
     const message = JSON.parse(data);
     if (message.type === "said" || message.type === "error") this.#unanswered.delete(message.id);
     this.onMessage(message);

@@ -11,6 +11,7 @@ const LINES = {
   scale: "M4 14v6h6M20 10V4h-6M4 20l6-6M20 4l-6 6",
   undo: "M9 5l-5 5 5 5M4 10h10a5 5 0 0 1 0 10h-3",
   redo: "M15 5l5 5-5 5M20 10H10a5 5 0 0 0 0 10h3",
+  play: "M7 4l12 8-12 8zM3 4v16",
   compare: "M12 3v18M9 7l-5 5 5 5M15 7l5 5-5 5",
   save: "M12 4v11M7 11l5 5 5-5M4 20h16",
   export: "M12 15V3M7 8l5-5 5 5M4 13v7h16v-7",

@@ -19,6 +19,7 @@ import {slider} from "./slider.js";
 import {middleOf} from "./space.js";
 import {Store, initialState} from "./store.js";
 import {theme} from "./theme.js";
+import {timeline} from "./timeline.js";
 import {things, toggle} from "./things.js";
 import {commandsOf, fill, fillHelp} from "./toolbar.js";
 import {add, dot, norm, scale} from "./viewer/camera.js";
@@ -90,9 +91,9 @@ function onWelcome(scene) {
 }
 
 function onState(state) {
-  const {digest, things, selection, question, history, can_undo, can_redo, embedded, busy} = state;
+  const {digest, things, selection, question, history, can_undo, can_redo, embedded, motion, busy} = state;
   if (!waiting(store.state)) takeHistory(store, history, store.state.told);
-  store.update({told: history.length, digest, things, selection, question, history, canUndo: can_undo, canRedo: can_redo, embedded, busy});
+  store.update({told: history.length, digest, things, selection, question, history, canUndo: can_undo, canRedo: can_redo, embedded, motion, busy});
   if (!busy) store.update({progress: null});
 }
 
@@ -108,13 +109,16 @@ function onSaid({id, ...answer}) {
 
 function onError({id, text}) {
   store.update({progress: null});
+  if (time.failed(id)) return;
   const answer = {ok: false, wrong: true, text};
   if (!answerTurn(store, id, answer)) addNote(store, answer);
 }
 
 function onColumns(header, buffer) {
   if (header.type === "before") return compare.take(buffer);
+  if (header.type === "frame") return time.take(header, buffer);
   if (header.base !== null && header.base !== store.state.revision) return connection.resume(null);
+  time.leave(header.base === null);
   viewer.decode(buffer);
   const [number, of] = header.chunk;
   const whole = header.base !== null || number + 1 === of;
@@ -177,6 +181,7 @@ const colours = theme((told) => {
 });
 const askName = saveDialog((name, force) => addTurn(store, `Save as ${name}`, send({type: "save", name, force})));
 const compare = slider({store, viewer, ask: () => send({type: "before"})});
+const time = timeline({store, viewer, send});
 const gizmo = new Gizmo({store, viewer, operate});
 layers.push(gizmo, new Candidates({store, viewer, answer, point}));
 
@@ -188,6 +193,7 @@ const commands = commandsOf({
     undo: () => addTurn(store, "Undo", send({type: "undo"})),
     redo: () => addTurn(store, "Redo", send({type: "redo"})),
     compare: compare.toggle,
+    play: time.toggle,
     save: () => askName(store.state.scene.title),
     export: () => addTurn(store, "Export as a page", send({type: "export"})),
     theme: colours.next,
@@ -208,6 +214,7 @@ fill(further, ["save", "export", "snapshot", "theme", "help"], commands, store);
 moreButton(byId("commands"), further);
 byId("commands").append(further);
 fill(byId("tools"), ["select", "box", "brush", "|", "move", "rotate", "scale"], commands, store);
+fill(byId("time-commands"), ["play"], commands, store);
 fill(byId("views"), ["orbit", "fly", "walk", "|", "frame"], commands, store);
 fillHelp(commands, [
   [["Drag"], "Look around"], [["Wheel"], "Nearer, farther"], [["Click"], "Select a thing; again: its part"],

@@ -53,6 +53,9 @@ export function initialState() {
     canUndo: false,
     canRedo: false,
     embedded: false,
+    motion: null, // {start, stop, version}: what changes with time, seconds
+    time: null, // that is shown; null: the scene as it is stored, at its start
+    playing: false,
     busy: false,
     progress: null, // {id, stage, share}
     turns: [], // see conversation.js

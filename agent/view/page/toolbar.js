@@ -32,6 +32,7 @@ export function commandsOf({store, act}) {
       label: "Compare", icon: "compare", keys: ["c"], told: "Before and after the last edit, with a slider",
       enabled: (s) => s.canUndo || s.compare !== null, pressed: (s) => s.compare !== null, run: act.compare,
     },
+    play: {label: "Play", icon: "play", keys: ["y"], told: "Play what moves, or pause", enabled: (s) => Boolean(s.motion), pressed: (s) => s.playing, run: act.play},
     save: {label: "Save", icon: "save", keys: ["Ctrl+s"], told: "Save the scene as a file", enabled: ready, run: act.save},
     export: {label: "Export", icon: "export", keys: ["x"], told: "One page that shows the scene anywhere", enabled: ready, run: act.export},
     snapshot: {label: "Snapshot", icon: "snapshot", keys: ["p"], told: "The picture as a PNG", enabled: (s) => s.scene !== null, run: act.snapshot},

@@ -1,0 +1,92 @@
+"""A moment of a scene with motion for the page: the rows of all that changes with time, as one message."""
+
+from __future__ import annotations
+
+import zlib
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from ...gaussians.errors import UserError
+from ...gaussians.kept import Kept
+from ...gaussians.motion.at import rows_at
+from ...gaussians.motion.motion import Motion
+from ...gaussians.rows import rows_of_ids
+from . import wire
+from .changes import Shown
+from .columns import encode, width
+from .slots import EMPTY, I64, ranges_of, slots_of
+
+_BRIDGED = 12  # bytes of a range in the header, about: gaps whose rows take fewer bytes are sent along
+
+_ranges: Kept[dict[str, I64]] = Kept(4)
+
+
+_versions: Kept[int] = Kept(4)
+
+
+def span(motion: Motion | None) -> dict[str, float] | None:
+    """The `motion` of a `state` message: when it begins and ends, and a number that tells it from others; None for a
+    static scene."""
+    if motion is None:
+        return None
+    version = _versions.get((motion,), lambda: _version(motion))
+    return {"start": motion.start, "stop": motion.stop, "version": version}
+
+
+def _version(motion: Motion) -> int:
+    """CRC-32 of all that a motion holds."""
+    said = 0
+    for part in (*motion.tracks, *motion.looks, *motion.residuals):
+        for value in vars(part).values():
+            data = np.asarray(value).tobytes() if isinstance(value, np.ndarray | torch.Tensor) else repr(value).encode()
+            said = zlib.crc32(data, said)
+    return said
+
+
+def frame(shown: Shown, time: float, number: int) -> bytes:
+    """The message that turns what a page shows of a revision, at any time, into the same at a time (seconds).
+
+    It holds every row that changes at some time, in every column in which it does.
+
+    Args:
+        number: of the message that asked for it.
+
+    Raises:
+        UserError: nothing changes with time.
+    """
+    motion = shown.scene.motion
+    if motion is None:
+        raise UserError("nothing moves in this scene any more")
+    where = _ranges.get((shown.slots, motion), lambda: _changing(shown, motion))
+    cloud, gone = rows_at(shown.scene.cloud, motion, time)
+    left_out = None if gone is None else gone.cpu().numpy()
+    parts = []
+    for column, ranges in where.items():
+        rows = shown.slots.rows[slots_of(ranges)]
+        if column == "color" and left_out is not None:
+            rows = np.where((rows >= 0) & left_out[rows], EMPTY, rows)
+        parts.append(wire.Part(column, ranges, encode(cloud, shown.owner, column, rows)))
+    return wire.message(shown, shown.revision, parts, (0, 1), "frame", {"time": time, "id": number})
+
+
+def _changing(shown: Shown, motion: Motion) -> dict[str, I64]:
+    """By column, the ranges of slots that change at some time."""
+    moved = _slots(shown, [track.ids for track in motion.tracks] + [r.ids for r in motion.residuals])
+    worn = _slots(shown, [look.ids for look in motion.looks])
+    found = {"position": moved, "shape": moved, "color": worn}
+    if shown.degree:
+        found["harmonics"] = np.union1d(moved, worn)
+    return {
+        column: ranges_of(slots, _BRIDGED // width(column, shown.degree))
+        for column, slots in found.items()
+        if len(slots)
+    }
+
+
+def _slots(shown: Shown, ids: list[NDArray[np.int64]]) -> I64:
+    if not ids:
+        return np.zeros(0, np.int64)
+    rows = rows_of_ids(shown.scene.cloud.ids, torch.from_numpy(np.unique(np.concatenate(ids))))
+    return np.sort(shown.slots.slot[rows.cpu().numpy()])
