@@ -107,6 +107,7 @@ def _tensors(motion: Motion) -> dict[str, Tensor]:
         on_axis = track.axis is not None
         arrays |= {f"track.{i}.{name}": getattr(track, name) for name in ("runs", "times", "pivot")}
         arrays |= {f"track.{i}.{name}": getattr(track, name) for name in _poses(on_axis)}
+        arrays[f"track.{i}.frame"] = track.frame
     for i, look in enumerate(motion.looks):
         arrays |= {f"look.{i}.{name}": getattr(look, name) for name in ("ids", "sh", "opacities")}
     for i, residual in enumerate(motion.residuals):
@@ -175,6 +176,7 @@ def _motion(table: _Table, tensors: dict[str, Tensor], count: int) -> Motion:
         on_axis = track.kind != "rigid"
         made |= {name: _numbers(tensors, f"track.{i}.{name}") for name in _poses(on_axis)}
         made |= {"quats": np.zeros(0), "offsets": np.zeros(0)} if on_axis else {}
+        made["frame"] = _numbers(tensors, f"track.{i}.frame") if f"track.{i}.frame" in tensors else None
         tracks.append(Track(runs, kind=track.kind, smooth=track.smooth, name=track.name, **made))
     for i, look in enumerate(table.looks):
         start, stop = (-math.inf if look.start is None else look.start), (math.inf if look.stop is None else look.stop)

@@ -53,6 +53,8 @@ class Track:
         smooth: monotone cubics between keys, which do not overshoot and are at rest at both ends (a spin is not);
             else straight lines.
         name: what a person calls it; may be empty.
+        frame: `[3, 3]` orthogonal: its columns are the directions along each of which `offsets` follow a curve of their
+            own; None: the world's axes. A rigid path that is turned takes them along, so that it stays the same path.
     """
 
     runs: I64
@@ -65,6 +67,7 @@ class Track:
     angles: F64 | None = None
     smooth: bool = True
     name: str = ""
+    frame: F64 | None = None
 
     def __post_init__(self) -> None:
         times = _array(self.times, "times", (-1,))
@@ -75,6 +78,10 @@ class Track:
             raise UserError("a track needs at least one key, and the times of its keys must ascend")
         made: dict[str, Any] = {"runs": checked_runs(self.runs), "times": times}
         made["pivot"] = _array(self.pivot, "pivot", (3,))
+        if self.frame is not None:
+            made["frame"] = frame = _array(self.frame, "frame", (3, 3))
+            if self.kind != "rigid" or np.abs(frame @ frame.T - np.eye(3)).max() > _UNIT:
+                raise UserError("the frame of a track must be orthogonal, and only rigid tracks have one")
         if self.kind == "rigid":
             if self.axis is not None or self.angles is not None:
                 raise UserError("a rigid track has rotations and offsets, no axis and no angles")
@@ -364,7 +371,8 @@ def poses(track: Track, times: ArrayLike) -> tuple[F64, F64]:
         turns = keys.matrices(keys.about(track.axis, angles))
         return turns, track.pivot - turns @ track.pivot
     turns = keys.matrices(keys.turns_between(track.times, track.quats, now, track.smooth))
-    offsets = keys.between(track.times, track.offsets, now, track.smooth)
+    frame = np.eye(3) if track.frame is None else track.frame
+    offsets = keys.between(track.times, track.offsets @ frame, now, track.smooth) @ frame.T
     return turns, offsets + track.pivot - turns @ track.pivot
 
 
@@ -517,7 +525,9 @@ def _conjugated(track: Track, linear: F64, away: F64) -> Track:
     pivot = linear @ track.pivot + away
     if track.axis is None or track.angles is None:
         turns = turn @ keys.matrices(track.quats) @ turn.T
-        return replace(track, quats=keys.quaternions(turns), offsets=track.offsets @ linear.T, pivot=pivot)
+        frame = turn if track.frame is None else turn @ track.frame
+        quats, offsets = keys.quaternions(turns), track.offsets @ linear.T
+        return replace(track, quats=quats, offsets=offsets, pivot=pivot, frame=frame)
     if track.kind == "slide":
         along = linear @ track.axis
         length = float(np.linalg.norm(along))

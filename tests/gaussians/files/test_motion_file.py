@@ -18,7 +18,7 @@ from scenewright.gaussians.errors import FileError
 from scenewright.gaussians.files.fingerprint import fingerprint
 from scenewright.gaussians.files.motion_file import motion_path, save_motion
 from scenewright.gaussians.motion.at import at
-from scenewright.gaussians.motion.motion import Motion, Track, without_ids
+from scenewright.gaussians.motion.motion import Motion, Track, carried, without_ids
 from scenewright.gaussians.scene import Scene
 from tests.support.moving_balls import moving
 
@@ -46,6 +46,15 @@ def test_a_motion_is_read_as_it_was_written(tmp_path: Path) -> None:
     first = motion_path(tmp_path / "a.ply").read_bytes()
     files.save(scene, tmp_path / "a.ply", force=True)
     assert motion_path(tmp_path / "a.ply").read_bytes() == first
+
+
+def test_a_turned_path_is_read_as_it_was_written(tmp_path: Path) -> None:
+    scene = bare(moving(0, 120))
+    quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    turned = scene.replace(motion=carried(scene.motion, scene.cloud.ids.numpy(), quarter, np.zeros(3)))
+    files.save(turned, tmp_path / "a.ply")
+    back = files.load(tmp_path / "a.ply")
+    assert torch.equal(at(back, 1.3).cloud.means, at(turned, 1.3).cloud.means)
 
 
 def test_a_static_scene_has_no_file_and_takes_away_that_of_the_one_before(tmp_path: Path) -> None:
@@ -109,6 +118,7 @@ BAD: list[tuple[dict[str, Tensor], dict[str, Any], str]] = [
     ({"track.1.runs": torch.tensor([[0, 1 << 60]])}, {}, "does not have"),
     ({"track.1.runs": torch.tensor([[5, 2]])}, {}, "disjoint"),
     ({"track.2.quats": torch.zeros(2, 4, dtype=torch.float64)}, {}, "length one"),
+    ({"track.2.frame": torch.ones(3, 3, dtype=torch.float64)}, {}, "orthogonal"),
     ({"track.2.offsets": torch.ones(2, 3, dtype=torch.float64)}, {}, "not at rest"),
     ({"look.0.ids": torch.tensor([1, 10**9])}, {}, "does not have"),
     ({"look.1.opacities": torch.full((3,), math.nan)}, {}, "opacities"),

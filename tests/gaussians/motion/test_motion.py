@@ -106,6 +106,16 @@ def test_a_mapped_track_moves_the_mapped_body_as_before(track: Track, by: tuple[
     np.testing.assert_allclose(moved(back.tracks[0], POINTS, time), moved(track, POINTS, time), atol=1e-9)
 
 
+def test_a_path_around_a_corner_is_the_same_path_when_it_is_turned() -> None:
+    """Between keys each component has a curve of its own, so that the components have to turn too."""
+    path = [[0, 0, 0], [0, 0, 0], [0, 0, 1], [1, 0, 0]]
+    track = Track.along([1], [0, 3, 5, 6], path)
+    turn = Rotation.from_rotvec([0, 2.0, 0]).as_matrix()
+    mapped = carried(Motion((track,), stop=6.0), [1], turn, np.zeros(3))
+    assert mapped is not None
+    np.testing.assert_allclose(moved(mapped.tracks[0], POINTS @ turn.T, 4.0), moved(track, POINTS, 4.0) @ turn.T)
+
+
 def test_a_track_that_holds_more_than_what_is_mapped_is_divided() -> None:
     motion = Motion((Track.along([1, 2, 3], [0, 1], [[0, 0, 0], [1, 0, 0]]),), stop=1.0)
     quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
