@@ -159,4 +159,4 @@ def robot(at: Point, yaw: float) -> Parts:
         join(*eyes).named("eye", Material((0.97, 0.97, 0.97)), 1.3),
         join(rod((0, 0, 0.34), (0, 0, 0.37), 0.005), ball(0.014, (0, 0, 0.375))).named("aerial", _STEEL, 1.3),
     ]
-    return {"robot": [p.turned("z", yaw).moved(*at) for p in pieces]}
+    return {"toy robot": [p.turned("z", yaw).moved(*at) for p in pieces]}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from scenewright.benchmarks._motion import films, rooms
+from scenewright.benchmarks._motion import films, fitted, rooms
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.motion.at import at
 
@@ -51,3 +51,12 @@ def test_a_film_is_written_as_a_capture_with_times(ball, tmp_path):
 def test_an_unknown_room_is_refused_with_the_known_ones():
     with pytest.raises(UserError, match="ball, door, drawer, fan, books, toy"):
         rooms.moving_room("garden")
+
+
+def test_the_truth_is_judged_right_and_a_still_scene_wrong(ball):
+    made = films.film("ball", "4", (64, 48), fps=0.4, detail=0.15)
+    group = torch.where(made.scene.cloud.group == 9, 0, -1).to(torch.int32)
+    truth = made.scene.replace(cloud=made.scene.cloud.replace(group=group))
+    right, still = (fitted.judged(scene, made, 0.0) for scene in (truth, truth.replace(motion=None)))
+    assert right.path < 1e-5 and right.found == 1 and right.overlap == 1 and right.whole > 60
+    assert still.found == 0 and still.whole < right.whole

@@ -71,10 +71,6 @@ class Labelled(Parameters):
         super().append(source)
         self.labels = np.concatenate([self.labels, self.labels[source]])
 
-    def at(self, bodies: list[Body], t: int) -> Columns:
-        """Columns as a renderer takes them, at a time of the frames."""
-        return placed(self.columns(), self.labels, bodies, t)
-
 
 def placed(columns: Columns, labels: NDArray[np.int32], bodies: list[Body], t: int) -> Columns:
     """Columns with each body where it is at a time."""

@@ -14,7 +14,9 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from copy import deepcopy
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import torch
@@ -23,27 +25,31 @@ from numpy.typing import NDArray
 from ...cloud import NO_GROUP, GaussianCloud
 from ...errors import UserError
 from ...fit.fitting import Settings, Status
+from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
 from ...fit.quality import Quality, measure
 from ...fit.train import Schedule, Shot
 from ...scene import Scene
 from ..at import at
-from ..motion import Motion, Track
+from ..motion import Motion, Residual, Track
 from .bodies import Body, Labelled
 from .footage import Footage
 from .seeds import seeds
 from .simplify import track_of
 from .start import trainer
 from .tracking import Tracker
-from .training import Joint
+from .training import Joint, Single
 
 F64 = NDArray[np.float64]
+Detail = Literal["static", "rigid", "residual"]  # the motion that may be fitted: none, paths, and single Gaussians' too
 
 START = 0.3  # share of the training that goes to the scene at its start
 EXPLAINS = 0.85  # of the difference without a body, to which its path must bring the pictures
 MOST_BODIES = 12
 TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
 MORE = 1.2  # times the Gaussians of the start: greatest number at the end, for what was hidden at the start
+SINGLE = 0.15  # of the steps of all together, that displacements of single Gaussians are trained for
+GAIN = 0.05  # dB on held-out frames, for which displacements of single Gaussians are kept
 REPORT_EVERY = 0.5  # seconds
 
 
@@ -66,18 +72,23 @@ class FittedFilm:
 
 
 def fit_film(
-    photos: Photos, settings: Settings | None = None, *, on_status: Callable[[Status], None] = lambda status: None
+    photos: Photos,
+    settings: Settings | None = None,
+    *,
+    detail: Detail = "residual",
+    on_status: Callable[[Status], None] = lambda status: None,
 ) -> FittedFilm:
     """Fit a scene with time to frames whose `Shot.time` differ.
 
     Args:
         settings: of the length, the greatest number of Gaussians and the seed; degree 0 only. Default: five minutes.
+        detail: the motion that is fitted at most; residuals only where they improve held-out frames.
 
     Raises:
         UserError: a frame has no time or all have one; or the cameras do not stand.
     """
     settings = settings or Settings(seconds=300.0)
-    return _Film(photos, settings, on_status).fit()
+    return _Film(photos, settings, detail, on_status).fit()
 
 
 def stands(photos: Photos) -> bool:
@@ -88,8 +99,10 @@ def stands(photos: Photos) -> bool:
 class _Film:
     """A fit in progress."""
 
-    def __init__(self, photos: Photos, settings: Settings, on_status: Callable[[Status], None]) -> None:
-        self._photos, self._settings, self._on_status = photos, settings, on_status
+    def __init__(
+        self, photos: Photos, settings: Settings, detail: Detail, on_status: Callable[[Status], None]
+    ) -> None:  # fmt: skip
+        self._photos, self._settings, self._detail, self._on_status = photos, settings, detail, on_status
         self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
         if not self._footage.stands:
             raise UserError(
@@ -115,22 +128,33 @@ class _Film:
         more = None if settings.steps is None else settings.steps - start.steps
         while (share := _share(joint, more, left)) < 1:
             self._tell(joint.step(share), start.steps + joint.steps, START + (1 - START) * share, len(labelled))
-        scene = self._scene(labelled, bodies)
-        return FittedFilm(
-            scene, measure_film(scene, self._photos.held_out), start.steps + joint.steps, self._seconds, tried
-        )
+        scene, steps = self._scene(labelled, bodies, None), start.steps + joint.steps
+        if self._detail == "residual" and scene.motion is not None and self._photos.held_out:
+            scene, more = self._with_single(scene, labelled, bodies, round(SINGLE * joint.steps))
+            steps += more
+        return FittedFilm(scene, measure_film(scene, self._photos.held_out), steps, self._seconds, tried)
+
+    def _with_single(
+        self, scene: Scene, labelled: Labelled, bodies: list[Body], steps: int
+    ) -> tuple[Scene, int]:  # fmt: skip
+        """The scene with displacements of single Gaussians if held-out frames gain by them, and the steps it took."""
+        single = Single.none(np.flatnonzero(labelled.labels > 0), self._footage.times)
+        copy = Labelled.labelled(Parameters.load(deepcopy(labelled.state())), labelled.labels.copy())
+        joint = Joint(copy, bodies, self._footage, len(copy), self._rng, single)
+        while joint.steps < steps:
+            joint.step(1.0)
+        finer = self._scene(copy, bodies, single)
+        before, after = (measure_film(s, self._photos.held_out).psnr for s in (self._scene(copy, bodies, None), finer))
+        return (finer if after - before >= GAIN else scene), steps
 
     @property
     def _seconds(self) -> float:
         return time.perf_counter() - self._started
 
-    def _bodies(self, start: object) -> tuple[Labelled, list[Body], int]:
+    def _bodies(self, start: Parameters) -> tuple[Labelled, list[Body], int]:
         """What moves, by the number of its label, and its path."""
-        from ...fit.parameters import Parameters
-
-        assert isinstance(start, Parameters)
         columns, footage = start.columns(), self._footage
-        found = seeds(columns, footage)[:MOST_BODIES]
+        found = [] if self._detail == "static" else seeds(columns, footage)[:MOST_BODIES]
         still = np.ones(len(start), bool)
         for rows in found:
             still[rows] = False
@@ -143,7 +167,7 @@ class _Film:
                 labels[rows] = len(bodies)
         return Labelled.labelled(start, labels), bodies, len(found)
 
-    def _scene(self, labelled: Labelled, bodies: Sequence[Body]) -> Scene:
+    def _scene(self, labelled: Labelled, bodies: Sequence[Body], single: Single | None) -> Scene:
         """The scene, rows by body, with tracks of few keys."""
         footage = self._footage
         order = np.argsort(labelled.labels, kind="stable")
@@ -166,8 +190,13 @@ class _Film:
         scene = Scene(cloud.replace(group=torch.from_numpy(group)), cameras=cameras)
         if not tracks:
             return scene
+        residuals: tuple[Residual, ...] = ()
+        if single is not None:
+            ids = np.argsort(order)[single.rows]  # where each row went
+            by = np.argsort(ids)
+            residuals = (Residual(ids[by], footage.times, single.basis, single.weights[by]),)
         first, last = float(footage.times[0]), float(footage.times[-1])
-        return scene.replace(motion=Motion(tuple(tracks), start=first, stop=last))
+        return scene.replace(motion=Motion(tuple(tracks), (), residuals, first, last))
 
     def _tell(self, loss: float, steps: int, share: float, gaussians: int) -> None:
         """Report progress now and then."""
@@ -196,6 +225,7 @@ def measure_film(scene: Scene, shots: Sequence[Shot]) -> Quality:
     each: dict[str, tuple[float, float]] = {}
     for shot in shots:
         cloud = scene.cloud if shot.time is None else at(scene, shot.time).cloud
-        each |= measure(cloud, [shot]).each
+        for name, found in measure(cloud, [shot]).each.items():
+            each[name if name not in each else f"{name} at {shot.time:g} s"] = found
     means = np.mean(list(each.values()), axis=0).tolist() if each else (math.nan, math.nan)
     return Quality(means[0], means[1], each)

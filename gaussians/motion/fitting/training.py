@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...fit.adam import Adam
 from ...fit.densify import MCMCStrategy
 from ...fit.loss import BLACK, photometric
 from ...fit.parameters import parameter_gradients
 from ...fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, morton_order
 from ...render.cpu import gradient
 from .. import keys
-from .bodies import Body, Labelled, left, pose_gradient, turned
+from .bodies import Body, Labelled, left, placed, pose_gradient, turned
 from .footage import Footage
 
 F64 = NDArray[np.float64]
@@ -22,6 +23,8 @@ F64 = NDArray[np.float64]
 SSIM = 0.2
 OFFSETS_LR, TURNS_LR = 4e-4, 3e-3  # of poses: of the radius of the cameras, and radians
 SMOOTH = 0.03  # share by which a pose is drawn, at each of its steps, towards the middle of the two beside it
+SINGLE_LR = 2e-5  # of displacements of single Gaussians, of the radius of the cameras
+RANK = 3  # of those displacements: a drift, and a there and back
 GROWS_UNTIL = 0.7  # share of the training after which no Gaussians are added
 WARM = 0.35  # the learning rate of means at the start, of that of a training from nothing
 
@@ -35,6 +38,42 @@ class _Moments:
     steps: NDArray[np.int64]
 
 
+@dataclass(eq=False)
+class Single:
+    """Displacements of single Gaussians before their body is placed: `sum over b of basis[t, b] * weights[:, b]`.
+
+    Attributes:
+        rows: `[n]` of the parameters, whose order does not change meanwhile.
+        basis: `[T, B]`, 0 at the first time.
+        weights: `[n, B, 3]` scene units.
+        adam: of the weights.
+    """
+
+    rows: NDArray[np.int64]
+    basis: F64
+    weights: NDArray[np.float32]
+    adam: Adam
+
+    @classmethod
+    def none(cls, rows: NDArray[np.int64], times: F64) -> Single:
+        """No displacements yet, of Gaussians at some rows."""
+        share = (times - times[0]) / (times[-1] - times[0])
+        basis = np.stack([share, *(np.sin(k * np.pi * share) for k in range(1, RANK))], axis=1)
+        weights = np.zeros((len(rows), RANK, 3), np.float32)
+        return cls(rows, basis, weights, Adam.of(weights))
+
+    def displaced(self, means: NDArray[np.float32], t: int) -> NDArray[np.float32]:
+        """All means at a time of the frames, before bodies are placed."""
+        found = means.copy()
+        found[self.rows] += np.einsum("b,nbc->nc", self.basis[t], self.weights).astype(np.float32)
+        return found
+
+    def step(self, slope: NDArray[np.float32], t: int, rate: float) -> None:
+        """A step by the gradient of all means `[N, 3]` at a time."""
+        each = np.einsum("b,nc->nbc", self.basis[t], slope[self.rows]).astype(np.float32)
+        self.adam.step(self.weights, np.ascontiguousarray(each), rate)
+
+
 class Joint:
     """A training in progress.
 
@@ -44,14 +83,14 @@ class Joint:
         footage: frames to train on.
         budget: greatest number of Gaussians.
         rng: draws the order of frames, and copies and noise of Gaussians.
-        poses: whether poses are trained; else they stay.
+        single: displacements of single Gaussians; with them no Gaussians are added, and poses stay.
     """
 
     def __init__(
         self, parameters: Labelled, bodies: list[Body], footage: Footage, budget: int, rng: np.random.Generator,
-        poses: bool = True,
+        single: Single | None = None,
     ) -> None:  # fmt: skip
-        self.parameters, self.bodies, self._footage, self._rng, self._poses = parameters, bodies, footage, rng, poses
+        self.parameters, self.bodies, self._footage, self._rng, self._single = parameters, bodies, footage, rng, single
         self._strategy = MCMCStrategy(budget, rng)
         times = len(footage.times)
         self._moments = [
@@ -72,19 +111,24 @@ class Joint:
         frame = self._order.pop()
         shot, t = self._footage.shots[frame], int(self._footage.when[frame])
         parameters = self.parameters
-        columns = parameters.at(self.bodies, t)
+        columns = parameters.columns()
+        if self._single is not None:
+            columns = (self._single.displaced(columns[0], t), *columns[1:])
+        columns = placed(columns, parameters.labels, self.bodies, t)
         drawn = gradient.draw(columns, shot.camera, BLACK)
         loss, slope = photometric(drawn.rgb, shot.colors, SSIM)
         found = gradient.draw_backward(drawn, slope, np.zeros(slope.shape[:2], np.float32))
         rate = WARM * LR_DECAY**progress
         self._pull_back(columns, found, t, rate)
+        if self._single is not None and t > 0:
+            self._single.step(found.means, t, SINGLE_LR * self._footage.radius)
         gradients = parameter_gradients(found, columns[2], columns[3])
         self._strategy.regularise(gradients, columns[2], columns[3])
         means_lr = MEANS_LR * self._footage.radius * rate
         parameters.step(gradients, means_lr)
         self._strategy.after_step(parameters, found.centers, (shot.camera.width, shot.camera.height), means_lr)
         self.steps += 1
-        if self.steps % REFINE_EVERY == 0 and progress < GROWS_UNTIL:
+        if self._single is None and self.steps % REFINE_EVERY == 0 and progress < GROWS_UNTIL:
             self._strategy.refine(parameters, self.steps)
             parameters.take(morton_order(parameters.means))
         self.seconds += time.perf_counter() - started
@@ -99,7 +143,7 @@ class Joint:
             if not len(rows):
                 continue
             d_means, d_quats = found.means[rows], found.quats[rows]
-            if self._poses and t > 0 and np.any(d_means):
+            if self._single is None and t > 0 and np.any(d_means):
                 centre = body.pivot + body.offsets[t]
                 turn, shift = pose_gradient(columns[0][rows], columns[1][rows], centre, d_means, d_quats)
                 self._step_pose(number - 1, t, np.r_[shift, turn], rate)
