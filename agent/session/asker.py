@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ...gaussians.scene import Scene
     from ...planners.questions.answer import Answer
     from ...planners.questions.survey import Survey
+    from ...planners.questions.timeline.bodies import Timeline
     from .vision_client import VisionClient
 
 FIRST_VIEWS = 3  # pictures of the first request to a vision model
@@ -23,6 +24,7 @@ class Asker:
 
     _survey: Survey | None = field(default=None, init=False)
     _of: tuple[object, ...] = field(default=(), init=False)
+    _timeline: Timeline | None = field(default=None, init=False)
 
     def survey(self, scene: Scene, viewer: Camera, encoder: Encoder | None, last: Selection | None) -> Survey:
         """The survey of an embedded scene; "it" refers to `last`.
@@ -36,6 +38,23 @@ class Asker:
         if self._survey is None or not all(a is b for a, b in zip(self._of, of, strict=True)):
             self._survey, self._of = Survey.of_scene(scene, viewer, encoder), of
         return self._survey.in_scene(scene, viewer, encoder, last)
+
+    def timeline(
+        self, scene: Scene, viewer: Camera, encoder: Encoder | None, last: Selection | None, now: float | None = None
+    ) -> Timeline | None:
+        """What moves in an embedded scene, None in a static one; "it" refers to `last`.
+
+        Args:
+            now: the time that questions without one are asked of, seconds; None: the start.
+        """
+        from ...planners.questions.timeline.bodies import Timeline
+
+        if not scene.motion:
+            return None
+        known = self._timeline
+        if known is None or not (known.scene is scene and known.viewer is viewer):
+            known = self._timeline = Timeline(scene, viewer, encoder)
+        return replace(known, last=last, now=scene.motion.start if now is None else now)
 
 
 def see_answer(

@@ -579,7 +579,7 @@ class Session:
 
         self._dialled.begin()
         survey = self.survey()
-        reading = route(text, survey)
+        reading = route(text, survey, self._asker.timeline(self.scene, self.viewer, self.encoder, self.last))
         given = reading.answer
         if self._vision and reading.sight:
             first = self._dialled.views(FIRST_VIEWS)

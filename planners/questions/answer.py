@@ -36,6 +36,7 @@ class Evidence(BaseModel):
         ids: ids of the things that it is about, as in the scene graph; what the answer names comes first.
         views: names of the views that a vision model saw and relied on.
         lines: distances and routes that were measured.
+        time: in a scene with time, when it is to be seen, seconds; None: at the time of the session.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
@@ -43,6 +44,7 @@ class Evidence(BaseModel):
     ids: tuple[NodeId, ...] = ()
     views: tuple[Annotated[str, Field(max_length=200)], ...] = ()
     lines: tuple[Line, ...] = ()
+    time: Annotated[float, Field(allow_inf_nan=False)] | None = None
 
 
 class Answer(BaseModel):
@@ -58,7 +60,7 @@ class Answer(BaseModel):
         evidence: what it rests on.
         frame: in whose frame of reference directions are told: "viewer", "object", or words such as "seated on the
             sofa, facing the window"; "" where none is needed.
-        unit: "m", "m2", "deg", "%" or "".
+        unit: "m", "m2", "deg", "%", "s", "m/s", "turns/s" and the like, or "".
         table: rows of a table, if one was asked for, each a mapping of column to value.
         usage: use of language models, None if none was asked.
     """
@@ -99,6 +101,7 @@ class Answer(BaseModel):
         for name in ("table", "usage"):
             if not data[name]:
                 del data[name]
-        if not data["evidence"]["lines"]:
-            del data["evidence"]["lines"]
+        for name in ("lines", "time"):
+            if data["evidence"][name] in ([], None):
+                del data["evidence"][name]
         return data

@@ -24,7 +24,10 @@ from .reading.restating import restated
 from .reading.situation import Situation, read_situation
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
-from .telling import absent, evidence
+from .telling import absent, absent_text, evidence
+from .timeline import static
+from .timeline.asked import STATIC, Untold, at, is_of_motion, nothing
+from .timeline.bodies import Timeline
 
 NOT_READ = "this question is not understood"
 _TRIED = 8  # candidates of an ambiguous phrase for which a question is answered one by one
@@ -62,7 +65,7 @@ class _Attempt:
     error: NotResolved
 
 
-def answer(text: str, survey: Survey) -> Answer:
+def answer(text: str, survey: Survey, timeline: Timeline | None = None) -> Answer:
     """The answer to a question as far as geometry gives one.
 
     A question that no kind reads has the answer None, the source "none" and `NOT_READ` in its text. A phrase that is
@@ -71,15 +74,96 @@ def answer(text: str, survey: Survey) -> Answer:
     Raises:
         UserError: the text is too long.
     """
-    return route(text, survey).answer
+    return route(text, survey, timeline).answer
 
 
-def route(text: str, survey: Survey) -> Reading:
+def route(text: str, survey: Survey, timeline: Timeline | None = None) -> Reading:
     """The answer to a question as far as geometry gives one, and who may answer it otherwise.
+
+    Args:
+        timeline: what moves in the scene; None: it is static.
 
     Raises:
         UserError: the text is too long.
     """
+    if timeline is None:
+        found = _static(text, survey)
+        if found.kind in ("", "undecidable") and found.answer.answer is None and is_of_motion(plain_words(text)):
+            still = Answer(answer=None, answer_type="text", text=STATIC, confidence=0.9, source="none")
+            return Reading(still, "motion")
+        return found
+    return _timed(text, survey, timeline)
+
+
+def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
+    """The answer to a question about a scene with time: of its motion, else of the scene at a moment."""
+    words = static.without_relative(plain_words(text), survey, timeline)
+    asked = Asked(text, words=words, timeline=timeline)
+    refused: Reading | None = None
+    for kind in kinds.OF_MOTION:
+        for slots in kind.templates[0].match(words, READERS):
+            try:
+                given = kind.answer(replace(asked, slots=slots), survey)
+            except NotResolved as error:
+                refused = refused or Reading(_unnamed(error, survey), kind.name)
+                continue
+            if isinstance(given, Answer) and given.answer is None:
+                refused = refused or Reading(given, kind.name)
+            elif given is not None:
+                return _reading(kind, given if survey.scaled else _in_units(given))
+    try:
+        for moment in static.moments(words, survey, timeline, asked):
+            found = _at_moment(moment, text, survey, timeline)
+            if found.answer.answer is not None:
+                return found
+            refused = refused or (found if found.kind else None)
+    except NotResolved as error:
+        refused = refused or Reading(_unnamed(error, survey), "moment")
+    except Untold as error:
+        refused = refused or Reading(nothing(str(error)), "moment")
+    if refused is not None:
+        return refused
+    none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
+    return Reading(none, sight=True)
+
+
+def _unnamed(error: NotResolved, survey: Survey) -> Answer:
+    """That a phrase is absent, or means several things: no answer, for what is not there does nothing."""
+    if error.found.verdict == "ambiguous":
+        named = "; ".join(survey.named(t) for t in error.found.things[:_TRIED])
+        return nothing(f"“{error.query.describe()}” may be {named}. Say which one.")
+    return nothing(absent_text(survey, error.query, error.found))
+
+
+def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Timeline) -> Reading:
+    """The answer of the static scene at a moment; of several moments the one that holds at all of them, or at any."""
+    first: Reading | None = None
+    for time in moment.times:
+        there = survey if time == timeline.start else timeline.survey_at(time)
+        found = _static(moment.words, there)
+        answer = found.answer
+        if answer.answer is None:
+            return found
+        evidence = answer.evidence.model_copy(update={"time": time})
+        said = f"At {at(time)}: {answer.text}" if moment.said else _present(answer, survey, timeline)
+        found = replace(found, answer=answer.model_copy(update={"text": said[:4000], "evidence": evidence}))
+        first = first or found
+        if len(moment.times) > 1 and answer.answer_type != "yesno":
+            return replace(found, answer=nothing(f"That may change; say at which time. {said}"[:4000]))
+        if len(moment.times) > 1 and (answer.answer == "no") == moment.every:
+            return found
+    assert first is not None
+    return first
+
+
+def _present(answer: Answer, survey: Survey, timeline: Timeline) -> str:
+    """The text of an answer about the present, which says so where it is about something that moves."""
+    moving = [b for b in timeline.movers(survey) if b.thing is not None and b.thing.id in answer.evidence.ids]
+    return f"{answer.text} (This is at {at(timeline.now)}; {moving[0].name} moves later.)" if moving else answer.text
+
+
+def _static(text: str, survey: Survey) -> Reading:
+    """The answer to a question about a scene as it stands."""
     words = plain_words(text)
     situation, rest = read_situation(words)
     readings = [(situation, rest)] if situation is None else [(situation, rest), (None, words)]

@@ -10,6 +10,7 @@ from .answer import Answer, AnswerType
 from .reading.phrase_templates import Template
 from .reading.situation import Situation
 from .survey import Survey, Thing
+from .timeline.bodies import Timeline
 
 
 @dataclass(frozen=True)
@@ -21,12 +22,14 @@ class Asked:
         slots: the values of the template's holes, by name.
         situation: where the person who asks says to be, None if nothing is said.
         words: of the question, in plain form.
+        timeline: what moves in the scene, None if nothing does.
     """
 
     text: str
     slots: Mapping[str, Any] = field(default_factory=dict)
     situation: Situation | None = None
     words: tuple[str, ...] = ()
+    timeline: Timeline | None = None
 
     @property
     def said(self) -> str:

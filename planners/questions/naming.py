@@ -12,6 +12,7 @@ from .things import Thing, gap
 
 _BY = 1.0  # metres: largest gap to what a thing is said to be by
 _CLEAR = 0.3  # metres by which the next of its kind must be farther from it, or less far to the side
+_STACK = 0.6  # of a thing's width: things of one label so near to one another in plan are one above the other
 _MOST_ALIKE = 12  # things of one label and colour beyond which only their number tells them apart
 
 
@@ -31,6 +32,8 @@ def named(thing: Thing, things: Sequence[Thing], stand: Stand) -> str:
     if len(alike) == 1:
         return label
     others = [t for t in alike if t.id != thing.id]
+    if (level := _level(thing, others)) is not None:
+        return f"the {level} {label.removeprefix('the ')}"
     if len(alike) > _MOST_ALIKE:
         return f"{label} ({thing.id})"
     return next(_by_place(thing, others, label, things, stand), f"{label} ({thing.id})")
@@ -56,6 +59,16 @@ def _by_place(
     for side, axis in (("at the front", -stand.forward), ("at the back", stand.forward)):
         if _leads(thing, others, axis):
             yield f"{label} {side}"
+
+
+def _level(thing: Thing, others: Sequence[Thing]) -> str | None:
+    """Where a thing is in a stack of things of its label, such as drawers; None if they are no stack, or too many."""
+    middle = np.array(thing.group.box.center)
+    aside = [np.linalg.norm((np.array(o.group.box.center) - middle)[:2]) for o in others]
+    if len(others) > 2 or max(aside) > _STACK * max(thing.group.box.size[:2]):
+        return None
+    below = sum(o.group.box.center[2] < middle[2] for o in others)
+    return ("bottom", "top")[below] if len(others) == 1 else ("bottom", "middle", "top")[below]
 
 
 def _support(thing: Thing) -> str | int | None:

@@ -13,6 +13,7 @@ from . import (
     hazards,
     identity,
     listing,
+    motion,
     nearest,
     order,
     placed,
@@ -25,6 +26,7 @@ from . import (
     whereabouts,
 )
 
+OF_MOTION = motion.KINDS  # first in scenes with time, last in others
 KINDS = (
     routes.BLOCKED,
     placed.BETWEEN,

@@ -13,6 +13,7 @@
 {o:way}        name of a relation of one side word: "left"
 {z:zone}       a place of the room, as said: "the far left corner"; {w:shell} walls, floor or ceiling
 {w:words}      any words
+{f:frames}     the ways in which all the words are a question about a scene with time
 """
 
 from __future__ import annotations
@@ -41,6 +42,7 @@ from . import (
 from .colors import color
 from .measures import Unit, amount, dimension, more, superlative
 from .phrase_templates import HoleReader, Words
+from .time.frames import Frame, frames
 
 
 def number(words: Words) -> float | None:
@@ -103,6 +105,11 @@ def place(words: Words) -> Words | None:
     return words if noun_phrase.thing(("thing", *words)) is not None else None
 
 
+def time_frames(words: Words) -> tuple[Frame, ...] | None:
+    """The ways of reading a question about a scene with time, the likeliest first."""
+    return frames(words) or None
+
+
 _COLUMNS: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("size", "dimension", "measurement", "measure", "extent"), ("width", "depth", "height")),
     **dict.fromkeys(("position", "location", "place", "coordinate", "whereabouts"), ("x", "y", "z")),
@@ -157,4 +164,5 @@ READERS: Mapping[str, HoleReader] = {
     "item": item.read_item,
     "activity": activity.activity,
     "where_to": where_to.where_to,
+    "frames": time_frames,
 }

@@ -153,7 +153,7 @@ _REORDERED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], 
         ),
         (r",? (?:as|when) (?:i|you|we) (?:look in|see it|come in|walk in)$", ""),
         (r"\bnot (?:taken up|covered|occupied) by (?:the |any )?(?:furniture|things|stuff)\b", "free"),
-        (r",? (?:ignoring|not counting|leaving out|leave) the rugs?(?: out of it| as furniture)?$", ""),
+        (r",? (?:(?:ignoring|not counting|leaving out) the rugs?(?: as furniture)?|leave the rugs? out of it)$", ""),
         (r"^(?:would|might|will|could) there (?:happen to )?be ", "is there "),
         (
             r"^how (?:high|tall) (is|are) (?!the room|this room)(.+?) from (?:its |the |their )?(?:bottom|base|top) to "

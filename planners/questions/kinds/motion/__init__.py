@@ -1,0 +1,21 @@
+"""Kinds of questions about scenes with time, in the order in which they are tried."""
+
+from . import lasting, movers, order, places, speeds, when, whether
+
+KINDS = (
+    lasting.BETWEEN,
+    order.ORDER,
+    order.DOES,
+    speeds.OFTEN,
+    when.WHEN,
+    speeds.FAST,
+    lasting.LONG,
+    places.WAY,
+    speeds.FAR,
+    movers.MANY,
+    places.WHERE,
+    speeds.FASTER,
+    movers.WHICH,
+    whether.EITHER,
+    whether.WHETHER,
+)

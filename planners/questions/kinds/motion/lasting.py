@@ -1,0 +1,86 @@
+"""How long something lasts: "how long does the door take to open?", "how much time is there between the two falls?"."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from .....gaussians.motion import events
+from .....gaussians.motion.holding import Span
+from ...answer import Answer
+from ...timeline.asked import Told, Untold, agreed, at, cap, kind, number, spoken, verb, within
+from ...timeline.bodies import Body
+from .when import moment
+
+_ONE_TURN = re.compile(r"\b(?:one|a|each|every|a full|a single|one full) (?:turn|rotation|revolution|spin|round)\b")
+_WAITS = ("wait", "waits", "waiting", "rest", "rests", "pause", "pauses")
+_AT_ONCE = ("reach", "land", "enter", "leave", "pass", "start", "stop")
+
+
+def _long(told: Told) -> Answer | None:
+    if told.frame.what.deed is None:
+        return None
+    return agreed(told, lambda body: _of_one(told, body))
+
+
+def _of_one(told: Told, body: Body) -> Answer:
+    deed, when = told.frame.what.deed, told.frame.when
+    assert deed is not None
+    found = told.spans(body)
+    if deed.kind == "turn" and _ONE_TURN.search(told.asked.said) and events.turned(body.course) > 2 * math.pi:
+        seconds = sum(b - a for a, b in found) * 2 * math.pi / events.turned(body.course)
+        return number(seconds, "s", f"{at(seconds)}: {body.name} turns once in that time.", [body])
+    if when is not None:
+        found = within(found, told.window())
+        found = found[-1:] if deed.kind == "still" and when.conj == "before" else found
+    if not found:
+        raise Untold(cap(f"{body.name} never {verb(told)}."))
+    if deed.kind in _AT_ONCE:
+        return _way_to(told, body, found)
+    if deed.kind == "still" and deed.verb in _WAITS and when is None and len(inner := _inner(found, told)) >= 1:
+        found = inner
+    seconds = sum(b - a for a, b in found)
+    text = f"{at(seconds)}: {body.name} {verb(told)} {spoken(found)}."
+    return number(seconds, "s", text, [body], found[0][0], others=told.others())
+
+
+def _inner(found: list[Span], told: Told) -> list[Span]:
+    """The rests between movements, not those at the start and the end of the scene."""
+    line = told.timeline
+    return [s for s in found if s[0] > line.start + 1e-3 and s[1] < line.stop - 1e-3]
+
+
+def _way_to(told: Told, body: Body, found: list[Span]) -> Answer:
+    """From when it begins to move to what happens at once: reaching, landing, stopping."""
+    deed = told.frame.what.deed
+    assert deed is not None
+    time = moment(deed, found[-1] if deed.kind == "stop" else found[0])
+    begun = [a for a, _ in body.moving if a < time]
+    if not begun:
+        raise Untold(f"{cap(body.name)} does not move before that.")
+    start = begun[-1] if deed.kind != "stop" else begun[0]
+    text = f"{at(time - start)}: {body.name} starts to move at {at(start)} and {verb(told)} at {at(time)}."
+    return number(time - start, "s", text, [body], time, others=told.others())
+
+
+def _between(told: Told) -> Answer | None:
+    first, second = told.frame.what, told.frame.other
+    if second is None or (first.deed is None and second.deed is None):
+        return None
+    times, bodies = [], []
+    for what in (first, second):
+        body, found = told.nth(what) if what.nth else (told.one(what), [])
+        found = found or told.spans(body, what)
+        if not found:
+            raise Untold(cap(f"{body.name} never {verb(told, what)}."))
+        deed = what.deed or (first.deed or second.deed)
+        assert deed is not None
+        times.append(moment(deed, found[-1] if deed.kind == "stop" else found[0]))
+        bodies.append(body)
+    apart = abs(times[1] - times[0])
+    said = [f"{b.name} {verb(told, w)} at {at(t)}" for b, w, t in zip(bodies, (first, second), times, strict=True)]
+    return number(apart, "s", f"{at(apart)}: {said[0]} and {said[1]}.", bodies, min(times))
+
+
+LONG = kind("how_long", "how_long", _long)
+BETWEEN = kind("between_events", "between", _between)

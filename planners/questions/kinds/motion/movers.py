@@ -1,0 +1,187 @@
+"""Which things do something: "what moves?", "which book falls first?", "how many things move?"."""
+
+from __future__ import annotations
+
+import re
+
+from .....gaussians.motion import events
+from .....gaussians.motion.holding import Span
+from ...answer import Answer
+from ...survey import NotResolved, listed
+from ...telling import evidence as evidence_of
+from ...timeline.asked import Told, Untold, cap, kind, names, number, spoken, verb, within
+from ...timeline.bodies import Body
+from .when import moment
+
+_PLACES = {"first": 0, "second": 1, "third": 2, "fourth": 3, "last": -1}
+_TAKES = ("reach", "enter", "leave", "cross", "pass", "approach", "recede", "related")
+
+
+def doing(told: Told) -> list[tuple[Body, list[Span]]]:
+    """The bodies that do it in the time that is asked of, with the spans."""
+    window, found = told.window(), list[tuple[Body, list[Span]]]()
+    for body in told.bodies():
+        try:
+            spans = told.spans(body)
+        except Untold:
+            continue
+        deed = told.frame.what.deed
+        if deed is not None and deed.kind in ("start", "stop") and window is not None:
+            spans = [s for s in spans if window[0] - 0.1 <= moment(deed, s) <= window[1] + 0.1]
+        elif deed is not None and deed.kind == "stop":
+            spans = [s for s in spans if s[1] < told.timeline.stop - 1e-3]
+        elif window is not None and window[0] < window[1]:
+            spans = [s for s in spans if _overlaps(s, window)]
+        else:
+            spans = within(spans, window)
+        if spans:
+            found.append((body, spans))
+    return found
+
+
+def _overlaps(span: Span, window: Span) -> bool:
+    """Whether a good part of a span lies in a window, or of the window in the span."""
+    shared = min(span[1], window[1]) - max(span[0], window[0])
+    return shared >= 0.25 * min(span[1] - span[0], window[1] - window[0])
+
+
+def _which(told: Told) -> Answer | None:
+    what = told.frame.what
+    deed = what.deed
+    if deed is None and not (told.frame.rank and what.subject is not None):
+        return None
+    said = told.asked.said
+    asks_object = re.match(r"(?:what|which)(?: things?| objects?| furniture)? (?:does|do|did|will|is|has)\b", said)
+    if deed is not None and deed.kind in _TAKES and what.object is None:
+        return _objects(told) if asks_object and what.subject is not None else None
+    if deed is not None and deed.kind == "still" and what.subject is None:
+        return _still(told)
+    transitive = re.match(r"(?:what|which) (?:does|do|did|will|has)\b", said)
+    if deed is not None and transitive and what.subject is not None and what.object is None and not told.frame.rank:
+        return None  # "what does the ball roll"
+    found = doing(told)
+    if told.frame.rank:
+        return _ranked(told, found)
+    bodies = [b for b, _ in found]
+    if not bodies:
+        return names([], f"Nothing {verb(told)}{_then(told)}.")
+    text = "; ".join(f"{b.name} {verb(told)} {spoken(s)}" for b, s in found)
+    time = told.window()[0] if told.window() is not None else found[0][1][0][0]  # type: ignore[index]
+    return names(bodies, f"{cap(text)}.", time, single=True)
+
+
+def _then(told: Told) -> str:
+    return " then" if told.frame.when is not None and told.frame.when.kind not in ("ever", "always") else ""
+
+
+def _ranked(told: Told, found: list[tuple[Body, list[Span]]]) -> Answer:
+    """The first, the fastest, the farthest of those that do it."""
+    rank, deed = told.frame.rank, told.frame.what.deed
+    if not found:
+        raise Untold(f"Nothing {verb(told)}{_then(told)}.")
+    if rank in _PLACES:
+        ordered = sorted(
+            found,
+            key=lambda f: moment(deed, f[1][-1 if deed.kind == "stop" else 0]) if deed is not None else f[1][0][0],
+        )
+        if _PLACES[rank] >= len(ordered):
+            raise Untold(f"Only {listed([b.name for b, _ in ordered])} {verb(told)}.")
+        body, spans = ordered[_PLACES[rank]]
+        text = "; ".join(f"{b.name} {verb(told)} {spoken(s)}" for b, s in ordered)
+        return names([body], f"{cap(text)}.", spans[0][0], single=True)
+    by = _speed if rank in ("fastest", "slowest") else _way
+    scored = sorted(((by(b, told), b) for b, _ in found), key=lambda pair: -pair[0])
+    if rank in ("slowest", "nearest"):
+        scored.reverse()
+    if len(scored) > 1 and abs(scored[0][0] - scored[1][0]) < 0.03 * max(abs(scored[0][0]), 1e-9):
+        told_each = listed([f"{b.name} {v:.2f}" for v, b in scored])
+        raise Untold(f"They do not differ: {told_each} {'m/s' if by is _speed else 'm'}.")
+    text = listed([f"{b.name} {v:.2f} {'m/s' if by is _speed else 'm'}" for v, b in scored])
+    return names([scored[0][1]], f"{cap(text)}.", single=True)
+
+
+def _speed(body: Body, told: Told) -> float:
+    return float(events.speeds(body.course, body.course.grid()).max()) / told.timeline.unit
+
+
+def _way(body: Body, told: Told) -> float:
+    return sum(events.path_length(body.course, s) for s in body.moving) / told.timeline.unit
+
+
+def _objects(told: Told) -> Answer:
+    """What a body does something to: "what does the ball hit?"."""
+    from ...timeline.happening import spans_of
+
+    deed, body = told.frame.what.deed, told.one()
+    assert deed is not None
+    window, found = told.window(), []
+    for thing in told.survey.things:
+        if thing.id in (body.group.id, getattr(body.thing, "id", None)):
+            continue
+        spans = within(spans_of(deed, body, (thing,), told.timeline, told.survey) or [], window)
+        if spans:
+            found.append((spans[0][0], thing))
+    if deed.kind == "reach" and "wall" in told.survey.stage.ids:
+        wall = told.survey.at(told.survey.stage.ids.index("wall"))
+        spans = within(spans_of(deed, body, (wall,), told.timeline, told.survey) or [], window)
+        found += [(spans[0][0], wall)] if spans else []
+    found.sort(key=lambda f: f[0])
+    labels = tuple(t.name for _, t in found)
+    text = f"{cap(body.name)} {verb(told)} {listed([told.survey.named(t) for _, t in found])}."
+    return Answer(
+        answer=labels if len(labels) != 1 else labels[0],
+        answer_type="list" if len(labels) != 1 else "label",
+        text=text,
+        confidence=0.85,
+        evidence=evidence_of([*([body.thing] if body.thing else []), *(t for _, t in found)]),
+    )
+
+
+def _still(told: Told) -> Answer:
+    """What stands still, at a time or all the time."""
+    window = told.window()
+    moving = {
+        b.thing.id
+        for b in told.timeline.movers(told.survey)
+        if b.thing is not None and b.course.group == b.thing.id and within(list(b.moving), window)
+    }
+    things = [t for t in told.survey.things if t.id not in moving]
+    text = (
+        f"{cap(listed([told.survey.named(t) for t in things]))} {'stands' if len(things) == 1 else 'stand'} "
+        f"still{_then(told)}."
+    )
+    return Answer(
+        answer=tuple(t.name for t in things),
+        answer_type="list",
+        text=text,
+        confidence=0.9,
+        evidence=evidence_of(things),
+    )
+
+
+def _many(told: Told) -> Answer | None:
+    what = told.frame.what
+    if what.deed is None:
+        return None
+    try:
+        found = doing(told)
+    except NotResolved as error:
+        if error.found.verdict != "ambiguous":
+            raise
+        return None
+    if what.deed.kind == "still":
+        given = _still(told) if what.subject is None or not what.subject.text or what.subject.text == "thing" else None
+        if given is not None:
+            assert isinstance(given.answer, tuple)
+            return number(float(len(given.answer)), "", given.text, [])
+    bodies = [b for b, _ in found]
+    text = (
+        f"{len(bodies)}: {listed([f'{b.name} {spoken(s)}' for b, s in found])}."
+        if bodies
+        else f"None {verb(told)}{_then(told)}."
+    )
+    return number(float(len(bodies)), "", text, bodies, None)
+
+
+WHICH = kind("which_moves", "which", _which)
+MANY = kind("how_many_move", "how_many", _many)

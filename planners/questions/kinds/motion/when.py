@@ -1,0 +1,100 @@
+"""When something happens: "when does the ball reach the wall?", "at what time is the door half open?"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .....gaussians.motion.holding import Span
+from ...answer import Answer
+from ...candidates import is_plural
+from ...reading.time.deeds import Deed
+from ...survey import listed
+from ...timeline.asked import Told, Untold, at, cap, during, kind, number, verb, within
+from ...timeline.bodies import Body
+
+_ENDS = ("stop",)
+_ORDINALS = {"first": 0, "second": 1, "third": 2, "fourth": 3, "last": -1}
+
+
+def moment(deed: Deed, span: Span) -> float:
+    """The time that "when" asks of: the end of what stops, the start of everything else."""
+    return span[1] if deed.kind in _ENDS or deed.phase == "stop" else span[0]
+
+
+def changes(told: Told, body: Body) -> list[Span]:
+    """The spans of a deed that begin, or of what stops end, within the scene's time, if there are such."""
+    deed, line = told.frame.what.deed, told.timeline
+    assert deed is not None
+    found = within(told.spans(body), told.window())
+    if deed.kind in ("is_open", "is_closed", "related", "still"):
+        return [s for s in found if s[0] > line.start + 1e-3] or found
+    if deed.kind in _ENDS:
+        return [s for s in found if s[1] < line.stop - 1e-3]
+    return found
+
+
+def _when(told: Told) -> Answer | None:
+    deed = told.frame.what.deed
+    if deed is None:
+        return None
+    subject = told.frame.what.subject
+    bodies = told.bodies()
+    each = [(b, changes(told, b)) for b in bodies]
+    doing = [(b, s) for b, s in each if s]
+    if not doing:
+        raise Untold(_never(told, bodies))
+    if len(doing) > 1 and subject is not None and not is_plural(subject) and not told.frame.rank:
+        return _several(told, doing)
+    events = _events(deed, doing)
+    place = _ORDINALS.get(told.frame.rank, -1 if deed.kind in _ENDS else 0)
+    if place >= len(events):
+        raise Untold(f"That happens {len(events)} time{'s' if len(events) > 1 else ''} only: {_told(told, doing)}.")
+    time, body, _ = events[place]
+    text = f"{_told(told, doing)}."
+    return number(time, "s", cap(text), [body], time, others=told.others())
+
+
+def _events(deed: Deed, doing: Sequence[tuple[Body, list[Span]]]) -> list[tuple[float, Body, Span]]:
+    found = [(moment(deed, s), b, s) for b, spans in doing for s in spans]
+    return sorted(found, key=lambda event: event[0])
+
+
+def _told(told: Told, doing: Sequence[tuple[Body, list[Span]]]) -> str:
+    """When each of them does it: "the ball stops at 3.5 s"."""
+    deed = told.frame.what.deed
+    assert deed is not None
+    long = deed.kind in (
+        "move",
+        "turn",
+        "open",
+        "close",
+        "fall",
+        "still",
+        "is_open",
+        "is_closed",
+        "related",
+        "cross",
+    ) and deed.phase not in ("start", "stop")
+    parts = []
+    for body, spans in doing:
+        times = listed([during(s) if long else f"at {at(moment(deed, s))}" for s in spans])
+        parts.append(f"{body.name} {verb(told)} {times}")
+    return "; ".join(parts)
+
+
+def _several(told: Told, doing: Sequence[tuple[Body, list[Span]]]) -> Answer:
+    """One phrase for several things that do it at different times."""
+    from ...timeline.asked import nothing
+
+    return nothing(f"Several things do that: {_told(told, doing)}. Say which one.", "number", [b for b, _ in doing])
+
+
+def _never(told: Told, bodies: Sequence[Body]) -> str:
+    names = listed([b.name for b in bodies]) if bodies else "anything"
+    still = [b for b in bodies if not b.moving]
+    if bodies and len(still) == len(bodies):
+        return cap(f"{names} {'does' if len(bodies) == 1 else 'do'} not move.")
+    return cap(f"{names} never {verb(told)}.") if len(bodies) == 1 else f"None of them {verb(told)}: {names}."
+
+
+WHEN = kind("when", "when", _when)

@@ -1,0 +1,115 @@
+"""Whether something happens: "does the plant move?", "is the door open at 2 s?", "does it ever touch the sofa?"."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from .....gaussians.motion.holding import Span
+from ...answer import Answer
+from ...candidates import is_plural
+from ...survey import listed
+from ...timeline.asked import Told, Untold, at, cap, during, kind, spoken, verb, within, yes_no
+from ...timeline.bodies import Body
+from .when import moment
+
+_ROUND = 0.15  # seconds: what starts so soon after the start of the scene starts with it
+_CHANGES = ("start", "stop", "reach", "enter", "leave", "land", "pass", "vanish", "appear")
+
+
+def _whether(told: Told) -> Answer | None:
+    what, when = told.frame.what, told.frame.when
+    deed = what.deed
+    if deed is None:
+        return None
+    if told.frame.other is not None:
+        return _before(told)
+    if deed.kind == "related" and (when is None or when.kind in ("at", "start", "end", "middle")):
+        return None  # the scene at that time tells it
+    window = told.window()
+    bodies = told.bodies()
+    if not bodies and (what.subject is None or not what.subject.last):
+        return yes_no(False, f"nothing {verb(told)}.", [])
+    always = when is not None and when.kind == "always"
+    each = [(b, _holds(told, b, window, always)) for b in bodies]
+    plural = what.subject is not None and is_plural(what.subject) and what.subject.pick == "all"
+    holds = all(ok for _, (ok, _) in each) if plural else any(ok for _, (ok, _) in each)
+    single = what.subject is not None and bool(what.subject.text) and what.subject.pick == "one"
+    if single and len({ok for _, (ok, _) in each}) > 1:
+        raise Untold(f"That holds of {listed([b.name for b, (ok, _) in each if ok])} only. Say which one is meant.")
+    time = window[0] if window is not None else next((s[0][0] for _, (ok, s) in each if ok and s), None)
+    return yes_no(holds, _sentence(told, each, window), [b for b, _ in each], time, told.others())
+
+
+def _holds(told: Told, body: Body, window: Span | None, always: bool) -> tuple[bool, list[Span]]:
+    """Whether a body does it in a window, and the spans in which it does at all."""
+    deed, line = told.frame.what.deed, told.timeline
+    assert deed is not None
+    if not body.moving and deed.kind in ("open", "close"):
+        return False, []
+    found = told.spans(body)
+    if deed.kind == "stop" or deed.phase == "stop":
+        found = [(b, b) for _, b in found if b < line.stop - 1e-3]
+    elif deed.kind == "start" or deed.phase == "start":
+        found = [(a, a) for a, _ in found]
+    if always:
+        return sum(b - a for a, b in found) >= line.stop - line.start - _ROUND, found
+    if window is None:
+        if deed.kind in ("still",):
+            return not body.moving, found
+        return bool(found), found
+    if deed.kind in _CHANGES or deed.phase in ("start", "stop"):
+        a, b = window
+        return any(
+            a - _ROUND <= moment(replace(deed, kind="start"), s) <= b + (_ROUND if a == b else 0) for s in found
+        ), found
+    inside = within(found, window)
+    if deed.kind in ("still", "is_open", "is_closed") and window[0] < window[1]:
+        return sum(b - a for a, b in inside) >= (window[1] - window[0]) - _ROUND, found
+    if window[0] < window[1]:
+        inside = [s for s in inside if s[1] - s[0] > 0.02 or s[0] == s[1]]
+    return bool(inside), found
+
+
+def _sentence(told: Told, each: list[tuple[Body, tuple[bool, list[Span]]]], window: Span | None) -> str:
+    said = []
+    for body, (_, spans) in each[:8]:
+        if spans and len(each) < 4:
+            said.append(f"{body.name} {verb(told)} {spoken(spans)}")
+        elif not body.moving:
+            said.append(f"{body.name} does not move")
+        else:
+            said.append(f"{body.name} moves {spoken(body.moving)}")
+    asked = f" (asked of {during(window)})" if window is not None else ""
+    return f"{'; '.join(said)}{asked}."
+
+
+def _either(told: Told) -> Answer | None:
+    """ "Is the door open or closed at 2 s?"."""
+    given = _whether(told)
+    if given is None or given.answer is None:
+        return given
+    first, second = told.frame.options
+    said = first if given.answer == "yes" else f"not {first}" if second == "not" else second
+    text = given.text.partition(", ")[2]
+    return given.model_copy(update={"answer": said, "answer_type": "label", "text": cap(f"{said}: {text}")})
+
+
+def _before(told: Told) -> Answer | None:
+    """ "Does the red book fall before the green one?"."""
+    first, second = told.frame.what, told.frame.other
+    assert second is not None
+    times, bodies = [], []
+    for what in (first, second):
+        body = told.one(what)
+        found = told.spans(body, what)
+        if not found or what.deed is None:
+            raise Untold(cap(f"{body.name} never {verb(told, what)}."))
+        times.append(moment(what.deed, found[0]))
+        bodies.append(body)
+    holds = times[0] < times[1] if told.frame.rank == "before" else times[0] > times[1]
+    said = [f"{b.name} {verb(told, w)} at {at(t)}" for b, w, t in zip(bodies, (first, second), times, strict=True)]
+    return yes_no(holds, f"{said[0]} and {said[1]}.", bodies, times[0])
+
+
+EITHER = kind("which_state", "either", _either)
+WHETHER = kind("whether_it_happens", "yesno", _whether)

@@ -1,0 +1,172 @@
+"""Questions about a scene with time whose motion is known in closed form, and the same about a static one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from scenewright.agent.session.session import Session
+from scenewright.gaussians.motion.motion import Motion, Track
+from scenewright.gaussians.scene import Scene
+from scenewright.planners.questions.answer import Answer
+from scenewright.planners.rooms.graph import SceneGraph
+
+ROOM = SceneGraph.model_validate(
+    {
+        "room": {"size": [6.0, 4.0, 2.5]},
+        "nodes": [
+            {"id": 0, "label": "ball", "color": "red", "size": [0.2, 0.2, 0.2], "position": [-2.0, -1.0, 0.1]},
+            {"id": 1, "label": "rug", "color": "blue", "size": [1.0, 1.0, 0.01], "position": [0.5, -1.0, 0.005]},
+            {"id": 2, "label": "chair", "size": [0.5, 0.5, 0.9], "position": [-2.0, 1.0, 0.45]},
+            {"id": 3, "label": "desk", "size": [1.2, 0.6, 0.75], "position": [2.0, 1.6, 0.375]},
+            {
+                "id": 4,
+                "label": "book",
+                "color": "green",
+                "size": [0.2, 0.15, 0.03],
+                "position": [1.7, 1.7, 0.765],
+                "support": 3,
+            },
+            {
+                "id": 5,
+                "label": "book",
+                "color": "red",
+                "size": [0.2, 0.15, 0.03],
+                "position": [2.3, 1.7, 0.765],
+                "support": 3,
+            },
+            {"id": 6, "label": "clock", "size": [0.3, 0.05, 0.3], "position": [-1.0, 1.97, 1.6], "support": "wall"},
+        ],
+    }
+)
+ROLLS, FALLS = (1.0, 3.0), ((0.5, 0.9), (2.0, 2.4))  # seconds
+
+
+def moving() -> Scene:
+    """For four seconds: the ball slides 4 m along x from 1 to 3 s, the books drop from the desk one after the other,
+    and the clock turns half a turn a second."""
+    scene = ROOM.build(detail=0.1)
+    language = scene.language
+    assert language is not None
+
+    def ids(label: str, which: int = 0) -> NDArray[np.int64]:
+        group = [g.id for g in language.groups if g.label == label][which]
+        return np.asarray(scene.cloud.ids[scene.cloud.group == group].numpy())
+
+    def dropped(which: int, start: float, stop: float) -> Track:
+        share = np.linspace(0, 1, 9)
+        path = np.stack([0 * share, -0.6 * share, -0.75 * share**2], axis=1)
+        return Track.along(ids("book", which), start + (stop - start) * share, path, smooth=False)
+
+    tracks = (
+        Track.slide(ids("ball"), ROLLS, [0.0, 4.0], (1, 0, 0), smooth=False),
+        dropped(0, *FALLS[0]),
+        dropped(1, *FALLS[1]),
+        Track.spin(ids("clock"), 0.5, (0, 1, 0), (-1.0, 1.97, 1.6)),
+    )
+    return scene.replace(motion=Motion(tracks, (), (), 0.0, 4.0))
+
+
+@pytest.fixture(scope="module")
+def session() -> Session:
+    return Session(moving())
+
+
+def said(session: Session, text: str) -> Answer:
+    session.recall(None)
+    return session.ask(text)
+
+
+NEAR = 0.03  # seconds
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "unit"),
+    [
+        ("when does the ball start to roll?", 1.0, "s"),
+        ("when does the ball stop?", 3.0, "s"),
+        ("how long does the ball roll?", 2.0, "s"),
+        ("how long is the ball on the rug?", 0.5, "s"),
+        ("when does the ball leave the rug", 2.5, "s"),
+        ("when does the red book fall?", 2.0, "s"),
+        ("when does the green book hit the floor?", 0.9, "s"),
+        ("how much time is between the two falls of the books", None, ""),
+        ("how much later does the red book fall than the green one?", 1.5, "s"),
+        ("how far does the ball roll?", 4.0, "m"),
+        ("how far does the ball roll in the first 2 seconds", 2.0, "m"),
+        ("how fast is the ball at 2 s, in km/h", 7.2, "km/h"),
+        ("how fast does the ball roll?", 2.0, "m/s"),
+        ("how fast does the clock turn?", 0.5, "turns/s"),
+        ("clock rpm", 30.0, "rpm"),
+        ("how many turns does the clock make?", 2.0, ""),
+        ("how many things move?", 4.0, ""),
+        ("how many books fall?", 2.0, ""),
+        ("how many books fall before 1.5 s", 1.0, ""),
+        ("when does the chair move?", None, ""),
+        ("when does the cat jump?", None, ""),
+        ("when does the book fall?", None, ""),
+    ],
+)
+def test_numbers(session: Session, text: str, value: float | None, unit: str) -> None:
+    given = said(session, text)
+    assert (given.answer is None) == (value is None) and given.unit == unit, given.text
+    if value is not None:
+        assert given.answer == pytest.approx(value, rel=0.02, abs=NEAR), given.text
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("does the chair move?", "no"),
+        ("does the ball move?", "yes"),
+        ("is the ball moving at 2 s?", "yes"),
+        ("is the ball moving at 3.5 s?", "no"),
+        ("does anything move?", "yes"),
+        ("does the ball touch the chair?", "no"),
+        ("is the ball on the rug at 2.2 s?", "yes"),
+        ("is the ball on the rug?", "no"),
+        ("is the ball ever on the rug?", "yes"),
+        ("is the ball red the whole time?", "yes"),
+        ("does the green book fall before the red one?", "yes"),
+        ("is the red book on the floor at the end?", "yes"),
+        ("is the red book on the floor at 1 s?", "no"),
+        ("does the ball stop before 2 s?", "no"),
+        ("does the chair stay where it is?", "yes"),
+        ("which book falls first?", "green book"),
+        ("which way does the red book go, up or down?", "down"),
+        ("what moves between 1.2 and 1.8 s?", ("clock", "ball")),
+        ("in what order do the books fall?", ("green book", "red book")),
+        ("what colour is the book that falls last?", "red"),
+        ("what does the ball cross?", "rug"),
+        ("is the clock moving or still at 1 s?", "moving"),
+        ("does the sofa move?", None),
+    ],
+)
+def test_words(session: Session, text: str, value: str | tuple[str, ...] | None) -> None:
+    given = said(session, text)
+    assert given.answer == value, given.text
+
+
+def test_answers_show_the_time_that_they_are_about(session: Session) -> None:
+    assert said(session, "when does the ball stop?").evidence.time == pytest.approx(3.0, abs=NEAR)
+    given = said(session, "where is the red book at the end?")
+    assert given.evidence.time == 4.0 and given.text.startswith("At 4 s: ")
+    now = said(session, "where is the ball?")
+    assert "(This is at 0 s; the ball moves later.)" in now.text
+    assert said(session, "how wide is the chair?").text.endswith("wide.")
+
+
+def test_it_is_the_thing_that_was_asked_of(session: Session) -> None:
+    session.recall(None)
+    session.ask("does the ball move?")
+    assert session.ask("when does it stop?").answer == pytest.approx(3.0, abs=NEAR)
+    assert "time" in session.ask("when does it stop?").to_json()["evidence"]
+
+
+def test_a_static_scene_says_that_nothing_moves() -> None:
+    still = Session(moving().replace(motion=None))
+    for text in ("when does the ball stop?", "what moved?", "how fast does the clock turn?", "which book falls first?"):
+        given = still.ask(text)
+        assert given.answer is None and given.text == "Nothing moves in this scene.", text
+    assert still.ask("what colour is the ball?").answer == "red"
