@@ -88,7 +88,8 @@ def route(text: str, survey: Survey, timeline: Timeline | None = None) -> Readin
     """
     if timeline is None:
         found = _static(text, survey)
-        if found.kind in ("", "undecidable") and found.answer.answer is None and is_of_motion(plain_words(text)):
+        told = found.kind == "" or (found.kind == "undecidable" and not found.sight)
+        if told and found.answer.answer is None and is_of_motion(plain_words(text)):
             still = Answer(answer=None, answer_type="text", text=STATIC, confidence=0.9, source="none")
             return Reading(still, "motion")
         return found
