@@ -112,8 +112,9 @@ def _tensors(motion: Motion) -> dict[str, Tensor]:
         arrays |= {f"look.{i}.{name}": getattr(look, name) for name in ("ids", "sh", "opacities")}
     for i, residual in enumerate(motion.residuals):
         arrays |= {f"residual.{i}.{name}": getattr(residual, name) for name in ("ids", "times", "basis", "weights")}
+    # Copies: tracks that were one share their keys, and safetensors refuses memory that is shared.
     return {
-        name: value.cpu().contiguous() if isinstance(value, Tensor) else torch.from_numpy(np.ascontiguousarray(value))
+        name: value.cpu().clone().contiguous() if isinstance(value, Tensor) else torch.from_numpy(np.array(value))
         for name, value in arrays.items()
         if value is not None
     }

@@ -57,6 +57,17 @@ def test_a_turned_path_is_read_as_it_was_written(tmp_path: Path) -> None:
     assert torch.equal(at(back, 1.3).cloud.means, at(turned, 1.3).cloud.means)
 
 
+def test_a_path_of_which_a_part_was_moved_is_written(tmp_path: Path) -> None:
+    scene = bare(moving(0, 120))
+    assert scene.motion is not None
+    some = scene.motion.tracks[2].ids[:5]
+    divided = scene.replace(motion=carried(scene.motion, some, np.eye(3), np.ones(3)))
+    files.save(divided, tmp_path / "a.ply")
+    back = files.load(tmp_path / "a.ply")
+    assert back.motion is not None and len(back.motion.tracks) == 5
+    assert torch.equal(at(back, 1.3).cloud.means, at(divided, 1.3).cloud.means)
+
+
 def test_a_static_scene_has_no_file_and_takes_away_that_of_the_one_before(tmp_path: Path) -> None:
     scene = bare(moving())
     files.save(scene.replace(motion=None), tmp_path / "a.ply")
