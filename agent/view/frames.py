@@ -20,6 +20,9 @@ from .slots import EMPTY, I64, ranges_of, slots_of
 
 _BRIDGED = 12  # bytes of a range in the header, about: gaps whose rows take fewer bytes are sent along
 
+_RATE, _LEAST_RATE = 20.0, 2.0  # moments a second in a page of its own; below the least it shows the start alone
+_MOST_BYTES = 24 << 20  # of all its moments, before they are packed
+
 _ranges: Kept[dict[str, I64]] = Kept(4)
 
 
@@ -69,6 +72,21 @@ def frame(shown: Shown, time: float, number: int) -> bytes:
             rows = np.where((rows >= 0) & left_out[rows], EMPTY, rows)
         parts.append(wire.Part(column, ranges, encode(cloud, shown.owner, column, rows)))
     return wire.message(shown, shown.revision, parts, (0, 1), "frame", {"time": time, "id": number})
+
+
+def moments(shown: Shown) -> list[tuple[float, bytes]]:
+    """Times, seconds, and the messages of a scene at these times, evenly from its start to its stop, for a page without
+    a server; none if nothing moves, or so much of it that the page would be too large."""
+    motion = shown.scene.motion
+    if motion is None or motion.stop <= motion.start:
+        return []
+    lasts = motion.stop - motion.start
+    rate = min(_RATE, _MOST_BYTES / (lasts * len(frame(shown, motion.start, 0))))
+    if rate < _LEAST_RATE:
+        return []
+    count = max(1, round(lasts * rate))
+    times = [motion.start + lasts * i / count for i in range(count + 1)]
+    return [(time, frame(shown, time, number)) for number, time in enumerate(times)]
 
 
 def _changing(shown: Shown, motion: Motion) -> dict[str, I64]:

@@ -1,7 +1,8 @@
 """One HTML file that shows a scene without a server or a network: the renderer and the scene's columns inside it.
 
 Modules are entries of an import map, as data addresses; the worker starts from a blob; the scene is the messages of a
-load (docs/view-protocol.md), each packed with gzip and written as base64. Scripts are allowed by their digests.
+load (docs/view-protocol.md), each packed with gzip and written as base64. Where something moves, messages of moments
+follow. Scripts are allowed by their digests.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from ...gaussians.camera import Camera
 from ...gaussians.scene import Scene
 from . import state, wire
 from .changes import Shown
+from .frames import moments
 
 _FOLDER = Path(__file__).parent
 _VIEWER = _FOLDER / "page" / "viewer"
@@ -38,18 +40,27 @@ def page(scene: Scene, camera: Camera, title: str) -> bytes:
         "importmap": json.dumps({"imports": addresses}),
         "module": _renamed((_FOLDER / "exported" / "main.js").read_text("utf-8")),
     }
-    columns = [base64.b64encode(gzip.compress(m, _LEVEL, mtime=0)).decode() for m in wire.load(Shown.first(scene))]
+    shown = Shown.first(scene)
+    blocks = [f'<script type="text/plain" class="columns">{_packed(m)}</script>' for m in wire.load(shown)]
+    blocks += [
+        f'<script type="text/plain" class="moments" data-time="{time:.6g}">{_packed(m)}</script>'
+        for time, m in moments(shown)
+    ]
     about = state.about(scene, camera, title) | {"names": state.names(scene)}
     filled = {
         "title": html.escape(title),
         "scripts": " ".join(_digest(source) for source in scripts.values()),
         "about": json.dumps(about).replace("<", "\\u003c"),
         "worker": (_VIEWER / "sort_worker.js").read_text("utf-8"),
-        "messages": "\n".join(f'<script type="text/plain" class="columns">{text}</script>' for text in columns),
+        "messages": "\n".join(blocks),
         "modules": "\n".join(f'<script type="{kind}">{source}</script>' for kind, source in scripts.items()),
     }
     frame = (_FOLDER / "exported" / "page.html").read_text("utf-8")
     return re.sub(r"\{\{(\w+)\}\}", lambda match: filled[match[1]], frame).encode()
+
+
+def _packed(message: bytes) -> str:
+    return base64.b64encode(gzip.compress(message, _LEVEL, mtime=0)).decode()
 
 
 def _bare(name: str) -> str:

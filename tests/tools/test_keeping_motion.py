@@ -75,6 +75,7 @@ def test_a_removed_thing_takes_its_motion_along(moving: Scene, context: Context)
     assert none.motion is None
 
 
+@pytest.mark.slow
 def test_what_is_new_does_not_move(moving: Scene, context: Context) -> None:
     after, _ = done(moving, context, op="insert", asset="vase")
     assert after.motion is moving.motion and len(after.cloud) > len(moving.cloud)
@@ -85,6 +86,7 @@ def test_what_is_new_does_not_move(moving: Scene, context: Context) -> None:
     assert STATIC_COPY not in receipt.notes and still.motion is moving.motion
 
 
+@pytest.mark.slow
 def test_gaussians_that_a_finish_splits_move_with_their_thing(moving: Scene, context: Context) -> None:
     after, receipt = done(moving, context, op="restyle", target={"text": "chair"}, material="marble")
     assert receipt.added > 0

@@ -27,6 +27,64 @@ function home(viewer) {
   viewer.controls.distance = ahead > 0 ? ahead : norm(add(high, low, -1)) / 4;
 }
 
+// Plays and scrubs through the moments that the file holds: each has the rows that change with time, as they are then.
+function playable(viewer) {
+  const moments = [...document.querySelectorAll('.moments')].map((part) => ({ time: Number(part.dataset.time), text: part.textContent }));
+  if (!moments.length) return;
+  const [bar, input, play, shown] = ['time-bar', 'time', 'play', 'time-told'].map(byId);
+  const stop = moments.at(-1).time;
+  let wanted = 0; // number of the moment that is to be shown
+  let busy = false;
+  let began = null; // {clock, time} since when it plays
+  Object.assign(input, { min: 0, max: moments.length - 1, step: 1, value: 0 });
+  const nearest = (time) => Math.round(((time - moments[0].time) / (stop - moments[0].time)) * (moments.length - 1));
+  const tell = () => {
+    shown.textContent = `${moments[wanted].time.toFixed(1)} of ${stop.toFixed(1)} s`;
+    input.setAttribute('aria-valuetext', `${moments[wanted].time.toFixed(1)} seconds`);
+    play.setAttribute('aria-pressed', String(began !== null));
+    play.textContent = began ? 'Pause' : 'Play';
+  };
+  async function draw() {
+    if (busy) return;
+    busy = true;
+    let last = -1;
+    while (last !== wanted) {
+      last = wanted;
+      const moment = moments[last];
+      moment.rows ??= await unpacked(moment.text);
+      viewer.decode(moment.rows);
+      await viewer.idle();
+    }
+    busy = false;
+    if (began) requestAnimationFrame(step);
+  }
+  function go(number) {
+    wanted = number;
+    input.value = number;
+    tell();
+    draw();
+  }
+  function step() {
+    if (!began) return;
+    const length = stop - moments[0].time;
+    const number = nearest(moments[0].time + ((began.time - moments[0].time + (performance.now() - began.clock) / 1000) % length));
+    if (number === wanted) requestAnimationFrame(step);
+    else go(number);
+  }
+  input.oninput = () => {
+    began = null;
+    go(Number(input.value));
+  };
+  play.onclick = () => {
+    const now = moments[wanted].time;
+    began = began ? null : { clock: performance.now(), time: now >= stop ? moments[0].time : now };
+    tell();
+    step();
+  };
+  bar.hidden = false;
+  tell();
+}
+
 async function show() {
   const viewer = new SplatViewer(byId('canvas'), { makeWorker });
   viewer.near = about.near;
@@ -40,6 +98,7 @@ async function show() {
   }
   await viewer.idle();
   told.textContent = help;
+  playable(viewer);
   byId('home').onclick = () => home(viewer);
   const modes = [...byId('modes').querySelectorAll('[data-mode]')];
   for (const button of modes) {

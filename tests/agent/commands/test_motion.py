@@ -81,6 +81,7 @@ def test_a_static_scene_has_no_times(call: Any, boxes: Scene, tmp_path: Path) ->
     assert call("info", tmp_path / "still.ply", "--json").data["motion"] is None
 
 
+@pytest.mark.slow
 def test_a_sequence_is_written_and_read_as_the_motion_that_it_was(call: Any, slid: Scene, room: Path) -> None:
     folder = room.parent
     out = call("convert", room, folder / "frames" / "%03d.ply", "--time", "0:2", "--fps", 4, "--json")

@@ -18,6 +18,8 @@ from scenewright.agent.view.standalone import page
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.files import save
+from scenewright.gaussians.motion.at import at
+from scenewright.gaussians.motion.motion import Motion, Track
 from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Scene
 
@@ -59,6 +61,40 @@ def test_the_file_shows_the_scene_from_a_disk_and_asks_for_nothing(tmp_path: Pat
     assert shown == title
     assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
     assert wanted.std() > 20 and 10 * np.log10(255**2 / error) > 30
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_moving_scene_plays_and_scrubs_without_a_server(tmp_path: Path) -> None:
+    scene = balls()
+    going = Track.slide(np.arange(1500), [0, 2], [0, 1.0], (1, 0, 0))
+    moving = scene.replace(motion=Motion((going,), stop=2.0))
+    path = tmp_path / "room.html"
+    path.write_bytes(page(moving, CAMERA, "moving"))
+    assert path.read_bytes() == page(moving, CAMERA, "moving")
+    with browser_or_skip() as browser:
+        opened = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT})
+        opened.goto(path.as_uri())
+        opened.wait_for_selector("#time-bar:not([hidden])")
+        assert opened.locator("#time").get_attribute("max") == "40"
+        opened.locator("#play").click()
+        opened.wait_for_selector("#time-told:has-text('0.5 of 2.0')")
+        opened.locator("#time").fill("40")  # the end; it pauses
+        opened.wait_for_selector("#play:has-text('Play')")
+        opened.wait_for_timeout(500)
+        opened.evaluate("viewer.idle()")
+        opened.add_style_tag(content="header, footer, #time-bar { display: none !important }")
+        drawn = _picture(opened)
+    wanted = render(at(moving, 2.0).cloud, CAMERA).to_uint8()
+    error = np.mean((drawn.astype(float) - wanted) ** 2)
+    assert 10 * np.log10(255**2 / error) > 30
+
+
+def test_a_static_scene_has_no_moments_and_a_huge_motion_shows_its_start() -> None:
+    scene = balls(200)
+    assert b'class="moments"' not in page(scene, CAMERA, "a")
+    for_ever = Motion((Track.slide(np.arange(200), [0, 1e6], [0, 1.0], (1, 0, 0)),), stop=1e6)
+    assert b'class="moments"' not in page(scene.replace(motion=for_ever), CAMERA, "a")
 
 
 def _picture(opened: Any) -> np.ndarray:
