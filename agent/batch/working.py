@@ -36,7 +36,9 @@ class Task(NamedTuple):
 def work(task: Task) -> Outcome:
     """Run a command line; whatever it does, an outcome comes back."""
     from ..cli import main
+    from ..terminal.output import terminal
 
+    asked = terminal.as_json, terminal.debug  # of this batch, if it works in its own process
     shutil.rmtree(task.folder, ignore_errors=True)
     Path(task.folder).mkdir(parents=True, exist_ok=True)
     out, err = io.StringIO(), io.StringIO()
@@ -46,6 +48,8 @@ def work(task: Task) -> Outcome:
             main(task.command)
         except SystemExit as end:
             code = end.code if isinstance(end.code, int) else 0 if end.code is None else 4
+        finally:
+            terminal.as_json, terminal.debug = asked
     return Outcome(
         code=code, result=_printed(out.getvalue()), messages=err.getvalue().strip()[-_KEPT:],
         seconds=round(time.perf_counter() - started, 3),

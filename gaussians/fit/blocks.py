@@ -33,7 +33,7 @@ from .held_out_choice import Choice
 from .parameters import Parameters
 from .photographs.photos import MIN_PHOTOS, Photos
 from .quality import measure
-from .train import Schedule, Shot, Trainer, morton_order
+from .train import REFINE_EVERY, Schedule, Shot, Trainer, morton_order
 
 MOST_BLOCKS = 256
 PER_BLOCK = 500_000  # Gaussians of a block at most, if the number of blocks is chosen by itself
@@ -237,7 +237,7 @@ def _block(
         degree=own.degree,
         gain=None,
     )
-    schedule = Schedule(settings.steps, settings.seconds, 0.0, own.degree)
+    schedule = Schedule(settings.steps, settings.seconds, 0.0, own.degree, refine_start=REFINE_EVERY)
     engine = engine_for(resolve_device(settings.device), Parameters.of(around).columns())
     extent = LR_START * photos.extent
     trainer = Trainer(shots, Parameters.of(own), MCMCStrategy(most, rng), extent, schedule, rng, engine)

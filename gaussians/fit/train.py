@@ -56,6 +56,7 @@ class Schedule:
         coarse: share of the training on photographs of half the size.
         degree: final SH degree; bands are added one by one in the first half.
         ssim_lambda: weight of D-SSIM in the loss.
+        refine_start: step of the first refinement; None: `REFINE_START_ITER`.
     """
 
     steps: int | None = None
@@ -63,6 +64,7 @@ class Schedule:
     coarse: float = 0.0
     degree: int = 0
     ssim_lambda: float = 0.2
+    refine_start: int | None = None
 
 
 class Trainer:
@@ -116,7 +118,8 @@ class Trainer:
     def at_refinement(self) -> bool:
         """Whether the last step ended with a refinement: the strategy has no accumulated statistics, so that `state` is
         complete."""
-        return self.steps >= REFINE_START_ITER and self.steps % REFINE_EVERY == 0
+        first = REFINE_START_ITER if self.schedule.refine_start is None else self.schedule.refine_start
+        return self.steps >= first and self.steps % REFINE_EVERY == 0
 
     @property
     def progress(self) -> float:

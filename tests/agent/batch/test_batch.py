@@ -68,6 +68,15 @@ def test_each_job_is_done_once_also_after_a_stop(tmp_path: Path) -> None:
     assert not idle.done
 
 
+def test_jobs_in_this_process_leave_the_output_of_the_batch_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "jobs.jsonl").write_text('{"id": "a", "run": ["info", "nowhere.ply", "--json"]}\n')
+    with pytest.raises(SystemExit):
+        main(["batch", str(tmp_path / "jobs.jsonl"), "-o", str(tmp_path / "out"), "--workers", "0"])
+    assert "1 failed" in (said := capsys.readouterr().out) and not said.startswith("{")
+
+
 def test_the_same_job_is_done_once_and_another_content_is_another_job(tmp_path: Path) -> None:
     scene, out = tmp_path / "a.ply", tmp_path / "out"
     scene.write_bytes(b"one")
