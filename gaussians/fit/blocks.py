@@ -1,11 +1,11 @@
-"""Fit a large capture by blocks: a coarse fit of everything, then each block of space alone, then the blocks together.
+"""Fit a large capture by blocks: a coarse fit of everything, then each block of space alone, twice.
 
-A block is a cell of space. Its Gaussians are trained in a box somewhat wider than the cell, on the parts of the
-photographs that show it, while the coarse fit stands around it and stays as it is. What lies outside its cell is left
-out at the end, so blocks meet where both were trained. The scheme is that of CityGaussian (Liu et al. 2024) with the
-overlap of VastGaussian (Lin et al. 2024).
+A block is a cell of space. Its Gaussians are trained on the parts of the photographs that show it, while all others
+stand around it and stay as they are. In the first round, blocks that were not trained yet are those of the coarse
+fit; in the second, each is trained among blocks that are done, so that they meet without seams. A coarse fit first and
+blocks among it afterwards is the scheme of CityGaussian (Liu et al. 2024).
 
-What a training holds is one block, the coarse fit and the block's parts of the photographs.
+What a training optimises is one block; what it holds besides are the other Gaussians, without gradients and moments.
 """
 
 from __future__ import annotations
@@ -38,8 +38,9 @@ from .train import REFINE_EVERY, Schedule, Shot, Trainer, morton_order
 MOST_BLOCKS = 256
 PER_BLOCK = 500_000  # Gaussians of a block at most, if the number of blocks is chosen by itself
 COARSE = 0.4  # share of the training, and of the Gaussians, for the coarse fit
-OVERLAP = 0.1  # of the cell's sides, by which the box of a block is wider on each side
-LR_START = 0.3  # learning rate of means at the start of a block, as a share of that at the start of the whole
+ROUNDS = (0.35, 0.25)  # shares of the training for each round over the blocks
+LR_START = (0.3, 0.1)  # learning rate of means at the start of a block in each round, over that of the whole's start
+GROW = 0.4  # of a block's Gaussians added per refinement: a block is trained for a shorter time than a whole
 MARGIN = 8  # pixels around a block's part of a photograph
 SMALLEST = 24  # pixels; photographs that show less of a block are not its business
 SEEN = 0.02  # of a block's Gaussians that a photograph must show
@@ -58,12 +59,6 @@ class Cell:
     def holds(self, points: F32) -> NDArray[np.bool_]:
         """`[M]` of points `[M, 3]`; cells of one division hold each point once."""
         return np.asarray(((points >= self.low) & (points < self.high)).all(axis=1))
-
-    def wider(self, points: F32) -> Cell:
-        """The cell with `OVERLAP` of the span of its points on each side."""
-        own = points[self.holds(points)]
-        margin = OVERLAP * (own.max(axis=0) - own.min(axis=0)) if len(own) else np.zeros(3)
-        return Cell(self.low - margin, self.high + margin)
 
 
 def blocks_for(max_gaussians: int) -> int:
@@ -108,7 +103,7 @@ def fit_by_blocks(
     """Train a scene by blocks.
 
     Args:
-        settings: of the whole; the coarse fit gets `COARSE` of its length, each block a share of the rest. Steps are
+        settings: of the whole; the coarse fit gets `COARSE` of its length, the blocks the rest. Steps are
             steps of whole photographs: a block makes as many more as its parts of them are smaller.
         folder: keeps checkpoints and finished blocks, so that a training that was stopped goes on from there. The
             caller deletes it after saving the scene.
@@ -122,19 +117,20 @@ def fit_by_blocks(
     if not 2 <= blocks <= MOST_BLOCKS:
         raise UserError(f"--blocks must be from 2 to {MOST_BLOCKS}, 1 for a whole, or auto, got {blocks}")
     kept = _Kept(folder, f"{fitting.training_id(photos, settings)} in {blocks} blocks")
-    coarse = kept.cloud("coarse", partial(_coarse, photos, settings, _share_of(on_status, 0, COARSE)))
-    means = coarse.cloud.means.numpy()
-    shares = [(cell, float(cell.holds(means).mean())) for cell in cells(means, blocks)]
-    done, first = [coarse], COARSE
-    for i, (cell, share) in enumerate(shares):
-        length = (1 - COARSE) * share
-        status = _share_of(on_status, first, length)
-        done.append(kept.cloud(f"block-{i}", partial(_block, coarse.cloud, cell, share, photos, settings, i, status)))
-        first += length
-    trained = zip(shares, (d.cloud for d in done[1:]), strict=True)
-    cloud = _together([block[torch.from_numpy(cell.holds(block.means.numpy()))] for (cell, _), block in trained])
+    coarse = kept.part("coarse", partial(_coarse, photos, settings, _share_of(on_status, 0, COARSE)))
+    means, division = coarse.cloud.means.numpy(), cells(coarse.cloud.means.numpy(), blocks)
+    held = [cell.holds(means) for cell in division]
+    parts, shares = [coarse.cloud[torch.from_numpy(h)] for h in held], [float(h.mean()) for h in held]
+    steps, seconds, first = coarse.steps, coarse.seconds, COARSE
+    for k, length in enumerate(ROUNDS):
+        for i, share in enumerate(shares):
+            status = _share_of(on_status, first, length * share)
+            train = partial(_block, parts, i, share, photos, settings, k, status)
+            done = kept.part(f"round-{k + 1}-block-{i + 1}", train)
+            parts[i] = done.cloud
+            steps, seconds, first = steps + done.steps, seconds + done.seconds, first + length * share
+    cloud = _together(parts)
     cameras = tuple(sorted((s.camera for s in (*photos.shots, *photos.held_out)), key=lambda camera: camera.name))
-    steps, seconds = sum(d.steps for d in done), sum(d.seconds for d in done)
     return Fitted(Scene(cloud, cameras=cameras), measure(cloud, photos.held_out), steps, seconds, (), coarse.choices)
 
 
@@ -208,40 +204,41 @@ def _coarse(photos: Photos, settings: Settings, on_status: Callable[[Status], No
 
 
 def _block(
-    coarse: GaussianCloud,
-    cell: Cell,
+    parts: Sequence[GaussianCloud],
+    index: int,
     share: float,
     photos: Photos,
     settings: Settings,
-    index: int,
+    lap: int,
     on_status: Callable[[Status], None],
     path: Path | None,
 ) -> _Trained:
-    """One block with its surroundings in its box, trained while the rest of the coarse fit stays as it is.
+    """One block trained while the others stay as they are.
 
     Args:
-        share: of the coarse fit's Gaussians that the cell holds.
+        parts: the blocks as they are by now.
+        share: of the coarse fit's Gaussians that the block got.
+        lap: of `ROUNDS`.
     """
-    means = coarse.means.numpy()
-    inside = cell.wider(means).holds(means)
-    own, around = coarse[torch.from_numpy(inside)], coarse[torch.from_numpy(~inside)]
-    shots = parts_of(photos.shots, means[inside])
+    own = parts[index]
+    shots = parts_of(photos.shots, own.means.numpy())
     if len(shots) < MIN_PHOTOS:
         return _Trained(own, 0, 0.0)
-    rng = np.random.default_rng((settings.seed, index))
-    most = max(len(own), round(len(own) / len(coarse) * settings.max_gaussians))
+    around = _together([part for i, part in enumerate(parts) if i != index])
+    rng = np.random.default_rng((settings.seed, lap, index))
+    length = ROUNDS[lap] * share
     settings = replace(
         settings,
-        seconds=None if settings.seconds is None else (1 - COARSE) * share * settings.seconds,
-        steps=None if settings.steps is None else _steps((1 - COARSE) * share * settings.steps, shots, photos.shots),
+        seconds=None if settings.seconds is None else length * settings.seconds,
+        steps=None if settings.steps is None else _steps(length * settings.steps, shots, photos.shots),
         degree=own.degree,
         gain=None,
     )
     schedule = Schedule(settings.steps, settings.seconds, 0.0, own.degree, refine_start=REFINE_EVERY)
     engine = engine_for(resolve_device(settings.device), Parameters.of(around).columns())
-    extent = LR_START * photos.extent
-    trainer = Trainer(shots, Parameters.of(own), MCMCStrategy(most, rng), extent, schedule, rng, engine)
-    name = f"{fitting.training_id(replace(photos, shots=tuple(shots)), settings)} block {index}"
+    strategy = MCMCStrategy(max(len(own), round(share * settings.max_gaussians)), rng, GROW)
+    trainer = Trainer(shots, Parameters.of(own), strategy, LR_START[lap] * photos.extent, schedule, rng, engine)
+    name = f"{fitting.training_id(replace(photos, shots=tuple(shots)), settings)} round {lap} block {index}"
     record = Record() if path is None else fitting.resume(trainer, path, name)
     unseen = replace(photos, held_out=())  # they show the whole, which is measured at the end
     fitting.train(trainer, unseen, settings, record, None if path is None else (path, name), on_status)
@@ -280,7 +277,7 @@ class _Kept:
             except OSError as error:
                 raise FileError(f"cannot make the folder {folder}: {error.strerror or error}") from error
 
-    def cloud(self, part: str, train: Callable[[Path | None], _Trained]) -> _Trained:
+    def part(self, part: str, train: Callable[[Path | None], _Trained]) -> _Trained:
         """The finished part of that name, or what `train` makes with the path of its checkpoint, which is then kept."""
         if self._folder is None:
             return train(None)

@@ -71,7 +71,7 @@ class CpuEngine:
         self, parameters: Parameters, strategy: Strategy, ssim_lambda: float, around: Columns | None = None
     ) -> None:
         self._parameters, self._strategy, self._ssim_lambda = parameters, strategy, ssim_lambda
-        self._around = around
+        self._around = None if around is None else _Around(around)
 
     def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
         """See `Engine`."""
@@ -80,11 +80,11 @@ class CpuEngine:
     def learn(self, camera: Camera, background: Vec3, slope: Slope, means_lr: float) -> float:
         """See `Engine`."""
         columns = self._parameters.columns()
-        shown = columns if self._around is None else with_around(columns, self._around)
+        shown = columns if self._around is None else self._around.after(columns)
         drawn = gradient.draw(shown, camera, background)
         loss, d_rgb = slope(drawn.rgb)
         found = gradient.draw_backward(drawn, d_rgb, np.zeros(d_rgb.shape[:2], np.float32))
-        found = found if self._around is None else first_rows(found, len(columns[0]))
+        found = found if self._around is None else _first_rows(found, len(columns[0]))
         gradients = parameter_gradients(found, columns[2], columns[3])
         self._strategy.regularise(gradients, columns[2], columns[3])
         self._parameters.step(gradients, means_lr)
@@ -105,18 +105,33 @@ class CpuEngine:
         return self._parameters.degree
 
 
-def with_around(columns: Columns, around: Columns) -> Columns:
-    """Both sets of columns, `around` after the others and with as many SH bands as they have."""
-    bands = columns[4].shape[1]
-    sh = np.zeros((len(around[4]), bands, 3), np.float32)
-    sh[:, : around[4].shape[1]] = around[4][:, :bands]
-    means, quats, scales, opacities, sh = (
-        np.concatenate([own, other]) for own, other in zip(columns, (*around[:4], sh), strict=True)
-    )
-    return means, quats, scales, opacities, sh
+class _Around:
+    """Columns that are drawn after those in training, in one piece of memory with them."""
+
+    def __init__(self, columns: Columns) -> None:
+        self._columns = columns
+        self._joined: Columns | None = None
+
+    def after(self, own: Columns) -> Columns:
+        """Both, with as many SH bands as `own` has. The arrays are overwritten by the next call."""
+        joined = self._joined
+        if joined is None or joined[4].shape != (len(own[0]) + len(self._columns[0]), *own[4].shape[1:]):
+            joined = self._joined = self._made(own)
+        for column, values in zip(joined, own, strict=True):
+            column[: len(values)] = values
+        return joined
+
+    def _made(self, own: Columns) -> Columns:
+        bands, sh = own[4].shape[1], self._columns[4][:, : own[4].shape[1]]
+        padded = np.zeros((len(sh), bands, 3), np.float32)
+        padded[:, : sh.shape[1]] = sh
+        means, quats, scales, opacities, sh = (
+            np.concatenate([mine, other]) for mine, other in zip(own, (*self._columns[:4], padded), strict=True)
+        )
+        return means, quats, scales, opacities, sh
 
 
-def first_rows(found: gradient.Gradients, count: int) -> gradient.Gradients:
+def _first_rows(found: gradient.Gradients, count: int) -> gradient.Gradients:
     """The gradients of the first Gaussians."""
     return gradient.Gradients(**{f.name: getattr(found, f.name)[:count] for f in fields(found)})
 
