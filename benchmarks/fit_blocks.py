@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.errors import FileError
 from ..gaussians.fit import Fitted, Photos, Settings, fit
-from ..gaussians.fit.blocks import Cell, cells, fit_by_blocks
+from ..gaussians.fit.blocks import Cell, cells, fit_by_blocks, points_seen
 from ..gaussians.render import render
 from . import _fits
 from .harness import Metric, Point, Result
@@ -92,10 +92,7 @@ def _seams(cloud: GaussianCloud, photos: Photos, division: list[Cell]) -> float:
     for shot in photos.held_out:
         seen = render(cloud, shot.camera)
         residual = ((seen.rgb.numpy() - shot.colors) ** 2).mean(axis=2, dtype=np.float64)
-        c = shot.camera
-        y, x = np.mgrid[: c.height, : c.width] + 0.5
-        rays = np.stack([(x - c.cx) / c.fx, (y - c.cy) / c.fy, np.ones_like(x)], axis=-1)
-        points = (rays * seen.depth.numpy()[..., None] - c.world_to_camera[:3, 3]) @ c.world_to_camera[:3, :3]
+        points = points_seen(shot.camera, seen.depth.numpy())
         border = _near_a_border(points, division, NEAR * float((high - low).max()))
         near.append(residual[border])
         every.append(residual.ravel())

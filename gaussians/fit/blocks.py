@@ -1,51 +1,52 @@
-"""Fit a large capture by blocks: a coarse fit of everything, then each block of space alone, twice.
+"""Fit a large capture by blocks: everything coarsely first, then each block of space alone, twice.
 
 A block is a cell of space. Its Gaussians are trained on the parts of the photographs that show it, while all others
-stand around it and stay as they are. In the first round, blocks that were not trained yet are those of the coarse
-fit; in the second, each is trained among blocks that are done, so that they meet without seams. A coarse fit first and
-blocks among it afterwards is the scheme of CityGaussian (Liu et al. 2024).
+stand around it and stay as they are. All of it is one training with one schedule: the first part trains everything, the
+others go on from there block by block, with the optimiser's moments; the last goes over blocks that are all done, so
+that they meet without seams. A coarse fit first and blocks among it afterwards is the scheme of CityGaussian (Liu et
+al. 2024).
 
-What a training optimises is one block; what it holds besides are the other Gaussians, without gradients and moments.
+What a step optimises is one block; what it draws besides are the other Gaussians in the same part of the photograph.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 
 from ..camera import Camera
 from ..cloud import GaussianCloud
 from ..errors import FileError, UserError
+from ..render import render
 from ..scene import Scene
-from . import checkpoint, fitting
+from . import checkpoint, fitting, held_out_choice
 from .densify import MCMCStrategy
 from .engine import engine_for, resolve_device
 from .fitting import Fitted, Record, Settings, Status
 from .held_out_choice import Choice
+from .initialize import initial_cloud
 from .parameters import Parameters
 from .photographs.photos import MIN_PHOTOS, Photos
 from .quality import measure
-from .train import REFINE_EVERY, Schedule, Shot, Trainer, morton_order
+from .train import REFINE_STOP, Schedule, Shot, Trainer, morton_order
 
 MOST_BLOCKS = 256
 PER_BLOCK = 500_000  # Gaussians of a block at most, if the number of blocks is chosen by itself
-COARSE = 0.4  # share of the training, and of the Gaussians, for the coarse fit
-ROUNDS = (0.35, 0.25)  # shares of the training for each round over the blocks
-LR_START = (0.3, 0.1)  # learning rate of means at the start of a block in each round, over that of the whole's start
-GROW = 0.4  # of a block's Gaussians added per refinement: a block is trained for a shorter time than a whole
+COARSE = 0.4  # share of the training after which it goes on by blocks
+COARSE_GAUSSIANS = 0.5  # share of the Gaussians that everything together may have until then
+ROUNDS = ((COARSE, REFINE_STOP), (REFINE_STOP, 1.0))  # the parts of the training that go over the blocks
+GROW = 0.25  # of a block's Gaussians added per refinement: there are fewer of them than in a whole training
 MARGIN = 8  # pixels around a block's part of a photograph
 SMALLEST = 24  # pixels; photographs that show less of a block are not its business
-SEEN = 0.02  # of a block's Gaussians that a photograph must show
-TRIM = 0.02  # of a block's Gaussians on each side of a photograph that its part may leave out
-_COLUMNS = ("means", "quats", "scales", "opacities", "sh")
+SEEN = 0.01  # of a photograph that must show a block
+TRIM = 0.01  # of the pixels that show a block, on each side, that its part may leave out
 F32 = NDArray[np.float32]
 
 
@@ -56,9 +57,9 @@ class Cell:
     low: NDArray[np.float64]
     high: NDArray[np.float64]
 
-    def holds(self, points: F32) -> NDArray[np.bool_]:
-        """`[M]` of points `[M, 3]`; cells of one division hold each point once."""
-        return np.asarray(((points >= self.low) & (points < self.high)).all(axis=1))
+    def holds(self, points: NDArray[np.floating]) -> NDArray[np.bool_]:
+        """`[...]` of points `[..., 3]`; cells of one division hold each point once."""
+        return np.asarray(((points >= self.low) & (points < self.high)).all(axis=-1))
 
 
 def blocks_for(max_gaussians: int) -> int:
@@ -103,8 +104,8 @@ def fit_by_blocks(
     """Train a scene by blocks.
 
     Args:
-        settings: of the whole; the coarse fit gets `COARSE` of its length, the blocks the rest. Steps are
-            steps of whole photographs: a block makes as many more as its parts of them are smaller.
+        settings: of the whole; everything together gets `COARSE` of its length, the blocks the rest. Steps are steps
+            of whole photographs: a block makes as many more as its parts of them are smaller.
         folder: keeps checkpoints and finished blocks, so that a training that was stopped goes on from there. The
             caller deletes it after saving the scene.
         on_status: as in `fit`.
@@ -117,35 +118,50 @@ def fit_by_blocks(
     if not 2 <= blocks <= MOST_BLOCKS:
         raise UserError(f"--blocks must be from 2 to {MOST_BLOCKS}, 1 for a whole, or auto, got {blocks}")
     kept = _Kept(folder, f"{fitting.training_id(photos, settings)} in {blocks} blocks")
-    coarse = kept.part("coarse", partial(_coarse, photos, settings, _share_of(on_status, 0, COARSE)))
-    means, division = coarse.cloud.means.numpy(), cells(coarse.cloud.means.numpy(), blocks)
-    held = [cell.holds(means) for cell in division]
-    parts, shares = [coarse.cloud[torch.from_numpy(h)] for h in held], [float(h.mean()) for h in held]
-    steps, seconds, first = coarse.steps, coarse.seconds, COARSE
-    for k, length in enumerate(ROUNDS):
-        for i, share in enumerate(shares):
-            status = _share_of(on_status, first, length * share)
-            train = partial(_block, parts, i, share, photos, settings, k, status)
-            done = kept.part(f"round-{k + 1}-block-{i + 1}", train)
-            parts[i] = done.cloud
-            steps, seconds, first = steps + done.steps, seconds + done.seconds, first + length * share
-    cloud = _together(parts)
+    begun = kept.part("coarse", partial(_coarse, photos, settings, _share_of(on_status, 0, COARSE)))
+    parameters, steps, seconds, choices = begun.parameters, begun.steps, begun.seconds, list[Choice]()
+    division = cells(parameters.means, blocks)
+    shares = [float(cell.holds(parameters.means).mean()) for cell in division]
+    for lap, (first, last) in enumerate(ROUNDS):
+        parts = parts_of(photos.shots, parameters.cloud(), division)
+        for i, (cell, share) in enumerate(zip(division, shares, strict=True)):
+            length = (last - first) * share
+            status = _share_of(on_status, first + (last - first) * sum(shares[:i]), length)
+            inside = cell.holds(parameters.means)
+            own, others = (parameters.only(np.flatnonzero(rows)) for rows in (inside, ~inside))
+            task = partial(_block, own, others, parts[i], share, photos, settings, lap, i, status)
+            done = kept.part(f"round-{lap + 1}-block-{i + 1}", task)
+            parameters = Parameters.joined([others, done.parameters])
+            steps, seconds = steps + done.steps, seconds + done.seconds
+        if last == REFINE_STOP:
+            choices = fitting.reduced(parameters, photos, settings)
+    parameters.take(morton_order(parameters.means))
+    cloud = parameters.cloud()
     cameras = tuple(sorted((s.camera for s in (*photos.shots, *photos.held_out)), key=lambda camera: camera.name))
-    return Fitted(Scene(cloud, cameras=cameras), measure(cloud, photos.held_out), steps, seconds, (), coarse.choices)
+    quality = measure(cloud, photos.held_out)
+    return Fitted(Scene(cloud, cameras=cameras), quality, steps, seconds, (), tuple(choices))
 
 
-def parts_of(shots: tuple[Shot, ...], points: F32) -> list[Shot]:
-    """Those photographs that show a block, cut to where they show it.
-
-    Args:
-        points: `[M, 3]` the block's Gaussians in the coarse fit.
-    """
-    found = []
+def parts_of(shots: Sequence[Shot], cloud: GaussianCloud, division: Sequence[Cell]) -> list[list[Shot]]:
+    """For each cell, those photographs that show it, cut to where they do: where the surface seen lies in the cell."""
+    found: list[list[Shot]] = [[] for _ in division]
     for shot in shots:
-        box = _rectangle(shot.camera, points)
-        if box is not None:
-            found.append(cropped(shot, *box))
+        seen = render(cloud, shot.camera)
+        points = points_seen(shot.camera, seen.depth.numpy())
+        there = seen.alpha.numpy() > 0.5
+        for cell, parts in zip(division, found, strict=True):
+            box = _rectangle(there & cell.holds(points))
+            if box is not None:
+                parts.append(cropped(shot, *box))
     return found
+
+
+def points_seen(camera: Camera, depth: F32) -> NDArray[np.float64]:
+    """World points `[H, W, 3]` at depths `[H, W]` of a camera's pixels."""
+    y, x = np.mgrid[: camera.height, : camera.width] + 0.5
+    rays = np.stack([(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, np.ones_like(x)], axis=-1)
+    pose = camera.world_to_camera
+    return np.asarray((rays * depth[..., None] - pose[:3, 3]) @ pose[:3, :3])
 
 
 def cropped(shot: Shot, left: int, top: int, right: int, bottom: int) -> Shot:
@@ -157,97 +173,101 @@ def cropped(shot: Shot, left: int, top: int, right: int, bottom: int) -> Shot:
     return Shot(camera, np.ascontiguousarray(shot.photo[top:bottom, left:right]))
 
 
-def _rectangle(camera: Camera, points: F32) -> tuple[int, int, int, int] | None:
-    """Left, top, right, bottom of where a camera sees points; None if it sees hardly any of them."""
-    pose = camera.world_to_camera
-    seen = points @ pose[:3, :3].T + pose[:3, 3]
-    seen = seen[seen[:, 2] > 1e-6]
-    x = camera.fx * seen[:, 0] / seen[:, 2] + camera.cx
-    y = camera.fy * seen[:, 1] / seen[:, 2] + camera.cy
-    inside = (x >= 0) & (x < camera.width) & (y >= 0) & (y < camera.height)
-    if inside.sum() < max(1.0, SEEN * len(points)):
+def _rectangle(mask: NDArray[np.bool_]) -> tuple[int, int, int, int] | None:
+    """Left, top, right, bottom around the pixels of a mask `[H, W]`; None if they are few."""
+    height, width = mask.shape
+    y, x = np.nonzero(mask)
+    if len(x) <= SEEN * mask.size:
         return None
-    spans = [np.quantile(v[inside], [TRIM, 1 - TRIM]) for v in (x, y)]
-    left, top = (max(0, math.floor(span[0]) - MARGIN) for span in spans)
-    right = min(camera.width, math.ceil(spans[0][1]) + MARGIN)
-    bottom = min(camera.height, math.ceil(spans[1][1]) + MARGIN)
+    (left, right), (top, bottom) = (np.quantile(v, [TRIM, 1 - TRIM]).astype(int) for v in (x, y))
+    left, top = max(0, left - MARGIN), max(0, top - MARGIN)
+    right, bottom = min(width, right + 1 + MARGIN), min(height, bottom + 1 + MARGIN)
     return None if min(right - left, bottom - top) < SMALLEST else (left, top, right, bottom)
-
-
-def _together(parts: Sequence[GaussianCloud]) -> GaussianCloud:
-    """The parts as one cloud, neighbours in space near in memory, with new ids."""
-    columns = [torch.cat([getattr(part, name) for part in parts]) for name in _COLUMNS]
-    order = torch.from_numpy(morton_order(columns[0].numpy()))
-    return GaussianCloud.create(*(column[order] for column in columns))
 
 
 @dataclass(frozen=True, eq=False)
 class _Trained:
-    """A finished part: its Gaussians, and what it took."""
+    """A finished part of the training, with its optimisers, and what it took."""
 
-    cloud: GaussianCloud
+    parameters: Parameters
     steps: int
     seconds: float
-    choices: tuple[Choice, ...] = ()
 
 
 def _coarse(photos: Photos, settings: Settings, on_status: Callable[[Status], None], path: Path | None) -> _Trained:
-    """The fit of everything, short and with few Gaussians."""
-    short = replace(
-        settings,
-        seconds=None if settings.seconds is None else COARSE * settings.seconds,
-        steps=None if settings.steps is None else max(1, round(COARSE * settings.steps)),
-        max_gaussians=max(1, round(COARSE * settings.max_gaussians)),
-    )
-    done = fitting.fit(photos, short, checkpoint_path=path, on_status=on_status)
-    return _Trained(done.scene.cloud, done.steps, done.seconds, done.choices)
+    """The beginning of the training, of everything."""
+    rng = np.random.default_rng(settings.seed)
+    most = max(1, round(COARSE_GAUSSIANS * settings.max_gaussians))
+    start, strategy = Parameters.of(initial_cloud(photos, most, rng)), MCMCStrategy(most, rng)
+    shorter = replace(settings, **_length(settings, COARSE, photos.shots, photos.shots))
+    return _trained(photos, photos.shots, start, strategy, rng, shorter, (0.0, COARSE), None, on_status, path)
 
 
 def _block(
-    parts: Sequence[GaussianCloud],
-    index: int,
+    own: Parameters,
+    others: Parameters,
+    parts: Sequence[Shot],
     share: float,
     photos: Photos,
     settings: Settings,
     lap: int,
+    index: int,
     on_status: Callable[[Status], None],
     path: Path | None,
 ) -> _Trained:
     """One block trained while the others stay as they are.
 
     Args:
-        parts: the blocks as they are by now.
-        share: of the coarse fit's Gaussians that the block got.
+        parts: of the photographs.
+        share: of the training that the block gets.
         lap: of `ROUNDS`.
     """
-    own = parts[index]
-    shots = parts_of(photos.shots, own.means.numpy())
-    if len(shots) < MIN_PHOTOS:
+    if len(parts) < MIN_PHOTOS or not len(own):
         return _Trained(own, 0, 0.0)
-    around = _together([part for i, part in enumerate(parts) if i != index])
+    first, last = ROUNDS[lap]
     rng = np.random.default_rng((settings.seed, lap, index))
-    length = ROUNDS[lap] * share
-    settings = replace(
-        settings,
-        seconds=None if settings.seconds is None else length * settings.seconds,
-        steps=None if settings.steps is None else _steps(length * settings.steps, shots, photos.shots),
-        degree=own.degree,
-        gain=None,
-    )
-    schedule = Schedule(settings.steps, settings.seconds, 0.0, own.degree, refine_start=REFINE_EVERY)
-    engine = engine_for(resolve_device(settings.device), Parameters.of(around).columns())
     strategy = MCMCStrategy(max(len(own), round(share * settings.max_gaussians)), rng, GROW)
-    trainer = Trainer(shots, Parameters.of(own), strategy, LR_START[lap] * photos.extent, schedule, rng, engine)
-    name = f"{fitting.training_id(replace(photos, shots=tuple(shots)), settings)} round {lap} block {index}"
+    shorter = replace(settings, **_length(settings, (last - first) * share, parts, photos.shots))
+    return _trained(photos, parts, own, strategy, rng, shorter, (first, last), others, on_status, path)
+
+
+def _trained(
+    photos: Photos,
+    shots: Sequence[Shot],
+    start: Parameters,
+    strategy: MCMCStrategy,
+    rng: np.random.Generator,
+    settings: Settings,
+    part: tuple[float, float],
+    others: Parameters | None,
+    on_status: Callable[[Status], None],
+    path: Path | None,
+) -> _Trained:
+    """A part of the training, on some photographs.
+
+    Args:
+        settings: with the length of this part.
+        part: where in the whole training it begins and ends.
+        others: Gaussians that stay as they are.
+        path: of its checkpoint.
+    """
+    degree = held_out_choice.MAX_DEGREE if settings.degree == "auto" else settings.degree
+    schedule = Schedule(settings.steps, settings.seconds, settings.coarse, degree, first=part[0], last=part[1])
+    engine = engine_for(resolve_device(settings.device), None if others is None else others.columns())
+    trainer = Trainer(shots, start, strategy, photos.extent, schedule, rng, engine)
+    name = f"{fitting.training_id(replace(photos, shots=tuple(shots)), settings)} {part}"
     record = Record() if path is None else fitting.resume(trainer, path, name)
-    unseen = replace(photos, held_out=())  # they show the whole, which is measured at the end
-    fitting.train(trainer, unseen, settings, record, None if path is None else (path, name), on_status)
-    return _Trained(trainer.parameters.cloud(), trainer.steps, trainer.seconds)
+    whole = replace(photos, held_out=())  # they show everything, which is measured at the end
+    unreduced = replace(settings, gain=None, degree=degree)
+    fitting.train(trainer, whole, unreduced, record, None if path is None else (path, name), on_status)
+    return _Trained(trainer.parameters, trainer.steps, trainer.seconds)
 
 
-def _steps(whole: float, parts: Sequence[Shot], shots: Sequence[Shot]) -> int:
-    """As many steps with parts of photographs as make as many pixels as `whole` steps with photographs."""
-    return max(1, round(whole * _pixels(shots) / _pixels(parts)))
+def _length(settings: Settings, share: float, parts: Sequence[Shot], shots: Sequence[Shot]) -> dict[str, Any]:
+    """The length of a share of the training; in steps, as many with parts of photographs as make as many pixels."""
+    if settings.steps is None:
+        return {"seconds": share * (settings.seconds or 0.0)}
+    return {"steps": max(1, round(share * settings.steps * _pixels(shots) / _pixels(parts)))}
 
 
 def _pixels(shots: Sequence[Shot]) -> float:
@@ -286,9 +306,8 @@ class _Kept:
         if found is not None:
             return self._read(path, *found)
         done = train(under_way)
-        columns = {name: getattr(done.cloud, name).numpy() for name in _COLUMNS}
         values = {"name": self._name, "steps": done.steps, "seconds": done.seconds}
-        checkpoint.save(path, columns, {**values, "choices": [asdict(c) for c in done.choices]})
+        checkpoint.save(path, done.parameters.state(), values)
         checkpoint.delete(under_way)
         return done
 
@@ -296,8 +315,6 @@ class _Kept:
         if values.get("name") != self._name:
             raise FileError(f"{path} is of another training (other photographs or settings); delete it to start over")
         try:
-            cloud = GaussianCloud.create(*(torch.from_numpy(arrays[name]) for name in _COLUMNS))
-            choices = tuple(Choice(**{**c, "psnr": tuple(c["psnr"])}) for c in values["choices"])
-            return _Trained(cloud, int(values["steps"]), float(values["seconds"]), choices)
+            return _Trained(Parameters.load(arrays), int(values["steps"]), float(values["seconds"]))
         except (KeyError, ValueError, TypeError) as error:
             raise FileError(f"cannot go on from {path} ({error}); delete it to start over") from error

@@ -178,9 +178,9 @@ def train(
         target: path of the checkpoint and identifier of the training; None: no checkpoints.
     """
     reporter, saved = _Reporter(trainer, record, on_status), time.monotonic()
-    while trainer.progress < 1:
+    while trainer.share < 1:
         loss = trainer.step()
-        if trainer.progress * EVALUATIONS >= len(record.curve) + 1:
+        if trainer.share * EVALUATIONS >= len(record.curve) + 1:
             psnr = measure(trainer.parameters.cloud(), photos.held_out[:EVAL_PHOTOS]).psnr
             record.curve.append((trainer.seconds, psnr))
         if trainer.at_refinement:
@@ -193,12 +193,17 @@ def train(
 
 
 def _reduce(trainer: Trainer, photos: Photos, settings: Settings, choices: list[Choice]) -> None:
-    """Drop SH bands and Gaussians, once, after the last refinement; the rest of the training recovers the loss."""
-    if settings.gain is None or trainer.progress < REFINE_STOP or choices:
-        return
-    if settings.degree == "auto":
-        choices += held_out_choice.drop_sh_bands(trainer, photos, settings.gain)
-    choices += held_out_choice.drop_gaussians(trainer, photos, settings.gain)
+    """Reduce once, after the last refinement; the rest of the training recovers the loss."""
+    if trainer.progress >= REFINE_STOP and not choices:
+        choices += reduced(trainer.parameters, photos, settings)
+
+
+def reduced(parameters: Parameters, photos: Photos, settings: Settings) -> list[Choice]:
+    """Drop SH bands and Gaussians, as the settings allow; returns what was tried."""
+    if settings.gain is None:
+        return []
+    choices = held_out_choice.drop_sh_bands(parameters, photos, settings.gain) if settings.degree == "auto" else []
+    return choices + held_out_choice.drop_gaussians(parameters, photos, settings.gain)
 
 
 class _Reporter:
@@ -212,11 +217,11 @@ class _Reporter:
         """To be called after every step with its loss."""
         trainer, curve, now = self._trainer, self._record.curve, time.monotonic()
         self._loss = loss if math.isnan(self._loss) else 0.95 * self._loss + 0.05 * loss
-        if now - self._reported < REPORT_EVERY and trainer.progress < 1:
+        if now - self._reported < REPORT_EVERY and trainer.share < 1:
             return
-        left = trainer.seconds * (1 / max(trainer.progress, 1e-9) - 1)
+        left = trainer.seconds * (1 / max(trainer.share, 1e-9) - 1)
         psnr = curve[-1][1] if curve else math.nan
-        self._on_status(Status(trainer.steps, trainer.progress, self._loss, psnr, len(trainer.parameters), left))
+        self._on_status(Status(trainer.steps, trainer.share, self._loss, psnr, len(trainer.parameters), left))
         self._reported = now
 
 

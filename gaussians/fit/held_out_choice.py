@@ -15,9 +15,9 @@ import torch
 
 from ..cloud import GaussianCloud
 from ..reduce import rank_by_contribution
+from .parameters import Parameters
 from .photographs.photos import Photos
 from .quality import measure
-from .train import Trainer
 
 MIN_GAIN = 0.05  # dB; a band or a tenth of the Gaussians that gains less is dropped
 MAX_DEGREE = 3  # SH degree that is trained before bands are dropped
@@ -43,30 +43,30 @@ class Choice:
     taken: bool
 
 
-def drop_sh_bands(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
+def drop_sh_bands(parameters: Parameters, photos: Photos, gain: float) -> list[Choice]:
     """Drop the highest SH band repeatedly while that costs less than `gain` dB on the held-out photographs."""
-    cloud = trainer.parameters.cloud()
+    cloud = parameters.cloud()
     smaller = ((degree, cloud.with_degree(degree)) for degree in range(cloud.degree, -1, -1))
     choices = _reduce("degree", smaller, photos, gain)
     for choice in choices:
         if choice.taken:
-            trainer.parameters.lower_degree(choice.after)
+            parameters.lower_degree(choice.after)
     return choices
 
 
-def drop_gaussians(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
+def drop_gaussians(parameters: Parameters, photos: Photos, gain: float) -> list[Choice]:
     """Drop the least visible tenth of the Gaussians repeatedly while that costs less than `gain` dB on the held-out
     photographs.
 
     Visibility is measured by `reduce.rank_by_contribution` with cameras of training photographs.
     """
-    cloud = trainer.parameters.cloud()
+    cloud = parameters.cloud()
     views = [photos.shots[i].camera for i in _evenly_spaced(len(photos.shots), MAX_VIEWS)]
     order = rank_by_contribution(cloud, views)
     smaller = ((count, cloud[torch.from_numpy(np.sort(order[:count]))]) for count in _counts(len(order)))
     choices = _reduce("gaussians", smaller, photos, gain)
     kept = min((choice.after for choice in choices if choice.taken), default=len(order))
-    trainer.parameters.take(np.sort(order[:kept]))
+    parameters.take(np.sort(order[:kept]))
     return choices
 
 

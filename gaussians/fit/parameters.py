@@ -6,7 +6,7 @@ multiplied by the scene's extent.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -97,6 +97,26 @@ class Parameters:
         for name, values in self.arrays().items():
             setattr(self, name, np.ascontiguousarray(values[rows]))
             self.optimisers[name].take(rows)
+
+    def only(self, rows: I64) -> Parameters:
+        """A copy of some rows, in the order given."""
+        arrays = {name: np.ascontiguousarray(values[rows]) for name, values in self.arrays().items()}
+        adams = {n: Adam(a.first[rows], a.second[rows], a.steps) for n, a in self.optimisers.items()}
+        return Parameters(**arrays, optimisers=adams)
+
+    @classmethod
+    def joined(cls, parts: Sequence[Parameters]) -> Parameters:
+        """All rows of several, with the bands of the highest degree; changes their degree."""
+        degree = max(part.degree for part in parts)
+        for part in parts:
+            part.raise_degree(degree)
+        arrays = {name: np.concatenate([part.arrays()[name] for part in parts]) for name in parts[0].arrays()}
+        adams = {}
+        for name in parts[0].optimisers:
+            each = [part.optimisers[name] for part in parts]
+            first, second = np.concatenate([a.first for a in each]), np.concatenate([a.second for a in each])
+            adams[name] = Adam(first, second, max(a.steps for a in each))
+        return cls(**arrays, optimisers=adams)
 
     def overwrite(self, rows: I64, source: I64) -> None:
         """Overwrite `rows` with copies of `source`, with fresh optimiser state."""

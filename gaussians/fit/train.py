@@ -56,7 +56,8 @@ class Schedule:
         coarse: share of the training on photographs of half the size.
         degree: final SH degree; bands are added one by one in the first half.
         ssim_lambda: weight of D-SSIM in the loss.
-        refine_start: step of the first refinement; None: `REFINE_START_ITER`.
+        first, last: the part of a whole training that this one is, as shares of it; its learning rate, bands and
+            refinements are those of that part.
     """
 
     steps: int | None = None
@@ -64,7 +65,8 @@ class Schedule:
     coarse: float = 0.0
     degree: int = 0
     ssim_lambda: float = 0.2
-    refine_start: int | None = None
+    first: float = 0.0
+    last: float = 1.0
 
 
 class Trainer:
@@ -118,15 +120,21 @@ class Trainer:
     def at_refinement(self) -> bool:
         """Whether the last step ended with a refinement: the strategy has no accumulated statistics, so that `state` is
         complete."""
-        first = REFINE_START_ITER if self.schedule.refine_start is None else self.schedule.refine_start
+        first = REFINE_START_ITER if self.schedule.first == 0 else REFINE_EVERY
         return self.steps >= first and self.steps % REFINE_EVERY == 0
 
     @property
-    def progress(self) -> float:
-        """Completed share of the training, in [0, 1]."""
+    def share(self) -> float:
+        """Completed share of this training, in [0, 1]."""
         schedule = self.schedule
         share = self.steps / schedule.steps if schedule.steps else self.seconds / (schedule.seconds or math.inf)
         return min(1.0, share)
+
+    @property
+    def progress(self) -> float:
+        """Completed share of the whole training of which this is a part, in [0, 1]."""
+        schedule = self.schedule
+        return schedule.first + (schedule.last - schedule.first) * self.share
 
     def step(self) -> float:
         """Train on one photograph; returns its loss."""

@@ -80,13 +80,24 @@ def test_a_part_of_a_photograph_is_what_its_camera_sees() -> None:
 
 
 def test_parts_show_the_block_and_photographs_that_do_not_are_left_out() -> None:
-    shown = photos().shots
-    end = street().means.numpy()
-    end = end[end[:, 0] > 2]
-    parts = parts_of(shown, end)
-    assert 0 < len(parts) < len(shown)
-    assert {p.camera.name for p in parts} <= {s.camera.name for s in shown if s.camera.position[0] > 0}
-    assert min(p.camera.width for p in parts) < 72  # some are cut
+    shown, cloud = photos().shots, street(2_000)
+    division = cells(cloud.means.numpy(), 4)
+    end = max(range(4), key=lambda i: float(division[i].low[0]))
+    parts = parts_of(shown, cloud, division)
+    assert len(parts) == 4 and 0 < len(parts[end]) < len(shown)
+    assert {p.camera.name for p in parts[end]} <= {s.camera.name for s in shown if s.camera.position[0] > 0}
+    assert min(p.camera.width for p in parts[end]) < 72  # some are cut
+    covered = sum(p.camera.width * p.camera.height for each in parts for p in each)
+    assert covered >= 0.6 * sum(s.camera.width * s.camera.height for s in shown)
+
+
+def test_points_seen_are_where_the_surface_is() -> None:
+    camera, there = photos().shots[0].camera, np.array([-2.4, 0.2, 0.1])
+    x, y, z = camera.world_to_camera[:3, :3] @ there + camera.world_to_camera[:3, 3]
+    row, column = int(camera.fy * y / z + camera.cy), int(camera.fx * x / z + camera.cx)
+    depth = np.full((camera.height, camera.width), z, np.float32)
+    pixel = z / camera.fx
+    assert np.linalg.norm(by_blocks.points_seen(camera, depth)[row, column] - there) <= pixel
 
 
 @pytest.mark.parametrize("engine", [CpuEngine, partial(TorchEngine, device="cpu", draw=differentiable.draw)])
