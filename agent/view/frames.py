@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
-
 import numpy as np
 import torch
 from numpy.typing import NDArray
@@ -11,12 +9,14 @@ from numpy.typing import NDArray
 from ...gaussians.errors import UserError
 from ...gaussians.kept import Kept
 from ...gaussians.motion.at import rows_at
+from ...gaussians.motion.boxes import boxes_over
 from ...gaussians.motion.motion import Motion
 from ...gaussians.rows import rows_of_ids
 from . import wire
 from .changes import Shown
 from .columns import encode, width
 from .slots import EMPTY, I64, ranges_of, slots_of
+from .state import box_json
 
 _BRIDGED = 12  # bytes of a range in the header, about: gaps whose rows take fewer bytes are sent along
 
@@ -24,28 +24,6 @@ _RATE, _LEAST_RATE = 20.0, 2.0  # moments a second in a page of its own; below t
 _MOST_BYTES = 24 << 20  # of all its moments, before they are packed
 
 _ranges: Kept[dict[str, I64]] = Kept(4)
-
-
-_versions: Kept[int] = Kept(4)
-
-
-def span(motion: Motion | None) -> dict[str, float] | None:
-    """The `motion` of a `state` message: when it begins and ends, and a number that tells it from others; None for a
-    static scene."""
-    if motion is None:
-        return None
-    version = _versions.get((motion,), lambda: _version(motion))
-    return {"start": motion.start, "stop": motion.stop, "version": version}
-
-
-def _version(motion: Motion) -> int:
-    """CRC-32 of all that a motion holds."""
-    said = 0
-    for part in (*motion.tracks, *motion.looks, *motion.residuals):
-        for value in vars(part).values():
-            data = np.asarray(value).tobytes() if isinstance(value, np.ndarray | torch.Tensor) else repr(value).encode()
-            said = zlib.crc32(data, said)
-    return said
 
 
 def frame(shown: Shown, time: float, number: int) -> bytes:
@@ -71,7 +49,9 @@ def frame(shown: Shown, time: float, number: int) -> bytes:
         if column == "color" and left_out is not None:
             rows = np.where((rows >= 0) & left_out[rows], EMPTY, rows)
         parts.append(wire.Part(column, ranges, encode(cloud, shown.owner, column, rows)))
-    return wire.message(shown, shown.revision, parts, (0, 1), "frame", {"time": time, "id": number})
+    boxes = {group: box_json(boxes[0]) for group, boxes in boxes_over(shown.scene, (time,)).items()}
+    more = {"time": time, "id": number, "boxes": boxes}
+    return wire.message(shown, shown.revision, parts, (0, 1), "frame", more)
 
 
 def moments(shown: Shown) -> list[tuple[float, bytes]]:

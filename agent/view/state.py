@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import zlib
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -15,18 +16,19 @@ from numpy.typing import NDArray
 from ...gaussians.cloud import NO_GROUP
 from ...gaussians.color import lab_to_rgb
 from ...gaussians.color import name_of as color_name
+from ...gaussians.kept import Kept
 from ...gaussians.render.convention import near_plane
 from ...gaussians.rows import rows_of_ids
 from ...gaussians.world.box import Box
 from ..pictures.named_cameras import framed
 from ..session.pointing import whole_groups
-from .frames import span
 from .slots import ranges_of
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera, Vec3
     from ...gaussians.language.field.language_field import Group, LanguageField
     from ...gaussians.language.query.selection import Candidate
+    from ...gaussians.motion.motion import Motion
     from ...gaussians.scene import Scene
     from ...tools.receipt import Receipt
     from ..session.session import Session
@@ -95,11 +97,33 @@ def camera_json(camera: Camera) -> dict[str, Any]:
     }
 
 
+_versions: Kept[int] = Kept(4)
+
+
+def span(motion: Motion | None) -> dict[str, float] | None:
+    """The `motion` of a `state` message: when it begins and ends, and a number that tells it from others; None for a
+    static scene."""
+    if motion is None:
+        return None
+    version = _versions.get((motion,), lambda: _version(motion))
+    return {"start": motion.start, "stop": motion.stop, "version": version}
+
+
+def _version(motion: Motion) -> int:
+    """CRC-32 of all that a motion holds."""
+    said = 0
+    for part in (*motion.tracks, *motion.looks, *motion.residuals):
+        for value in vars(part).values():
+            data = np.asarray(value).tobytes() if isinstance(value, np.ndarray | torch.Tensor) else repr(value).encode()
+            said = zlib.crc32(data, said)
+    return said
+
+
 @lru_cache(maxsize=2)
 def _things(field: LanguageField) -> list[dict[str, Any]]:
     """The objects and structures that still have Gaussians."""
     return [
-        {"group": g.id, "name": name_of(g), "color": _hex(g.lab), "box": _box(g.box), "rows": g.count}
+        {"group": g.id, "name": name_of(g), "color": _hex(g.lab), "box": box_json(g.box), "rows": g.count}
         for g in field.groups
         if g.count and g.parent < 0
     ]
@@ -126,7 +150,7 @@ def _hex(lab: Vec3) -> str:
     return "#{:02x}{:02x}{:02x}".format(*rgb)
 
 
-def _box(box: Box) -> dict[str, Any]:
+def box_json(box: Box) -> dict[str, Any]:
     """A box with its axes as a unit quaternion wxyz, which turns the world's axes into its own."""
     quat = _quaternion(np.array(box.axes).T)
     return {"centre": list(box.center), "size": list(box.size), "quat": [float(c) for c in quat]}
@@ -165,7 +189,7 @@ def _selection(session: Session, shown: Shown) -> dict[str, Any]:
     text = f"{len(rows):,} Gaussians"
     if field is not None and len(owner) == 1 and owner[0] >= 0:
         text += f" of the {name_of(field.groups[owner[0]])}"
-    return {"groups": [], "ranges": ranges_of(slots).tolist(), "text": text, "box": _box(box)}
+    return {"groups": [], "ranges": ranges_of(slots).tolist(), "text": text, "box": box_json(box)}
 
 
 def _question(session: Session) -> dict[str, Any] | None:

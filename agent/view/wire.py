@@ -71,7 +71,7 @@ def message(
     parts: list[Part],
     chunk: tuple[int, int],
     kind: Literal["columns", "before", "frame"] = "columns",
-    more: Mapping[str, float] | None = None,
+    more: Mapping[str, Any] | None = None,
 ) -> bytes:
     """One binary message, with more fields in its header."""
     told: list[dict[str, Any]] = []

@@ -9,6 +9,7 @@ export function timeline({store, viewer, send}) {
   let start = null; // the message with the rows of the scene as it is stored; kept from the first moment that is asked for
   let asked = null; // {id, time} of the moment that was asked for and has not come
   let wanted = null; // the time that is to be asked for next
+  let boxes = null; // of the things that move, at the time that is shown
   let began = null; // {clock, time} since when it plays
   let version = null; // of the motion of `start`
   const unanswered = new Set(); // numbers of the messages that ask for a moment
@@ -42,6 +43,8 @@ export function timeline({store, viewer, send}) {
     if (!store.state.motion || header.revision !== store.state.revision) return again();
     if (start === null) start = message;
     else viewer.decode(message);
+    boxes = header.boxes;
+    place();
     if (wanted !== null) return ask();
     await viewer.idle();
     requestAnimationFrame(step);
@@ -55,10 +58,19 @@ export function timeline({store, viewer, send}) {
     ask();
   }
 
+  /** Things lie where they are at the time that is shown: handles and the view find them there. */
+  function place() {
+    const {things, playing} = store.state;
+    const elsewhere = (thing) => boxes[thing.group] !== undefined && boxes[thing.group] !== thing.box;
+    if (!boxes || playing || !things.some(elsewhere)) return;
+    store.update({things: things.map((thing) => (elsewhere(thing) ? {...thing, box: boxes[thing.group]} : thing))});
+  }
+
   function leave(anew) {
     if (!anew && start !== null) viewer.decode(start);
     start = null;
     asked = null;
+    boxes = null;
   }
 
   input.addEventListener("input", () => {
@@ -79,6 +91,7 @@ export function timeline({store, viewer, send}) {
     input.step = 0.01;
     if (connection === "ready" && start === null && !asked) again();
   });
+  store.watch(["things", "playing"], place);
   store.watch(["time", "motion"], ({time, motion}) => {
     if (!motion) return;
     const now = Math.min(Math.max(time ?? motion.start, motion.start), motion.stop);

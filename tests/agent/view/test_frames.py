@@ -8,8 +8,9 @@ import pytest
 from scenewright.agent.view import wire
 from scenewright.agent.view.changes import Shown
 from scenewright.agent.view.columns import columns_of, decode, encode, width
-from scenewright.agent.view.frames import frame, span
+from scenewright.agent.view.frames import frame
 from scenewright.agent.view.slots import slots_of
+from scenewright.agent.view.state import box_json, span
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.motion.at import at
 from scenewright.gaussians.motion.motion import without_ids
@@ -41,7 +42,9 @@ def test_a_page_shows_the_scene_at_a_time_and_the_start_again(degree: int) -> No
         assert (header["type"], header["base"], header["revision"]) == ("frame", 5, 5)
         assert (header["time"], header["id"]) == (time, 8)
         take(page, message, degree)
-        there = at(scene, time).cloud
+        there, table = at(scene, time).cloud, at(scene, time).language
+        assert table is not None
+        assert header["boxes"] == {str(g): box_json(table.groups[g].box) for g in (0, 1)}
         slots = shown.slots.slot[np.searchsorted(scene.cloud.ids.numpy(), there.ids.numpy())]
         assert np.array_equal(decode(bytes(page["position"]), "position")["means"][slots], there.means.numpy())
         for column in columns_of(degree):

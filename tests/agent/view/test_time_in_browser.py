@@ -61,6 +61,11 @@ def test_time_plays_scrubs_and_survives_edits(browser: Any, moving_server: Serve
     scrub(page, 3.0)
     last = page.pixels()
     page.picture("time")
+    page.click(page.thing("armchair"))  # where it is at this time
+    page.until("store.state.selection.text === 'armchair'")
+    page.press("Escape")
+    page.until("store.state.selection.text === ''")
+    page.settle()
     assert (np.abs(last - first).max(axis=2) > 60).mean() > 0.005  # the armchair is elsewhere
     scrub(page, 0.0)
     assert np.abs(page.pixels() - first).max() <= 2  # packed positions are those of the load

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
@@ -167,6 +169,25 @@ def test_a_cut_off_motion_is_refused(tmp_path: Path) -> None:
     motion_path(path).write_bytes(whole + b"more")
     with pytest.raises(FileError, match="is damaged"):
         files.load(path)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.tuples(st.integers(0, 10**6), st.integers(0, 255)), min_size=1, max_size=4))
+def test_flipped_bytes_give_a_sound_motion_or_a_refusal(tmp_path: Path, flips: list[tuple[int, int]]) -> None:
+    path = tmp_path / "a.ply"
+    if not path.exists():
+        files.save(bare(moving(0, 60)), path)
+        (tmp_path / "sound").write_bytes(motion_path(path).read_bytes())
+    data = bytearray((tmp_path / "sound").read_bytes())
+    for place, value in flips:
+        data[place % len(data)] = value
+    motion_path(path).write_bytes(bytes(data))
+    try:
+        scene = files.load(path)
+    except FileError as error:
+        assert "motion" in str(error)
+        return
+    assert bool(at(scene, 1.3).cloud.means.isfinite().all())
 
 
 def test_another_version_is_left_out(tmp_path: Path) -> None:
