@@ -18,7 +18,7 @@ from ._motion.fitted import Figures, fitted, small, wanted
 from .harness import Metric, Point, Result
 
 PARTS = ("fit", "frame")
-STEPS, QUICK_STEPS = 4000, 500
+STEPS, QUICK_STEPS = 2500, 500
 WHOLE, INSIDE, PATH, OVERLAP = 28.0, 24.0, 0.02, 0.95  # goals with twelve cameras: dB, dB, metres, share
 RIGS: tuple[Rig, ...] = ("12", "4")
 ABLATED = "toy"  # the room that is fitted as static, with rigid paths, and with residuals
@@ -68,7 +68,7 @@ def _fit(quick: bool) -> _Part:
         metrics,
         points,
         (
-            f"fit: {STEPS} steps each, pictures of 192 x 144; held-out frames are of two other cameras, half of them "
+            f"fit: {STEPS} steps each, pictures of 160 x 120; held-out frames are of two other cameras, half of them "
             "at times between two frames; `inside` is within the true masks of what moves",
             f"the chart is of the room {ABLATED!r} from twelve cameras",
         ),

@@ -29,7 +29,7 @@ from .rooms import moving_room
 F64 = NDArray[np.float64]
 Rig = Literal["12", "4", "1"]  # cameras: twelve or four that stand, one that moves
 
-SIZE = (192, 144)
+SIZE = (160, 120)
 FPS = {"books": 20.0, "ball": 10.0, "fan": 10.0, "toy": 10.0, "door": 5.0, "drawer": 5.0}
 ENDS = {"books": 3.0}  # seconds; nothing happens after it. Others are filmed to the end of the room
 FOV = 62.0  # degrees, vertical

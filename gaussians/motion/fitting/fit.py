@@ -34,7 +34,7 @@ from ..at import at
 from ..motion import Motion, Residual, Track
 from .bodies import Body, Labelled
 from .footage import Footage
-from .seeds import seeds
+from .seeds import gone, halves, seeds
 from .simplify import track_of
 from .start import trainer
 from .tracking import Tracker
@@ -44,8 +44,9 @@ F64 = NDArray[np.float64]
 Detail = Literal["static", "rigid", "residual"]  # the motion that may be fitted: none, paths, and single Gaussians' too
 
 START = 0.3  # share of the training that goes to the scene at its start
-EXPLAINS = 0.85  # of the difference without a body, to which its path must bring the pictures
+EXPLAINS = 0.7  # of the difference without a body, to which its path must bring the pictures
 MOST_BODIES = 12
+ALIKE = 0.01  # of the radius of the cameras: bodies whose paths differ by less, on average, are one
 TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
 MORE = 1.2  # times the Gaussians of the start: greatest number at the end, for what was hidden at the start
 SINGLE = 0.15  # of the steps of all together, that displacements of single Gaussians are trained for
@@ -154,18 +155,31 @@ class _Film:
     def _bodies(self, start: Parameters) -> tuple[Labelled, list[Body], int]:
         """What moves, by the number of its label, and its path."""
         columns, footage = start.columns(), self._footage
-        found = [] if self._detail == "static" else seeds(columns, footage)[:MOST_BODIES]
+        flags = np.zeros((len(start), len(footage.times)), bool)
+        if self._detail != "static":
+            flags = gone(columns, footage)
+        queue = seeds(columns, footage, flags)[:MOST_BODIES]
         still = np.ones(len(start), bool)
-        for rows in found:
+        for rows in queue:
             still[rows] = False
-        labels, bodies = np.zeros(len(start), np.int32), list[Body]()
-        for k, rows in enumerate(found):
+        found, tried = list[tuple[NDArray[np.int64], Body]](), 0
+        while queue:
+            rows = queue.pop(0)
             self._tell(math.nan, 0, START, len(start))
-            tracked = Tracker(columns, rows, still, footage, self._settings.seed + k).track()
+            tracked = Tracker(columns, rows, still, footage, self._settings.seed + tried).track()
+            tried += 1
             if tracked.gain < EXPLAINS:
-                bodies.append(tracked.body)
-                labels[rows] = len(bodies)
-        return Labelled.labelled(start, labels), bodies, len(found)
+                found.append((rows, tracked.body))
+            elif tried < 2 * MOST_BODIES:
+                queue = [*queue, *halves(rows, flags)]
+        labels, bodies = np.zeros(len(start), np.int32), list[Body]()
+        for rows, body in found:
+            same = next((k for k, b in enumerate(bodies) if _alike(b, body, columns[0][rows], footage.radius)), None)
+            if same is None:
+                same = len(bodies)
+                bodies.append(body)
+            labels[rows] = same + 1
+        return Labelled.labelled(start, labels), bodies, tried
 
     def _scene(self, labelled: Labelled, bodies: Sequence[Body], single: Single | None) -> Scene:
         """The scene, rows by body, with tracks of few keys."""
@@ -207,6 +221,16 @@ class _Film:
             self._told = now
             left = now * (1 / max(share, 1e-9) - 1)
             self._on_status(Status(steps, min(share, 1.0), self._loss, math.nan, gaussians, left))
+
+
+def _alike(a: Body, b: Body, means: NDArray[np.float32], radius: float) -> bool:
+    """Whether the path of one body moves the means of another as its own path does, so that both are one."""
+    quats = np.tile([1.0, 0.0, 0.0, 0.0], (len(means), 1)).astype(np.float32)
+    away = [
+        float(np.linalg.norm(a.placed(t, means, quats)[0] - b.placed(t, means, quats)[0], axis=1).mean())
+        for t in range(len(a.offsets))
+    ]
+    return float(np.mean(away)) < ALIKE * radius
 
 
 def _share(joint: Joint, steps: int | None, seconds: float | None) -> float:

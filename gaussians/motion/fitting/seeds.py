@@ -24,8 +24,8 @@ Flags = NDArray[np.bool_]
 SEEN = 0.2  # of the largest weight of a Gaussian in any picture, from which a picture counts as showing it
 GONE = 0.75  # share of a Gaussian's weight on changed pixels, over the pictures that show it, from which it is gone
 FAINT = 0.15  # opacity below which a Gaussian says nothing
-ALIKE = 0.5  # overlap of the times at which two neighbours are gone, from which they are of one thing
-NEAR = 3.0  # times the distance to its third neighbour: as near are Gaussians that touch
+ALIKE = 0.75  # overlap of the times at which two neighbours are gone, from which they are of one thing
+NEAR = 5.0  # pixels, at the distance of the cameras' radius: as near are Gaussians that touch
 LEAST = 12  # Gaussians of the smallest thing
 
 
@@ -64,16 +64,18 @@ def gone(columns: Columns, footage: Footage) -> Flags:
     return np.asarray(opaque[:, None] & (known > 0) & (changed > GONE * total))
 
 
-def seeds(columns: Columns, footage: Footage) -> list[NDArray[np.int64]]:
-    """Rows of the start that may be of one moving thing each, the most evident first."""
-    flags = gone(columns, footage)
+def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.int64]]:
+    """Rows of the start that may be of one moving thing each, the most evident first.
+
+    Args:
+        flags: what `gone` found.
+    """
     rows = np.flatnonzero(flags.sum(axis=1) >= min(2, len(footage.times) - 1))
     if len(rows) < LEAST:
         return []
     means, own = columns[0][rows], flags[rows].astype(np.float32)
-    tree = cKDTree(means)
-    reach, _ = tree.query(means, k=min(4, len(rows)))
-    pairs = tree.query_pairs(NEAR * float(np.median(reach[:, -1])), output_type="ndarray")
+    reach = NEAR * footage.radius / footage.cameras[0].fx
+    pairs = cKDTree(means).query_pairs(reach, output_type="ndarray")
     both = (own[pairs[:, 0]] * own[pairs[:, 1]]).sum(axis=1)
     either = np.maximum(own[pairs[:, 0]], own[pairs[:, 1]]).sum(axis=1)
     pairs = pairs[both >= ALIKE * either]
@@ -81,3 +83,20 @@ def seeds(columns: Columns, footage: Footage) -> list[NDArray[np.int64]]:
     _, labels = connected_components(graph, directed=False)
     found = [rows[labels == k] for k in np.flatnonzero(np.bincount(labels) >= LEAST)]
     return sorted(found, key=lambda r: -float(flags[r].sum()))
+
+
+def halves(rows: NDArray[np.int64], flags: Flags) -> list[NDArray[np.int64]]:
+    """The rows in two parts by the times at which they are gone: what moves, and what it covers meanwhile; none if they
+    are all alike or a part would be too small."""
+    own = flags[rows].astype(np.float32)
+    counts = own.sum(axis=1)
+    middles = np.stack(
+        [own[counts <= np.quantile(counts, 0.3)].mean(axis=0), own[counts >= np.quantile(counts, 0.7)].mean(axis=0)]
+    )
+    nearer = np.zeros(len(rows), np.int64)
+    for _ in range(10):
+        nearer = np.abs(own[:, None] - middles).sum(axis=2).argmin(axis=1)
+        if min(np.bincount(nearer, minlength=2)) < LEAST:
+            return []
+        middles = np.stack([own[nearer == k].mean(axis=0) for k in (0, 1)])
+    return [rows[nearer == k] for k in (1, 0)]

@@ -28,10 +28,13 @@ SAMPLES = 160  # points of a body that candidates are scored by
 CANDIDATES, ROUNDS, ELITE = 300, 4, 24  # of the search at a time
 BLURS = (2.0, 1.2)  # standard deviations of the pictures' blur during the search, pixels: first rounds, last rounds
 CLIP = 0.35  # difference of a colour beyond which it does not matter
+TURN = 1.4  # radians: the largest turn about one of its own axes that is tried from one time to the next
 VIEWS = 6  # cameras that a pose is refined in
 STEPS = 14  # of the refinement at each time
 MARGIN = 10  # pixels around a body that are rendered
 STILL = 0.004  # share of the pixels around a body that may change while it is taken to be at rest
+MATTERS = 0.03  # difference of a colour by which a body is seen
+HOPELESS = 4  # times at which it may be lost from the first on, before it is given up
 LOST = 0.7  # of the difference without the body, above which it was not found and is searched farther away
 
 
@@ -71,6 +74,9 @@ class Tracker:
         self._points = means[some].astype(np.float64) - self.pivot
         self._colors = (self._own[4][some, 0] * 0.28209479177387814 + 0.5).clip(0, 1)
         self._near = [_seen(self._rest, camera) for camera in footage.cameras]
+        _, _, axes = np.linalg.svd((means - self.pivot) * np.sqrt(weight)[:, None], full_matrices=False)
+        around = np.concatenate([np.outer(np.linspace(-TURN, TURN, 28), axis) for axis in axes])
+        self._turns = np.concatenate([np.zeros_like(around), around], axis=1)  # of hinges and fans
         self._blurred: dict[tuple[int, float], F32] = {}
         every = np.concatenate([self._rest[0], means])
         self._low, self._high = np.quantile(every, 0.02, axis=0), np.quantile(every, 0.98, axis=0)
@@ -96,6 +102,8 @@ class Tracker:
                 ratio = self._elsewhere(body, t, ratio)
             found[t] = ratio < LOST
             ratios.append(ratio)
+            if len(ratios) == HOPELESS and not found[1 : t + 1][-HOPELESS:].any():
+                break
             if found[t]:
                 speed = (body.offsets[t] - body.offsets[t - 1]) / step
                 spin = _vector(multiplied(body.quats[t], body.quats[t - 1] * [1, -1, -1, -1])) / step
@@ -123,6 +131,8 @@ class Tracker:
         offset, quat = body.offsets[t].copy(), body.quats[t].copy()
         for k in range(ROUNDS):
             drawn = mean + spread * self._rng.standard_normal((CANDIDATES, 6))
+            if not k:
+                drawn[::2] += 2 * (drawn[::2] - mean)  # half of them three times as far away
             drawn[0] = mean
             if wide and k == 0:
                 places = self._rng.uniform(self._low, self._high, (8 * CANDIDATES, 3))
@@ -130,7 +140,8 @@ class Tracker:
                     [places - self.pivot - offset, 0.5 * self._rng.standard_normal((8 * CANDIDATES, 3))], axis=1
                 )
             if not k:
-                drawn = np.concatenate([drawn, np.r_[body.offsets[t - 1] - offset, 0, 0, 0][None]])
+                stay = np.r_[body.offsets[t - 1] - offset, 0, 0, 0]
+                drawn = np.concatenate([drawn, stay[None], self._turns])
             turns = np.stack([turned(quat, d[3:]) for d in drawn])
             scores = self._scores(turns, offset + drawn[:, :3], t, BLURS[0 if k < ROUNDS // 2 else 1])
             best = drawn[np.argsort(scores, kind="stable")[:ELITE]]
@@ -243,17 +254,16 @@ class Tracker:
         return changed <= STILL * area
 
     def _ratio(self, body: Body, t: int) -> float:
-        """The difference to the pictures with the body, over that without it."""
+        """The difference to the pictures with the body, over that without it, where the body makes a difference."""
         with_it = without = 1e-6
         means, quats = body.placed(t, self._own[0], self._own[1])
         for view in self._views(body, t, np.zeros(3)):
-            both = tuple(np.concatenate([a, b]) for a, b in zip(view.rest, (means, quats, *self._own[2:]), strict=True))
-            for number, columns in enumerate((both, view.rest)):
-                off = gradient.draw(columns, view.camera, (0.0, 0.0, 0.0)).rgb - view.photo
-                if number:
-                    without += float((off**2).sum())
-                else:
-                    with_it += float((off**2).sum())
+            own = (means, quats, *self._own[2:])
+            both = tuple(np.concatenate([a, b]) for a, b in zip(view.rest, own, strict=True))
+            seen, bare = (gradient.draw(columns, view.camera, (0.0, 0.0, 0.0)).rgb for columns in (both, view.rest))
+            matters = np.abs(seen - bare).max(axis=2) > MATTERS
+            with_it += float(((seen - view.photo) ** 2)[matters].sum())
+            without += float(((bare - view.photo) ** 2)[matters].sum())
         return with_it / without
 
 
