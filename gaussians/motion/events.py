@@ -324,6 +324,13 @@ def nearest_time(scene: Scene, group: int, anchor: int, span: Span | None = None
     return time, float(pair.gaps(np.array([time]))[0])
 
 
+def nearest_gap(scene: Scene, group: int, anchor: int) -> tuple[float, float]:
+    """When the surfaces of two groups are nearest, and the gap between them then."""
+    pair = Encounter.of(scene, group, [anchor])
+    time = lowest(pair.gaps, pair.course.start, pair.course.stop)
+    return time, float(pair.gaps(np.array([time]))[0])
+
+
 def is_moving(course: Course, time: float, unit: float = 1.0) -> bool:
     """Whether a group moves at a time."""
     return is_in(movements(course, unit), time)

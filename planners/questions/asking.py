@@ -143,8 +143,8 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
         there = survey if time == timeline.start else timeline.survey_at(time)
         found = _static(moment.words, there)
         answer = found.answer
-        if answer.answer is None:
-            return found
+        if answer.answer is None or (answer.answer == "no" and answer.text.startswith("No. There is no ")):
+            return replace(found, answer=nothing(answer.text.removeprefix("No. ")))  # what is not there is not asked of
         evidence = answer.evidence.model_copy(update={"time": time})
         said = f"At {at(time)}: {answer.text}" if moment.said else _present(answer, survey, timeline)
         found = replace(found, answer=answer.model_copy(update={"text": said[:4000], "evidence": evidence}))

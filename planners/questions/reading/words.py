@@ -47,7 +47,8 @@ _ASKING = re.compile(
     r"estimate|determine|state|specify|identify)(?: for me)?(?= (?:what|which|how|where|who|whether|if|the|a|is|are|"
     r"there|when|why|about|,))"
     r"(?: about)?"
-    r"|^(?:do|would|might|does) (?:you|anyone|anybody) (?:happen to )?(?:know|have any idea(?: of| about)?|have a clue|"
+    r"|^(?:do|would|might|does) (?:you|anyone|anybody) (?:happen to )?(?:know|have any idea(?: of| about)?|have a "
+    r"clue|"
     r"reckon|think|say|guess|remember|recall|mind (?:telling me|checking))(?: that)?\b"
     r"|^(?:have you|you have|got|have|has anyone) (?:got )?any (?:idea|clue|thoughts)(?: of| about| on)?"
     r"|^any (?:idea|clue|chance|guess|thoughts|way)(?: of| about| that| on)?(?: (?:you|i|we) (?:can|"
@@ -99,6 +100,9 @@ _TAGS = re.compile(
     rf"(?: , {_AUX} {_THEM}(?: not)?|(?: ,)? {_AUX} not {_THEM}|(?: ,)? (?:yes|yeah|correct|true or false|yes or no)|"
     r" , (?:right|no)|"
     r"(?<! my)(?<! the)(?<! your)(?<! or)(?<! to)(?<! its)(?<! hand)(?<! left)(?<! far)(?<! a)(?<! on)(?<! 's)"
+    r"(?<! turn)(?<! turns)(?<!turning)(?<! turned)(?<! go)(?<! goes)(?<! move)(?<! moves)(?<! moving)(?<! roll)(?<! "
+    r"rolls)"
+    r"(?<! walk)(?<! walks)(?<! swing)(?<! swings)"
     r"(?<! own)(?<! front)(?<! back)(?<! rear)(?<! ahead)(?<! behind) right)$"
 )
 _HEDGES = re.compile(
@@ -156,7 +160,8 @@ _REORDERED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], 
         (r",? (?:(?:ignoring|not counting|leaving out) the rugs?(?: as furniture)?|leave the rugs? out of it)$", ""),
         (r"^(?:would|might|will|could) there (?:happen to )?be ", "is there "),
         (
-            r"^how (?:high|tall) (is|are) (?!the room|this room)(.+?) from (?:its |the |their )?(?:bottom|base|top) to "
+            r"^how (?:high|tall) (is|are) (?!the room|this room)(.+?) from (?:its |the |their )?(?:bottom|base|top) "
+            r"to "
             r"(?:its |the |their )?(?:top|bottom)$",
             r"how tall \1 \2",
         ),
@@ -190,7 +195,8 @@ _REORDERED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], 
             r"\1 ",
         ),
         (
-            r"^(?:i|we) (?:can|could|do) not (?:see|find|have|spot) ((?:a|an|any) [\w ]+?) ,? ?(?:is|are) there (?:one|"
+            r"^(?:i|we) (?:can|could|do) not (?:see|find|have|spot) ((?:a|an|any) [\w ]+?) ,? ?(?:is|are) there "
+            r"(?:one|"
             r"any|some)"
             r"(?: here| anywhere)?$",
             r"is there \1",

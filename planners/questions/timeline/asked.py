@@ -19,6 +19,7 @@ from .happening import spans_of
 
 STATIC = "Nothing moves in this scene."
 SURE = 0.95
+PLACES = {"first": 0, "second": 1, "third": 2, "fourth": 3, "last": -1}  # in an order of time
 SAME = 0.05  # of the larger: numbers of several things that differ by less are one number
 
 
@@ -71,7 +72,7 @@ class Told:
             Untold: there are fewer.
         """
         every = sorted(((s, b) for b in self.bodies(what) for s in self.spans(b, what)), key=lambda e: e[0])
-        place = {"first": 0, "second": 1, "third": 2, "fourth": 3, "last": -1}[what.nth]
+        place = PLACES[what.nth]
         if not every or place >= len(every):
             raise Untold(f"That happens {len(every)} times only.")
         span, body = every[place]
@@ -262,6 +263,9 @@ def window(when: When | None, told: Told) -> Span | None:
         return None
     if when.kind == "clause":
         return _clause(when, told)
+    if when.kind == "in":  # "how many turns does it make in 2 s", and "is it open in 2 s"
+        counts = told.frame.asks in ("how_far", "how_often", "how_fast", "how_long", "how_many")
+        return (start, when.start) if counts else (when.start, when.start)
     return {
         "at": (when.start, when.start),
         "span": (when.start, when.stop),
@@ -279,6 +283,9 @@ def _clause(when: When, told: Told) -> Span:
     subject = told.frame.what.subject
     for what in happenings(when.clause):
         deed = what.deed
+        if deed is None and what.subject is not None and told.frame.what.deed is not None:
+            deed = told.frame.what.deed  # "after the red one": when that does the same
+            what = replace(what, deed=deed)
         if deed is None:
             continue
         if what.subject is None or (what.subject.last and not told.survey.last):

@@ -156,6 +156,9 @@ class Timeline:
             NotResolved: nothing fits, or several things that all move or all stand still.
         """
         movers = self.movers(survey)
+        if query is not None and query.exclude and is_anything(query):
+            gone = {b.group.id for q in query.exclude for b in self.meant(q, survey)}
+            return tuple(b for b in movers if b.group.id not in gone)
         if query is None or (query.last and not survey.last) or is_anything(query):
             return movers
         if query.last:

@@ -17,7 +17,7 @@ from .bodies import Body, Timeline
 F64 = NDArray[np.float64]
 TURNS = np.radians(20.0)  # a body that turns by less about the vertical while it goes makes no turn
 _TURNING = np.radians(15.0)  # radians a second from which it turns
-AJAR, WIDE = 0.04, 0.97  # of how far it opens: open from the one, wide open from the other
+AJAR, WIDE = 0.02, 0.985  # of how far it opens: open from the one, wide open from the other
 BESIDE = 0.3  # metres: a thing that stops so near to another has reached it
 _CLOSER = 0.1  # metres by which it must have come nearer
 _ABOUT = 1e-6
@@ -35,11 +35,12 @@ def spans_of(deed: Deed, body: Body, others: Sequence[Thing], timeline: Timeline
     """
     kind, moving = deed.kind, list(body.moving)
     if kind in ("move", "start", "stop"):
-        return moving
+        return _going(deed.way, body, timeline) if kind == "move" and deed.way else moving
     if kind == "still":
         return rest(moving, timeline.start, timeline.stop) if moving else [(timeline.start, timeline.stop)]
     if kind == "turn":
-        return turning(body)
+        sign = {"left": 1, "right": -1}.get(deed.way, 0)
+        return [s for s in turning(body) if not sign or sign * events.yawed(body.course, s) > 0]
     if kind == "fall":
         return events.falls(body.course, timeline.unit)
     if kind in ("slows", "speeds_up"):
@@ -71,6 +72,16 @@ def spans_of(deed: Deed, body: Body, others: Sequence[Thing], timeline: Timeline
     if kind == "related":
         return _related(deed.relation, body, others, timeline)
     return None
+
+
+def _going(way: str, body: Body, timeline: Timeline) -> list[Span] | None:
+    """The movements in which a body goes to one side of the viewer, or up; None for a way that needs its own front."""
+    stand = timeline.stand
+    sides = {"left": -stand.right, "right": stand.right, "up": stand.up}
+    if way not in sides:
+        return None
+    far = {s: float(events.displacement(body.course, s) @ sides[way]) for s in body.moving}
+    return [s for s in body.moving if far[s] > 0.3 * float(np.linalg.norm(events.displacement(body.course, s))) > 0]
 
 
 def turning(body: Body) -> list[Span]:

@@ -56,14 +56,17 @@ class AtMoment:
     said: bool = True
 
 
+_ADVERB = re.compile(r"\b(?:still|already|yet) (?=(?:on|in|at|next|near|under|beside|behind|by|above|against)\b)")
 _RELATIVE = re.compile(r"\b(?P<np>the (?:\w+ ){0,2}?(?P<noun>\w+)) (?:that|which|who) (?P<clause>.+)$")
+_PARTICIPLE = re.compile(r"\bthe (moving|rolling|falling|spinning|turning|walking|rotating|sliding) (?!of\b)(\w+)")
+_WHAT_IS = re.compile(r"^(?:and )?(?:what|which|who)(?: one| thing)? (?:is|was|are|were) $")
 
 
 def without_relative(words: tuple[str, ...], survey: Survey, timeline: Timeline) -> tuple[str, ...]:
     """The words with the name of what moves in place of what tells it by its motion: "the book that falls last"."""
-    said = " ".join(words)
+    said = _PARTICIPLE.sub(r"the \2 that is \1", " ".join(words))
     found = _RELATIVE.search(said)
-    if found is None:
+    if found is None or _WHAT_IS.match(said[: found.start()]):
         return words
     clause = found["clause"].split()
     for taken in range(len(clause), 0, -1):
@@ -100,6 +103,7 @@ def moments(words: tuple[str, ...], survey: Survey, timeline: Timeline, asked: A
         found = next(said_in(rest), None)
         if found is not None and found[2].kind not in ("related", "still", "close", "appear"):
             continue  # it asks of motion
+        rest = _ADVERB.sub("", rest)
         if when is None:
             yield AtMoment(rest, (timeline.now,), said=False)
         elif when.kind in ("always", "ever"):

@@ -9,11 +9,11 @@ from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...survey import NotResolved, listed
 from ...telling import evidence as evidence_of
-from ...timeline.asked import Told, Untold, cap, kind, names, number, spoken, verb, within
+from ...timeline.asked import PLACES, Told, Untold, at, cap, kind, names, number, spoken, verb, within
 from ...timeline.bodies import Body
 from .when import moment
 
-_PLACES = {"first": 0, "second": 1, "third": 2, "fourth": 3, "last": -1}
+_MOMENTS = ("at", "in", "start", "end", "middle")
 _TAKES = ("reach", "enter", "leave", "cross", "pass", "approach", "recede", "related")
 
 
@@ -50,6 +50,8 @@ def _which(told: Told) -> Answer | None:
     deed = what.deed
     if deed is None and not (told.frame.rank and what.subject is not None):
         return None
+    if deed is not None and deed.kind == "related" and (told.frame.when is None or told.frame.when.kind in _MOMENTS):
+        return None  # the scene at that time tells it
     said = told.asked.said
     asks_object = re.match(r"(?:what|which)(?: things?| objects?| furniture)? (?:does|do|did|will|is|has)\b", said)
     if deed is not None and deed.kind in _TAKES and what.object is None:
@@ -62,12 +64,23 @@ def _which(told: Told) -> Answer | None:
     found = doing(told)
     if told.frame.rank:
         return _ranked(told, found)
+    if told.frame.when is not None and told.frame.when.conj in ("after", "before") and len(found) > 1:
+        next_one = told.frame.when.conj == "after"  # "which book falls after the red one?"
+        found = [(min if next_one else max)(found, key=lambda f: f[1][0][0])]
     bodies = [b for b, _ in found]
     if not bodies:
         return names([], f"Nothing {verb(told)}{_then(told)}.")
-    text = "; ".join(f"{b.name} {verb(told)} {spoken(s)}" for b, s in found)
+    text = "; ".join(f"{b.name} {verb(told)} {_when(told, s)}" for b, s in found)
     time = told.window()[0] if told.window() is not None else found[0][1][0][0]  # type: ignore[index]
     return names(bodies, f"{cap(text)}.", time, single=True)
+
+
+def _when(told: Told, spans: list[Span]) -> str:
+    """The times of a deed in words; of what starts or stops, each moment."""
+    deed = told.frame.what.deed
+    if deed is not None and (deed.kind in ("start", "stop", "reach", "leave") or deed.phase in ("start", "stop")):
+        return f"at {listed([at(moment(deed, s)) for s in spans])}"
+    return spoken(spans)
 
 
 def _then(told: Told) -> str:
@@ -79,14 +92,14 @@ def _ranked(told: Told, found: list[tuple[Body, list[Span]]]) -> Answer:
     rank, deed = told.frame.rank, told.frame.what.deed
     if not found:
         raise Untold(f"Nothing {verb(told)}{_then(told)}.")
-    if rank in _PLACES:
+    if rank in PLACES:
         ordered = sorted(
             found,
             key=lambda f: moment(deed, f[1][-1 if deed.kind == "stop" else 0]) if deed is not None else f[1][0][0],
         )
-        if _PLACES[rank] >= len(ordered):
+        if PLACES[rank] >= len(ordered):
             raise Untold(f"Only {listed([b.name for b, _ in ordered])} {verb(told)}.")
-        body, spans = ordered[_PLACES[rank]]
+        body, spans = ordered[PLACES[rank]]
         text = "; ".join(f"{b.name} {verb(told)} {spoken(s)}" for b, s in ordered)
         return names([body], f"{cap(text)}.", spans[0][0], single=True)
     by = _speed if rank in ("fastest", "slowest") else _way
@@ -162,6 +175,8 @@ def _still(told: Told) -> Answer:
 def _many(told: Told) -> Answer | None:
     what = told.frame.what
     if what.deed is None:
+        return None
+    if what.deed.kind == "related" and (told.frame.when is None or told.frame.when.kind in _MOMENTS):
         return None
     try:
         found = doing(told)

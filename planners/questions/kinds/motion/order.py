@@ -7,13 +7,14 @@ from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...reading.time.deeds import Deed
 from ...survey import listed
-from ...timeline.asked import Told, Untold, at, cap, evidence, kind, names, spoken, verb, within
+from ...timeline.asked import PLACES, Told, Untold, at, cap, evidence, kind, names, spoken, verb, within
 from ...timeline.bodies import Body
 from ...timeline.happening import openness, spans_of, turning
 from .places import direction
 from .speeds import is_turning
 from .when import moment
 
+_ABOUT = 0.1  # seconds: what happens so near to a time happens at it
 Event = tuple[float, str, Body]
 
 
@@ -24,9 +25,21 @@ def _order(told: Told) -> Answer | None:
     found = sorted((e for b in told.bodies() for e in story(b, told)), key=lambda e: e[0])
     window = told.window()
     if window is not None:
-        found = [e for e in found if window[0] - 1e-3 <= e[0] <= window[1] + 1e-3]
+        found = [e for e in found if window[0] - _ABOUT <= e[0] <= window[1] + _ABOUT]
     if not found:
         raise Untold("Nothing happens then.")
+    if told.frame.rank:
+        place = PLACES.get(told.frame.rank, 0)
+        if place >= len(found):
+            raise Untold(f"Only {len(found)} things happen.")
+        time, said, body = found[place]
+        return Answer(
+            answer=said.removeprefix("the "),
+            answer_type="text",
+            text=f"{cap(said)} at {at(time)}.",
+            confidence=0.85,
+            evidence=evidence([body], time),
+        )
     text = "; ".join(f"at {at(t)} {said}" for t, said, _ in found)
     return Answer(
         answer=tuple(said.removeprefix("the ") for _, said, _ in found),

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
+from ...reading.time.deeds import Deed
 from ...timeline.asked import Told, Untold, agreed, at, cap, during, kind, number, spoken, within
 from ...timeline.bodies import Body
 from ...timeline.happening import bobs, hinged, opened
@@ -39,6 +41,7 @@ _TURNS = re.compile(
     r"turns?|rotations?|revolutions?|revs?|rounds?|spins?|cycles?|rot|rpm|rps|r p m|hz|hertz|deg|degs|degrees?|rad|"
     r"radians?"
 )
+_TOTAL = re.compile(r"\b(?:total|altogether|all together|overall)\b", re.IGNORECASE)
 _BEFORE = 0.02  # seconds
 _SPINS = math.radians(340)  # what turns by more in its place is told in turns, what turns by less in degrees
 
@@ -152,9 +155,30 @@ def _turning(told: Told, body: Body, now: float | None) -> Answer:
 
 
 def _far(told: Told) -> Answer | None:
+    what = told.frame.what
+    if what.deed is None and what.subject is not None and re.search(r"\b(?:opening|angle)\b", told.asked.said):
+        opened_by = replace(told.frame, what=replace(what, deed=Deed("open")))
+        told = replace(told, frame=opened_by)
     if told.frame.what.deed is None:
         return None
+    if told.frame.measure == "nearest":
+        return _nearest(told)
     return agreed(told, lambda body: _far_one(told, body))
+
+
+def _nearest(told: Told) -> Answer | None:
+    """How near a body comes to another thing: the least gap between them."""
+    body, others = told.one(), told.others()
+    gaps = [
+        events.nearest_gap(told.timeline.scene, body.group.id, group)
+        for thing in others
+        for group in told.timeline.groups(thing)
+    ]
+    if not gaps or not body.moving:
+        return None
+    time, gap = min(gaps, key=lambda g: g[1])
+    said = f"at {at(time)}, when it is nearest, {body.name} is away from {told.survey.named(others[0])} by"
+    return _length(told, body, max(gap, 0.0), said, None)
 
 
 def _far_one(told: Told, body: Body) -> Answer:
@@ -166,6 +190,8 @@ def _far_one(told: Told, body: Body) -> Answer:
     if deed.kind == "bob":
         return _length(told, body, bobs(body), f"{body.name} goes up and down by", None)
     window = told.window()
+    if window is not None and window[0] == window[1] and deed.kind in ("is_open", "open"):
+        return _open_at(told, body, window[0])
     found = within(
         told.spans(body) if deed.kind in ("open", "close", "fall", "turn", "move", "cross") else list(body.moving),
         window,
@@ -181,7 +207,7 @@ def _far_one(told: Told, body: Body) -> Answer:
         return _angle(told, body, found, unit)
     slides = body.course.moving is not None and all(t.kind == "slide" for t in body.course.moving.tracks)
     if (deed.kind in ("open", "close", "is_open") and not hinged(body)) or (
-        deed.kind == "move" and slides and window is None
+        deed.kind == "move" and slides and window is None and not _TOTAL.search(told.asked.text)
     ):
         away = float(np.ptp(opened(body, np.array([t for s in found for t in s] or [body.course.start]))))
         away = away or float(opened(body, body.course.grid()).max())
@@ -200,6 +226,20 @@ def _far_one(told: Told, body: Body) -> Answer:
         found = within(list(body.moving), (told.timeline.start, to[0][0]))
     way = sum(events.path_length(body.course, s) for s in found)
     return _length(told, body, way, f"{body.name} moves by", found[0])
+
+
+def _open_at(told: Told, body: Body, time: float) -> Answer:
+    """How far a body is open at a time: degrees of what hangs on hinges, metres of what slides."""
+    away = float(opened(body, np.array([time]))[0])
+    if not hinged(body):
+        return _length(told, body, away, f"at {at(time)} {body.name} is open by", None)
+    return number(
+        math.degrees(away),
+        "deg",
+        f"At {at(time)} {body.name} is open by {math.degrees(away):.0f} degrees.",
+        [body],
+        time,
+    )
 
 
 def _length(told: Told, body: Body, length: float, said: str, span: Span | None) -> Answer:

@@ -9,11 +9,10 @@ from ...answer import Answer
 from ...candidates import is_plural
 from ...reading.time.deeds import Deed
 from ...survey import listed
-from ...timeline.asked import Told, Untold, at, cap, during, kind, number, verb, within
+from ...timeline.asked import PLACES, Told, Untold, at, cap, during, kind, number, verb, within
 from ...timeline.bodies import Body
 
 _ENDS = ("stop",)
-_ORDINALS = {"first": 0, "second": 1, "third": 2, "fourth": 3, "last": -1}
 
 
 def moment(deed: Deed, span: Span) -> float:
@@ -46,7 +45,9 @@ def _when(told: Told) -> Answer | None:
     if len(doing) > 1 and subject is not None and not is_plural(subject) and not told.frame.rank:
         return _several(told, doing)
     events = _events(deed, doing)
-    place = _ORDINALS.get(told.frame.rank, -1 if deed.kind in _ENDS else 0)
+    place = PLACES.get(told.frame.rank, -1 if deed.kind in _ENDS else 0)
+    if told.frame.rank in ("last", "second", "third") and deed.kind == "turn" and len(events) == 1:
+        raise Untold(f"Its turns follow one another without a rest: {_told(told, doing)}.")
     if place >= len(events):
         raise Untold(f"That happens {len(events)} time{'s' if len(events) > 1 else ''} only: {_told(told, doing)}.")
     time, body, _ = events[place]

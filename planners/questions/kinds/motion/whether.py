@@ -21,10 +21,12 @@ def _whether(told: Told) -> Answer | None:
     deed = what.deed
     if deed is None:
         return None
-    if told.frame.other is not None:
+    if told.frame.other is not None and told.frame.asks == "yesno":
         return _before(told)
-    if deed.kind == "related" and (when is None or when.kind in ("at", "start", "end", "middle")):
+    if deed.kind == "related" and (when is None or when.kind in ("at", "in", "start", "end", "middle")):
         return None  # the scene at that time tells it
+    if deed.kind in ("stop", "start") and what.at:
+        return None  # "does it stop at the wall?" is asked of where it is then
     window = told.window()
     bodies = told.bodies()
     if not bodies and (what.subject is None or not what.subject.last):
@@ -62,6 +64,8 @@ def _holds(told: Told, body: Body, window: Span | None, always: bool) -> tuple[b
         return any(
             a - _ROUND <= moment(replace(deed, kind="start"), s) <= b + (_ROUND if a == b else 0) for s in found
         ), found
+    if deed.phase == "half":
+        return any(abs(s[0] - t) < _ROUND for s in found for t in window), found
     inside = within(found, window)
     if deed.kind in ("still", "is_open", "is_closed") and window[0] < window[1]:
         return sum(b - a for a, b in inside) >= (window[1] - window[0]) - _ROUND, found
@@ -85,10 +89,16 @@ def _sentence(told: Told, each: list[tuple[Body, tuple[bool, list[Span]]]], wind
 
 def _either(told: Told) -> Answer | None:
     """ "Is the door open or closed at 2 s?"."""
+    first, second = told.frame.options
     given = _whether(told)
     if given is None or given.answer is None:
         return given
-    first, second = told.frame.options
+    if second != "not":
+        if told.frame.other is None:
+            return None
+        other = _whether(replace(told, frame=replace(told.frame, what=told.frame.other, other=None)))
+        if other is None or other.answer == given.answer:
+            raise Untold(f"It is not one of the two: {given.text.partition(', ')[2]}")
     said = first if given.answer == "yes" else f"not {first}" if second == "not" else second
     text = given.text.partition(", ")[2]
     return given.model_copy(update={"answer": said, "answer_type": "label", "text": cap(f"{said}: {text}")})

@@ -177,18 +177,20 @@ def _patterns() -> tuple[tuple[re.Pattern[str], Deed], ...]:
          rf"over))?|"
          rf"(?:{forms('come', 'go')}) (?:down|falling)(?! to)|(?:{_GO}) downwards?", Deed("fall", way="down")),
         (rf"(?:{forms('make', 'do', 'take')}) (?:its|a|the) (?:fall|drop|tumble)", Deed("fall")),
+        (rf"(?:{_BE} )?(?:in (?:the |mid ?)air|airborne|mid fall|in free fall)", Deed("fall")),
         # up and down, left and right, near and far
         (rf"{forms('bob', 'bounce', 'wobble')}(?: up and down)?|(?:{_GO}) up and down", Deed("bob")),
         (rf"(?:{forms('get', 'come', 'move', 'go', 'roll', 'walk', 'become')}|{_BE}) (?:any )?(?:closer|nearer) (?:to|"
          rf"toward|"
-         rf"towards)|(?:{forms('approach', 'near')})", Deed("approach")),
+         rf"towards)|(?:{forms('approach')})", Deed("approach")),
         (rf"(?:{forms('get', 'come', 'move', 'go', 'roll', 'walk', 'become')}|{_BE}) (?:farther|further|more distant) "
          rf"(?:away )?(?:from|of)|(?:{forms('get', 'move', 'go', 'roll', 'walk')}) away from|(?:{forms('increase')}) "
          rf"{_ITS} distance (?:to|from)", Deed("recede")),
         (rf"(?:{forms('make', 'do', 'take', 'perform')}) (?:its|a|an|the|this)(?: left| right)? (?:turn|corner|curve|"
          rf"bend|"
          r"rotation)|(?:change|changes|changing|changed) (?:its |the )?direction|(?:turn|turns|turned|turning) "
-         r"(?:left|right|around|the corner|to the left|to the right|its direction|direction)", Deed("turn")),
+         r"(?:left|right|around|the corner|to (?:the|its) left|to (?:the|its) right|its direction|direction)",
+         Deed("turn")),
         # open and close
         (rf"(?:{_COME}|{_GO}|pulled|is pulled) (?:all the way )?(?:out|open)(?: of(?= ))?|(?:{forms('open')})(?: up)?|"
          rf"(?:{_TURNS}) open", Deed("open", way="out")),
@@ -201,9 +203,9 @@ def _patterns() -> tuple[tuple[re.Pattern[str], Deed], ...]:
          rf"quicker)|"
          rf"(?:{forms('gain')}) speed", Deed("speeds_up")),
         # places
-        (rf"(?:{forms('leave', 'exit')})|(?:{_GO}|{_COME}|step|steps|comes?) (?:off|out of)(?: of)? (?=\w)|"
+        (rf"(?:{forms('leave', 'exit')})|(?:{_GO}|{_COME}|step|steps|comes?) (?:off|out of)(?= )|"
          rf"(?:{forms('depart')})(?: from)?|(?:{forms('lose')}) (?:the )?contact with|(?:{_STOP}) touching|"
-         rf"(?:{_STOP}) (?:being )?on|{_BE} (?:off|past the end of) (?=the )|(?:{forms('clear')})", Deed("leave")),
+         rf"(?:{_STOP}) (?:being )?on|{_BE} (?:off|past the end of)(?= the )|(?:{forms('clear')})", Deed("leave")),
         (rf"(?:{forms('cross', 'traverse')})|(?:{_GO}|{forms('pass')}) (?:across|over|through|along)", Deed("cross")),
         (rf"(?:{_GO}|{forms('come')}) (?:past|by|right past)|(?:{forms('pass')})(?: (?:by|next to|beside|near|in "
          rf"front of))?",
@@ -228,8 +230,13 @@ def _patterns() -> tuple[tuple[re.Pattern[str], Deed], ...]:
         (rf"(?:{_TURNS})(?: (?:around|round|about))?|(?:{forms('go')}) (?:round|around)|(?:{forms('make', 'do')}) "
          rf"(?:turns|"
          rf"rotations|revolutions)", Deed("turn")),
-        (rf"(?:{_GO})(?: (?:around|about|along|forward|forwards|away|there|anywhere|somewhere))?", Deed("move")),
+        (rf"(?:{_GO}|traveled|traveling)(?: to (?:the|its))? (?:left|right|forwards?|backwards?|up|upwards?)(?= |$)",
+         Deed("move")),
+        (rf"(?:{_GO})(?: (?:around|about|along|away|there|anywhere|somewhere))?", Deed("move")),
         (r"(?:all )?(?:over|finished|done)$", Deed("stop")),
+        (r"(?:switch|switches|turn|turns|go|goes|shut|shuts)(?: itself)? off$", Deed("stop")),
+        (r"(?:switch|switches|turn|turns|come|comes|go|goes) on$", Deed("start")),
+        (r"(?:cover|covers|covered|covering)$", Deed("move")),
         (r"in$", Deed("is_closed")),
         (r"out$", Deed("is_open")),
     ]  # fmt: skip
@@ -242,13 +249,18 @@ _NOUN_ROWS: tuple[tuple[re.Pattern[str], Deed], ...] = tuple(
 )
 
 
+_WAY = re.compile(r"\b(left|right|up|forward|backward)s?(?:wards)?$")
+
+
 def said_in(text: str) -> Iterator[tuple[int, int, Deed]]:
     """The deeds that a text may tell: start, stop and sense; at each place the longest, and earlier rows first."""
     found: list[tuple[int, int, Deed]] = []
     for pattern, deed in _patterns():
         for m in pattern.finditer(text):
             if not any(a <= m.start() < b or a < m.end() <= b for a, b, _ in found):
-                found.append((m.start(), m.end(), Deed(deed.kind, deed.phase, deed.relation, deed.way, m.group())))
+                way = _WAY.search(m.group()) if deed.kind in ("move", "turn") else None
+                said = way.group(1) if way is not None else deed.way
+                found.append((m.start(), m.end(), Deed(deed.kind, deed.phase, deed.relation, said, m.group())))
     yield from sorted(found, key=lambda f: f[0])
 
 

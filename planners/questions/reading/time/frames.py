@@ -18,7 +18,7 @@ from .....gaussians.world import kinds
 from ....grammar.tagging.words import bag
 from .. import noun_phrase, relation_phrases
 from ..noun_phrase import is_color_word
-from .deeds import Deed, as_noun, said_in, verb_words
+from .deeds import Deed, Kind, as_noun, said_in, verb_words
 from .moments import When, clauses, without_time
 
 Asks = Literal[
@@ -57,7 +57,7 @@ class Frame:
         when: of which time, None if nothing is said.
         rank: "first", "last", "second", ..., "fastest", "slowest", "farthest", "longest"; "" if none is said.
         unit: in which unit, as said; "" if none is.
-        measure: "average", "top" or "angular" of a speed; "" if not said.
+        measure: "average", "top" or "angular" of a speed; of a distance "nearest"; "" if not said.
         options: answers to choose from: ("left", "right").
     """
 
@@ -123,6 +123,9 @@ _CUES: tuple[tuple[Asks, re.Pattern[str]], ...] = tuple(
          r"doing)$|"
          r"^(?:describe|explain) (?:the )?(?:motion|movement|path|way|route) of (?P<of>.+)$|^how (?:does|do) "
          r"(?P<how>.+?) move$"),
+        ("order", r"^(?:and )?what (?:is|was) (?P<rest>the (?:very )?(?:first|last|second|third))(?: thing| "
+                  r"event)?(?: that happens| to happen| that takes "
+         r"place)$"),
         ("how_often", r"^(?:and )?(?:how (?:often|many times|frequently)|(?:how many|(?:what is )?the (?:total "
                       r")?number of|what number of) "
          r"(?:full |complete |whole |total |single )?(?:turns?|rotations?|revolutions?|spins?|rounds?|circles?|laps|"
@@ -155,6 +158,9 @@ _CUES: tuple[tuple[Asks, re.Pattern[str]], ...] = tuple(
         ("which_way", r"^(?:and )?(?:in|to|into|toward|towards|on|from)? ?(?:which|what) (?:way|directions?|side)(?= |"
                       r"$)(?P<rest>.*)$|"
          r"^(?:what is |tell me )?the direction (?:of|in which)(?P<of>.*)$"),
+        ("how_far", r"^(?:and )?how (?P<near>close|near) (?:does|do|did|will) (?P<rest>.+ (?:get|come|go|pass|roll|"
+                    r"walk|move)s? (?:to|by|near|past) "
+         r".+)$"),
         ("how_far", rf"^(?:and )?(?:(?:by |to |through |about |over )?(?:from )?(?:how (?:far(?: out| down| up| in| "
                     rf"along| across)?|much distance|much way|much|long a (?:way|path|distance)|"
          rf"large a distance|wide|high|deep|low)|how many (?P<unit>{_LENGTH}|{_ANGLE})|(?:what|which) (?:is the "
@@ -182,7 +188,24 @@ _CUES: tuple[tuple[Asks, re.Pattern[str]], ...] = tuple(
 )  # fmt: skip
 _DOES = next(pattern for asks, pattern in _CUES if asks == "does")
 _SPEED_LAST = re.compile(rf"^(?P<rest>.+?)(?: 's)? (?:(?:its )?{_SPEED}|(?P<unit>{_UNIT}))$")
-_WHEN_LAST = re.compile(r"^(?P<rest>.+?) (?:when|at what time|what time|at which second)$")
+_CUE_LAST = re.compile(
+    rf"^(?P<rest>.+?)(?: ,)? (?P<cue>when(?: exactly)?|at what time|what time|at which second|how far|how long|how "
+    rf"fast|"
+    rf"how many (?:{_LENGTH}|{_ANGLE}|turns|times|seconds|rotations|revolutions)|where|which way|how often)$"
+)
+_TWO_QUESTIONS = re.compile(r"\band (?:when|how|where|what|which|why|does|is|are|do)\b")
+_LATER = re.compile(
+    r"^how (?:long|much time|many seconds|many secs|much later)(?: passes| is it)? after (?P<a>.+?) (?:does|do|did|"
+    r"will|is) (?P<b>.+)$"
+)
+_TOPIC = re.compile(
+    r"^(?P<x>the \w+(?: \w+)?) , (?P<rest>(?:when|how|where|what|which|does|is|at)\b.*)\b(?:it|they)\b(?P<end>.*)$"
+)
+_A_TURN = re.compile(
+    r" (?:for|to make|to complete|to do|to finish|makes?|complete|do) (?P<n>one|a|each|a full|a single|one full|"
+    r"every) "
+    r"(?:turn|rotation|revolution|spin|round)\b"
+)
 _ASKING = re.compile(
     r"(?:and )?(?:how|what|which|when|where|who|why|in what|in which|at what|at which|list|name|count|tell|give|"
     r"show)\b"
@@ -208,7 +231,8 @@ _OPTIONS = re.compile(
     r"anticlockwise|towards me|away from me|toward me|sideways|away|straight)(?:wards?)?$"
 )
 _STATE_WORDS = (
-    r"(?:open|closed|shut|moving|still|standing still|at rest|running|on|off|in|out|stopped|turning|"
+    r"(?:opening|closing|falling|sliding|waiting|fall|stay|move|stop|close|start|open|closed|shut|moving|still|"
+    r"standing still|at rest|running|on|off|in|out|stopped|turning|"
     r"spinning|rolling|walking)"
 )
 _STATES_OR = re.compile(
@@ -220,9 +244,10 @@ _FILL = bag(
     "took taking use uses used "
     "there which that to of for in by with then actually exactly immediately really already even also too whole here "
     "itself again "
-    "straight ever just total seconds second i we you and so please , it's its own long way happen happens spend "
+    "ever just total seconds second i we you and so please , it's its own long way complete completes completed "
+    "perform performs performed happen happens spend "
     "spends keep keeps "
-    "the a this scene about amount completely fully slowly quickly suddenly finally while entire"
+    "the a this scene about amount completely fully finally while entire"
 )
 _PRONOUN = bag("it they them that this he she itself one")
 _PLACES = re.compile(
@@ -238,9 +263,32 @@ _STATE = re.compile(
     r"behind|above|over|against|"
     r"in|close to|between|left of|right of|to the left of|to the right of) (?P<b>(?:the|a|an|its|my|it) .+|it)$"
 )
-_STATES = {"open": "is_open", "opened": "is_open", "closed": "is_closed", "shut": "is_closed"}
+_STATES: dict[str, Kind] = {"open": "is_open", "opened": "is_open", "closed": "is_closed", "shut": "is_closed"}
 _NTH = r"(?:first|second|third|fourth|last)"
 _ORDINAL_PAIR = re.compile(rf"^(?:the )?(?P<a>{_NTH}) and (?:the )?(?P<b>{_NTH}) (?P<rest>.+)$")
+_STILL_AT = re.compile(r"\bstill (?:on|in|at|next|near|under|beside|behind|by|above|against)\b")
+_FROM_TO = re.compile(r"^(?P<x>.*?) ?(?:takes?|needs?|get|to get|to go)? ?from (?P<a>.+) to (?P<b>.+)$")
+# What a movement with a place is: "roll off the rug", "walk to the bed"; with another preposition it is not read.
+_BY = ("at", "in", "on", "next to", "near", "beside", "by", "in front of", "against", "close to")
+_WITH_PLACE: dict[str, Kind] = {
+    "to": "reach",
+    "into": "reach",
+    "against": "reach",
+    "toward": "approach",
+    "towards": "approach",
+    "from": "leave",
+    "off": "leave",
+    "over": "cross",
+    "across": "cross",
+    "through": "cross",
+    "along": "cross",
+    "past": "pass",
+    "by": "pass",
+    "onto": "enter",
+    "on to": "enter",
+    "on": "cross",
+}
+_SIDES = {"under": "under", "underneath": "under", "behind": "behind", "in front of": "in_front_of", "inside": "inside"}
 _TAKES = ("reach", "enter", "leave", "cross", "pass", "approach", "recede")
 
 
@@ -256,7 +304,16 @@ def frames(words: tuple[str, ...]) -> tuple[Frame, ...]:
 
 
 def _frames(said: str) -> Iterator[Frame]:
-    rest, unit = _without_unit(said)
+    if _TWO_QUESTIONS.search(said):
+        return
+    if found := _LATER.match(said):
+        for b in happenings(found["b"]):
+            a = _short(found["a"], b)
+            if a is not None and b.deed is not None:
+                yield Frame("between", a, b)
+    if found := _TOPIC.match(said):
+        said = f"{found['rest']}{found['x']}{found['end']}"
+    rest, unit = _without_unit(_A_TURN.sub(" turn", said))
     yield from _speeds(rest, unit)
     if unit:
         yield from _speeds(said, "")
@@ -274,11 +331,13 @@ def _frames(said: str) -> Iterator[Frame]:
             kind = groups.get("kind") or groups.get("kind2") or ""
             named = groups.get("unit") or unit or ("degrees" if groups.get("angle") == "angle" else "")
             start = Frame(asks, Happening(None), unit=named, measure=_measure(kind))
+            if groups.get("near"):
+                start = replace(start, measure="nearest")
             if groups.get("later") or groups.get("more"):
                 start = replace(start, rank=groups.get("later") or groups.get("more") or "")
             yield from _filled(start, inner)
-    if found := _WHEN_LAST.match(rest):
-        yield from _filled(Frame("when", Happening(None), unit=unit), found["rest"])
+    if not _ASKING.match(rest) and (found := _CUE_LAST.match(rest)):
+        yield from _frames(f"{found['cue']} {found['rest']}")
     if not unit and not _ASKING.match(said):
         yield from _filled(Frame("yesno", Happening(None)), rest)
 
@@ -302,14 +361,20 @@ def _filled(start: Frame, said: str) -> Iterator[Frame]:
         )
         return
     if start.asks == "yesno" and (found := _STATES_OR.search(said)):
-        either = (found["a"], found["b"])
-        for frame in _filled(
-            replace(start, options=either), f"{said[: found.start()]} {found['a']}{said[found.end() :]}"
-        ):
-            yield replace(frame, asks="either")
+        yield from _either(start, said, found)
         return
     for when, rest in _timed(said):
         yield from _told(replace(start, when=when), rest)
+
+
+def _either(start: Frame, said: str, found: re.Match[str]) -> Iterator[Frame]:
+    """A choice between two states or deeds: "is the door open or closed at 2 s"."""
+    a, b = found["a"], found["b"]
+    before, after = said[: found.start()], said[found.end() :]
+    second = list(_filled(start, f"{before} {b}{after}")) if b != "not" else []
+    for frame in _filled(replace(start, options=(a, b)), f"{before} {a}{after}"):
+        other = next((f.what for f in second if f.when == frame.when and f.what.deed is not None), None)
+        yield replace(frame, asks="either", other=other)
 
 
 def _timed(said: str) -> Iterator[tuple[When | None, str]]:
@@ -336,7 +401,7 @@ def _told(start: Frame, said: str) -> Iterator[Frame]:
         return
     if asks == "yesno" and start.when is not None and start.when.conj in ("before", "after"):
         yield from _compared(start, said)
-    if asks in ("which", "when", "yesno", "how_fast", "how_far", "how_many", "how_long", "does") and (
+    if asks in ("which", "when", "yesno", "order", "how_fast", "how_far", "how_many", "how_long", "does") and (
         found := _RANK.search(said)
     ):
         word = _RANKED.get(found["r"], found["r"])
@@ -401,8 +466,9 @@ def happenings(said: str) -> Iterator[Happening]:
     said = re.sub(r"(?: ,)* +", " ", said).strip(" ,")
     said = re.sub(r" (?:here )?in (?:the |this )?room$", "", said)
     found = list(said_in(said))
-    if len(found) > 1:  # "is the fan still turning": an adverb
-        found = [f for f in found if not (f[2].kind == "still" and f[2].verb == "still")]
+    if len(found) > 1 or _STILL_AT.search(said):  # "is the fan still turning", "is it still on the desk": an adverb
+        found = [f for f in found if f[2].verb.split()[-1] != "still"]
+        said = re.sub(r"\bstill (?=(?:on|in|at|next|near|under|beside|behind|by|above|against)\b)", "", said)
     for a, b, deed in found if len(found) == 1 else ():
         yield from _around(deed, said[:a].strip(" ,"), said[b:].strip(" ,"))
     if state := _STATE.match(_stripped(said, ends=False)):
@@ -419,6 +485,10 @@ def happenings(said: str) -> Iterator[Happening]:
         )
         if thing is not None:
             yield Happening(Deed("still" if said.endswith("off") else "move", verb="on"), thing)
+    if not found and (way := _FROM_TO.match(said)) is not None:
+        goal, origin = _thing(way["b"]), _thing(way["a"])
+        if goal is not None and origin is not None:
+            yield Happening(Deed("reach", verb="reach"), _thing(_stripped(way["x"])), goal)
     bare = _stripped(said)
     if not bare and not found:
         yield Happening(None)
@@ -448,8 +518,9 @@ def _around(deed: Deed, before: str, after: str) -> Iterator[Happening]:
     subject = _subject(before)
     if subject is False:
         return
-    if re.match(r"(?:is|are|was|were|be|stay|stays|remain|remains)\b", before) and deed.verb in _STATES:
-        deed = replace(deed, kind=_STATES[deed.verb], way="")  # type: ignore[arg-type]
+    state = _STATES.get(deed.verb.removesuffix(" again"))
+    if state is not None and re.match(r"(?:is|are|was|were|be|stay|stays|remain|remains)\b", before):
+        deed = replace(deed, kind=state, way="")
     away = re.match(r"^from (?P<a>.+?) (?:to|until|up to) (?P<b>.+)$", after)
     if away is not None and (goal := _thing(away["b"])) is not None and _thing(away["a"]) is not None:
         yield Happening(deed, subject, goal, "to")
@@ -463,12 +534,42 @@ def _around(deed: Deed, before: str, after: str) -> Iterator[Happening]:
             yield Happening(deed, subject)
         return
     other = _thing(rest)
+    if other is None and subject is None and not at:
+        yield from _two_behind(deed, rest)
     if other is None:
         return
     if subject is None and deed.kind not in _TAKES and not at:
         yield Happening(deed, other)  # "when stops the fan"
         return
-    yield Happening(deed, subject, other, at)
+    yield from _placed(deed, subject, other, at)
+
+
+def _two_behind(deed: Deed, rest: str) -> Iterator[Happening]:
+    """ "When reaches the robot the bed?": both things behind the verb."""
+    for m in re.finditer(r" (?=(?:the|a|an|my|its) )", rest):
+        first, second = _thing(rest[: m.start()]), _thing(rest[m.end() :])
+        if first is not None and second is not None and deed.kind in _TAKES:
+            yield Happening(deed, first, second)
+
+
+def _placed(deed: Deed, subject: Query | None, other: Query, at: str) -> Iterator[Happening]:
+    """A deed with a place or a thing: what it means together with the preposition."""
+    if at in ("", "with") or deed.kind in _TAKES or deed.kind in ("land", "nearest", "farthest"):
+        yield Happening(deed, subject, other, at)
+    elif at == "by" and subject is None:
+        yield Happening(deed, other)  # "the way travelled by the drawer"
+    elif deed.kind == "move" and not deed.phase and at in _WITH_PLACE:
+        yield Happening(replace(deed, kind=_WITH_PLACE[at]), subject, other, at)
+    elif deed.kind == "move" and not deed.phase and at in _SIDES:
+        yield Happening(Deed("related", relation=_SIDES[at], verb=at), subject, other)
+    elif deed.kind == "fall" and at in ("on", "onto", "on to", "to", "into"):
+        yield Happening(replace(deed, kind="land"), subject, other, at)
+    elif deed.kind == "fall" and at in ("from", "off", "of"):
+        yield Happening(deed, subject)
+    elif deed.kind == "start" and at in ("from", "at", "next to", "near", "beside"):
+        yield Happening(deed, subject, None, at)
+    elif deed.kind == "stop" and at in _BY:
+        yield Happening(deed, subject, other, at)
 
 
 def _subject(before: str) -> Query | Literal[False] | None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-Kind = Literal["at", "span", "after", "last", "start", "end", "middle", "always", "ever", "clause"]
+Kind = Literal["at", "span", "in", "after", "last", "start", "end", "middle", "always", "ever", "clause"]
 
 _NUMBERS = "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen"
 _ONES = {word: float(i) for i, word in enumerate(_NUMBERS.split())}
@@ -32,8 +32,8 @@ class When:
     """A time or a span of time, as said.
 
     Attributes:
-        kind: "at" `start`; a "span" from `start` to `stop`; "after" `start`; the "last" `start` seconds; the "start",
-            "middle" or "end" of the scene; "always" or "ever" in it; a "clause".
+        kind: "at" `start`; a "span" from `start` to `stop`; "in" `start` seconds; "after" `start`; the "last" `start`
+            seconds; the "start", "middle" or "end" of the scene; "always" or "ever" in it; a "clause".
         start, stop: seconds.
         conj: of a clause: "when", "while", "before", "after" or "until".
         clause: its words behind the conjunction.
@@ -100,6 +100,7 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
          rf"(?: {SECONDS})(?: mark)?(?: in)?{_OF_CLIP}(?= |$)", _at),
         (rf"\b(?:at|on|in)(?: exactly| about| around| the| time)* (?:second|t =|t|sec) {_A}{_OF_CLIP}(?= |$)", _at),
         (rf"\b(?:at|@)(?: exactly| about| around| time)* {_A}(?= ?,|$)", _at),
+        (rf"\bin {_A} {SECONDS}(?= |$)", lambda m: When("in", seconds(m["a"]))),
         (rf"\bt = {_A}(?: {SECONDS})?(?= |$)", _at),
         (rf"\b{_A} {SECONDS} (?:in|into it|into {_CLIP}|after the (?:start|beginning){_OF_CLIP}|later)(?= |$)", _at),
         (rf"\bat (?:the )?(?:half ?way(?: point| mark)?|midpoint|middle){_OF_CLIP}(?= |$)|"
