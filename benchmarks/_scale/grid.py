@@ -51,7 +51,7 @@ class Grid:
     @property
     def special(self) -> int:
         """Number of the room that is different: one in the middle."""
-        return self.side // 2 * self.side + self.side // 2 if self.count > 2 else 0
+        return min(self.side // 2 * self.side + self.side // 2, self.count - 1)
 
     @property
     def rows(self) -> int:
