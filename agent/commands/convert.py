@@ -79,8 +79,11 @@ def command(
     A scene with motion keeps it, in a file beside OUT. With --time it is written as it is at that time, or as one file
     for each time of a range; a sequence of files of the same Gaussians ('frames/*.ply' or frames/%04d.ply) becomes a
     scene with motion.
+
+    A scene in tiles is written to a .ply as a stream, without loss, if nothing else is asked for.
     """
     from ...gaussians.files import writer
+    from ...gaussians.tiles.store import is_tiles
     from ..output_files import refuse_existing
     from ..sequences import is_pattern
     from ..streaming import HELD_OUT, is_streamed, write_levels
@@ -93,6 +96,10 @@ def command(
     if not streamed:
         writer(output)  # raises if the suffix belongs to no format
         _refuse_levels(output, {"--levels": levels, "--chunk": chunk})
+    changed = any(value is not None for value in (sh_degree, max_gaussians, crop, crop_sphere, at_time, fps, views))
+    if is_tiles(scene) and output.suffix == ".ply" and ".compressed" not in output.suffixes and not changed:
+        _stream(scene, output, force)
+        return
     if views is None:
         views = HELD_OUT if streamed else VIEWS
     box, ball = _numbers(crop, 6, "--crop"), _numbers(crop_sphere, 4, "--crop-sphere")
@@ -116,6 +123,20 @@ def command(
     done.measure(cut, smaller, cameras)
     for note in done.notes:
         terminal.say(f"note: {note}")
+    terminal.result(done.text(), done.data())
+
+
+def _stream(scene: Path, output: Path, force: bool) -> None:
+    """Write a scene in tiles to a .ply, tile by tile."""
+    from ...gaussians.tiles.exporting import write_ply
+    from ...gaussians.tiles.store import Tiles
+
+    start = time.perf_counter()
+    tiles, size = Tiles.open(scene), _size(scene)
+    write_ply(tiles, output, force, terminal.progress)
+    terminal.clear()
+    counts = (len(tiles), size), (len(tiles), _size(output))
+    done = _Report(output, "tiles", *counts, (0.0, time.perf_counter() - start))
     terminal.result(done.text(), done.data())
 
 

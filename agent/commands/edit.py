@@ -173,6 +173,7 @@ def command(
         reference_width,
         harmony,
         dial,
+        tiled=True,
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)

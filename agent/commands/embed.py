@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..options import Capture, Debug, Effort, Encoder, Force, Json, Masks, Scale, SceneFile, Up
 from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import terminal
+
+if TYPE_CHECKING:
+    from ...gaussians.scene import Scene
 
 
 def command(
@@ -37,7 +42,7 @@ def command(
     from ...gaussians.language import masks as maskers
     from ...gaussians.language.field.embed import embed
     from ...gaussians.language.field.group_table import renamed
-    from ...gaussians.language.field.store import load_field, mismatch, save_field
+    from ...gaussians.language.field.store import load_field, mismatch
     from ..pictures.named_cameras import with_frame
     from ..terminal.thing_names import describe_things
 
@@ -66,7 +71,7 @@ def command(
         embedded = renamed(embedded, chosen)
         language = embedded.language
         assert language is not None
-    path = None if known and not other else save_field(embedded, scene)
+    path = None if known and not other else _saved(embedded, scene)
     things = [
         {"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "gaussians": g.count}
         for g in language.objects()
@@ -89,3 +94,15 @@ def command(
     text = "\n".join([f"{scene}: {done}", describe_things(language.objects()), *language.notes])
     terminal.result(text, data | reported(dial))
     tell(dial)
+
+
+def _saved(embedded: Scene, path: Path) -> Path:
+    """Save the field of a scene beside its file, or in its folder if that holds tiles; returns where it is."""
+    from ...gaussians.language.field.store import save_field
+    from ...gaussians.tiles import changing
+    from ...gaussians.tiles.store import Tiles, is_tiles
+
+    if not is_tiles(path):
+        return save_field(embedded, path)
+    changing.embed(Tiles.open(path), embedded, "embed")
+    return path

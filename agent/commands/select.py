@@ -76,7 +76,7 @@ def command(
     if save is not None:
         _check_save(save, batch is not None, force)
     changes = SelectionChanges(_steps(grow, shrink, invert), explain)
-    session, _ = open_session(SessionOptions(scene, planner, encoder, view, vlm=vlm, dial=dial))
+    session, _ = open_session(SessionOptions(scene, planner, encoder, view, vlm=vlm, dial=dial, tiled=True))
     if batch is None:
         _one(session, str(text), changes, _Files(targets[0], save, force))
         return

@@ -44,6 +44,7 @@ class SessionOptions:
         reference_width: metres that each of them shows from left to right, or None.
         harmony: fit what is put into the scene to its light, and let it cast shadows.
         dial: chooses settings of the session, or None.
+        tiled: read a scene in tiles by windows and edit it where it lies; else it is read whole.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
 
@@ -70,6 +71,7 @@ class SessionOptions:
     reference_width: float | None = None
     harmony: bool = True
     dial: Dial | None = None
+    tiled: bool = False
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -90,7 +92,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
     startup.end()
     photographs = own_references(options.references, options.reference_width)  # a bad file is told first
     make, encoder, had_field = (
-        _on_tiles(Tiles.open(options.path), options) if is_tiles(options.path) else _on_file(options)
+        _on_tiles(Tiles.open(options.path), options) if options.tiled and is_tiles(options.path) else _on_file(options)
     )
     session = make(
         planner=options.planner,

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import ScenewrightError, UserError
@@ -26,7 +27,9 @@ from .result import Result
 from .session import Session
 
 if TYPE_CHECKING:
+    from ...gaussians.language.query.explain import Explanation
     from ...planners.plan import EditPlan
+    from ...planners.questions.survey import Survey
 
 OF_THE_TARGET = frozenset({"select", "recolor", "opacity"})  # operations that look at their target alone
 NEARBY = frozenset({"delete"})  # operations that give the same bytes in a window with what is around the target
@@ -61,7 +64,8 @@ class TiledSession(Session):
         language = self.scene.language
         if language is None:
             raise UserError(
-                "the things of these tiles have no names: run `scenewright embed` on the files, then tile them again"
+                "the things of these tiles have no names: run `scenewright embed` on the folder if it fits into "
+                "memory, else on the files, and tile them again"
             )
         if language.encoder != self.encoder.fingerprint:
             made_by = language.encoder if language.making is None else language.making.encoder
@@ -79,6 +83,32 @@ class TiledSession(Session):
         query = self._planner.query(phrase)
         self._look(self._taken((query,), ()))
         return super().select(query)
+
+    def explain(self, phrase: str | Query) -> Explanation:
+        """See `Session.explain`."""
+        query = self._planner.query(phrase)
+        self._look(self._taken((query,), ()))
+        return super().explain(query)
+
+    def survey(self) -> Survey:
+        """See `Session.survey`; questions may be about anything, so they need the whole scene.
+
+        Raises:
+            UserError: it does not fit into the memory.
+        """
+        self._look(window.everything(self.tiles, self._memory))
+        return super().survey()
+
+    def save(self, path: str | Path, force: bool = False) -> None:
+        """Write the whole scene to another file.
+
+        Raises:
+            UserError: it does not fit into the memory, or as `Session.save`.
+            FileError: as `Session.save`.
+        """
+        from ...gaussians.files import save
+
+        save(window.everything(self.tiles, self._memory).scene, path, force=force)
 
     def undo(self) -> Result:
         """Undo the last edit of the folder.

@@ -140,7 +140,7 @@ def _writable(path: Path) -> tuple[Format, Callable[[Scene, BinaryIO], None]]:
         raise UserError(f"cannot write {path.name}: scenes are written as {writable}")
     if known.write is None:
         raise UserError(
-            f"{known.name} needs levels, which only `scenewright convert SCENE {path.name}` makes: write the scene to "
+            f"{known.name} is a folder that only `scenewright {known.made_by} {path.name}` makes: write the scene to "
             f"{path.stem}.ply first"
         )
     return known, known.write

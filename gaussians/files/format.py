@@ -40,6 +40,7 @@ class Format:
             file, empty for a folder. Must be cheap and must not raise.
         read: returns the scene and a report; raises FileError for anything it cannot read.
         write: writes the scene in row order into a binary file opened for writing; None if the format is read-only.
+        made_by: of a format without `write`, the command that makes such a scene, to which a name is appended.
         morton_order: whether neighbouring rows share storage, so that files are smaller or more exact if rows follow a
             Morton curve.
     """
@@ -50,3 +51,4 @@ class Format:
     read: Callable[[Path], tuple[Scene, Report]]
     write: Callable[[Scene, BinaryIO], None] | None = None
     morton_order: bool = False
+    made_by: str = ""

@@ -8,6 +8,7 @@ when the folder is changed the next time.
 from __future__ import annotations
 
 import contextlib
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,7 +25,7 @@ from .locking import locked
 from .making import written
 from .records import MOST_ROWS, TILE_COLUMNS, Head, State, Step, Tile, column_type
 from .store import HEAD, STATES, TABLES, TILES, Tiles, described, read_head, stored_files, write_owners
-from .window import Window, merged
+from .window import Window, everything, merged
 
 KEPT = 100  # states that undo reaches
 
@@ -76,6 +77,15 @@ def change(window: Window, after: Scene, text: str) -> Tiles:
         _switch(tiles.folder, head)
         _swept(tiles.folder, head)
     return Tiles(tiles.folder, head, state)
+
+
+def embed(tiles: Tiles, embedded: Scene, text: str) -> Tiles:
+    """The scene in tiles with the table of `embedded`, which is all of it with its groups.
+
+    Raises:
+        FileError, UserError: as `change`.
+    """
+    return change(everything(tiles, sys.maxsize), embedded, text)
 
 
 def undo(folder: Path) -> tuple[Tiles, str]:

@@ -342,4 +342,4 @@ def read(path: Path) -> tuple[Scene, Report]:
     return scene.replace(path=path), Report(NAME, rows, len(scene.cloud), tuple(streamed.notes))
 
 
-FORMAT = Format(NAME, (SUFFIX,), recognises, read)
+FORMAT = Format(NAME, (SUFFIX,), recognises, read, made_by="convert SCENE")

@@ -38,4 +38,4 @@ def read(path: Path) -> tuple[Scene, Report]:
     return scene, Report(NAME, len(scene.cloud), len(scene.cloud), tiles.state.notes)
 
 
-FORMAT = Format(NAME, (SUFFIX,), recognises, read)
+FORMAT = Format(NAME, (SUFFIX,), recognises, read, made_by="tile SCENE -o")

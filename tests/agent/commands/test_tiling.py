@@ -41,8 +41,11 @@ def test_a_folder_of_tiles_is_told_selected_from_drawn_and_converted(
     assert drawn.code == 0 and drawn.data["tiles"]["exact"] and drawn.data["tiles"]["in_view"] == 1
     assert call("render", room, "-o", tmp_path / "whole.png", "--view", "door").code == 0
     assert (tmp_path / "tiled.png").read_bytes() == (tmp_path / "whole.png").read_bytes()
-    assert call("convert", folder, tmp_path / "back.ply", "--views", "0").code == 0
+    written = call("convert", folder, tmp_path / "back.ply", "--json")
+    assert written.code == 0 and written.data["gaussians"] == 1173, written.err
     assert (tmp_path / "back.ply").read_bytes() == room.read_bytes()
+    assert call("convert", folder, tmp_path / "back.splat", "--views", "0").code == 0
+    assert call("convert", room, tmp_path / "other.tiles").code == 2
 
 
 def test_edits_stay_in_the_folder_until_they_are_undone(call: Any, room: Path, folder: Path, tmp_path: Path) -> None:

@@ -12,9 +12,12 @@ from street import saved_street
 
 from scenewright.gaussians.cloud import NO_GROUP, GaussianCloud, concat
 from scenewright.gaussians.errors import FileError, UserError
+from scenewright.gaussians.files import save
+from scenewright.gaussians.language.field.loading import load
 from scenewright.gaussians.scene import Scene
 from scenewright.gaussians.tiles import changing, files, window
 from scenewright.gaussians.tiles.changing import change, redo, undo
+from scenewright.gaussians.tiles.exporting import write_ply
 from scenewright.gaussians.tiles.locking import locked
 from scenewright.gaussians.tiles.making import make
 from scenewright.gaussians.tiles.store import TILES, Tiles
@@ -184,3 +187,27 @@ def test_groups_outside_of_a_window_keep_their_rows_of_the_table(tiles: Tiles) -
     assert after.field is not None
     for was, g in zip(field.groups, after.field.groups, strict=True):
         assert g == (replace(was, label="thing", count=was.count - 4) if g.id == ARMCHAIR else was)
+
+
+def test_a_scene_that_is_written_from_its_tiles_is_that_of_all_of_it(tiles: Tiles, tmp_path: Path) -> None:
+    taken = window.of_groups(tiles, [ARMCHAIR], MEMORY)
+    after = change(taken, taken.scene.replace(cloud=edited(taken.scene.cloud)), "change")
+    write_ply(after, tmp_path / "streamed.ply")
+    save(load(tiles.folder).replace(language=None), tmp_path / "whole.ply")
+    assert (tmp_path / "streamed.ply").read_bytes() == (tmp_path / "whole.ply").read_bytes()
+    with pytest.raises(UserError, match="exists"):
+        write_ply(after, tmp_path / "streamed.ply")
+
+
+def test_a_scene_that_is_embedded_in_its_folder_has_its_table_there(tmp_path: Path) -> None:
+    named = load(saved_street(tmp_path))
+    save(named.replace(language=None), tmp_path / "bare.ply")
+    bare = make([tmp_path / "bare.ply"], tmp_path / "b.tiles", most=1000)
+    assert bare.field is None and load(bare.folder).language is None
+    after = changing.embed(bare, named, "embed")
+    assert after.field is not None and named.language is not None
+    assert after.field.groups == named.language.groups
+    assert torch.equal(after.every_row().group, named.cloud.group)
+    assert load(bare.folder).language is not None
+    assert {name.split(".")[1] for name in names(after) - names(bare)} == {"group"}
+    assert undo(bare.folder)[0].field is None
