@@ -1,5 +1,6 @@
 """bench motion: scenes with time. Films of six rooms are fitted and compared with the truth (`fit`); what a frame at a
-time costs (`frame`).
+time costs (`frame`); questions and instructions with time that somebody wrote who knew the rooms but no code
+(`questions`, `instructions`).
 
 Rooms, films and truth are ours (`_motion`), drawn with our renderer: what real cameras add (noise, exposure, shadows of
 what moves) is not measured.
@@ -12,12 +13,13 @@ from statistics import fmean
 from typing import NamedTuple, get_args
 
 from ..gaussians.motion.fitting.fit import Detail
-from ._motion import frame, rooms
+from ._motion import asking, frame, instructing, rooms
 from ._motion.films import Rig, film
 from ._motion.fitted import Figures, fitted, small, wanted
 from .harness import Metric, Point, Result
 
-PARTS = ("fit", "frame")
+PARTS = ("fit", "frame", "questions", "instructions")
+SETS = ("", "held_")  # of written questions and instructions: what the readers were developed with, and the other half
 STEPS, QUICK_STEPS = 2500, 500
 WHOLE, INSIDE, PATH, OVERLAP = 28.0, 24.0, 0.02, 0.95  # goals with twelve cameras: dB, dB, metres, share
 RIGS: tuple[Rig, ...] = ("12", "4")
@@ -34,7 +36,12 @@ class _Part(NamedTuple):
 
 def run(quick: bool = False, parts: Sequence[str] = PARTS) -> Result:
     """All parts, or some."""
-    measures: dict[str, Callable[[bool], _Part]] = {"fit": _fit, "frame": lambda quick: _Part(frame.measured(quick))}
+    measures: dict[str, Callable[[bool], _Part]] = {
+        "fit": _fit,
+        "frame": lambda quick: _Part(frame.measured(quick)),
+        "questions": lambda _: _Part([m for which in SETS for m in asking.metrics(f"{which}questions")]),
+        "instructions": lambda _: _Part([m for which in SETS for m in instructing.metrics(f"{which}instructions")]),
+    }
     found = [measures[name](quick) for name in PARTS if name in parts]
     return Result(
         title="scenes with time: fits of films of six rooms, and frames at a time",

@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw
 
 from ...gaussians.camera import Camera
 from ...gaussians.errors import UserError
+from ...gaussians.motion.at import at
 from ...gaussians.scene import Scene
 from ...gaussians.viewpoints.for_groups import Sights, choose
 from ...gaussians.viewpoints.view_candidates import View, plan
@@ -42,7 +43,8 @@ def evidence_picture(
 ) -> Picture:  # fmt: skip
     """The picture of an answer's evidence.
 
-    Routes, floors and rooms are drawn on a plan; everything else in the view that shows the things best.
+    Routes, floors and rooms are drawn on a plan; everything else in the view that shows the things best. What an answer
+    says of a moment of a scene with time is shown as it is then.
 
     Args:
         scene: the scene that was asked about, with its language field.
@@ -56,6 +58,8 @@ def evidence_picture(
     Raises:
         UserError: the scene has no language field, or the answer is about another scene.
     """
+    if answer.evidence.time is not None:
+        scene = at(scene, answer.evidence.time)
     sights = Sights.of(scene)
     groups = _groups(scene, answer)
     room = RoomFrame(scene)

@@ -1,0 +1,296 @@
+"""Written instructions for the moving rooms, carried out in a session and judged by their effect on the scene.
+
+What an operation is called does not count; only where things are, how they turn and how they look over time, before and
+after.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from statistics import median
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...agent.session.session import Session
+from ...gaussians.errors import ScenewrightError
+from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
+from ...gaussians.motion import events
+from ...gaussians.motion.at import at
+from ...gaussians.motion.courses import Course, course_of
+from ...gaussians.motion.holding import Span
+from ...gaussians.scene import Scene
+from ..harness import Metric
+from . import rooms
+from .written import cases
+
+Outcome = Literal["right", "wrong", "refused"]
+F64 = NDArray[np.float64]
+
+RIGHT, WRONG = 0.85, 0.03  # goals: at least, at most
+DETAIL = 0.3
+NEAR = 0.3  # seconds, where a case says nothing
+BESIDE = 0.4  # metres: gap to what something goes to
+_LAST = 5.0  # seconds: the end of the rooms
+_SAMPLES = tuple(np.arange(0.05, _LAST, 0.1))  # seconds: times at which looks are compared
+_MOVED = 0.03  # metres: what nobody spoke of may differ by this
+
+
+@dataclass(frozen=True)
+class Instructed:
+    """One instruction with what came of it.
+
+    Attributes:
+        case: as written.
+        outcome: one that cannot be carried out is right if it is refused, and wrong otherwise.
+        told: the error, or what was found wrong.
+        seconds: of the processor.
+    """
+
+    case: dict[str, Any]
+    outcome: Outcome
+    told: str
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Effect:
+    """A scene before and after an instruction."""
+
+    before: Scene
+    after: Scene
+
+    def group(self, name: str) -> int:
+        """The group that a case names: the words of its label, with a colour or its place in a stack."""
+        assert self.before.language is not None
+        words, table = name.split(), self.before.language.groups
+        fits = [g for g in table if g.level == "object" and set(g.label.split()) & set(words) and words[-1] in g.label]
+        if len(fits) > 1 and words[0] in ("top", "bottom"):
+            return sorted(fits, key=lambda g: g.box.center[2])[-1 if words[0] == "top" else 0].id
+        if len(fits) > 1:
+            return max(fits, key=lambda g: float(color_scores(words[0], np.array(g.lab)))).id
+        return fits[0].id
+
+    def course(self, name: str, before: bool = False) -> Course:
+        """Where a thing is through time."""
+        return course_of(self.before if before else self.after, self.group(name))
+
+    @cached_property
+    def shots(self) -> list[tuple[float, Scene, Scene]]:
+        """Both scenes at sampled times."""
+        return [(float(t), at(self.before, float(t)), at(self.after, float(t))) for t in _SAMPLES]
+
+    def is_there(self, group: int) -> list[bool]:
+        """At each sampled time, whether a thing is to be seen."""
+        return [_count(after, group) > 0.5 * max(_count(before, group), 1) for _, before, after in self.shots]
+
+
+def _count(scene: Scene, group: int) -> int:
+    assert scene.language is not None
+    return scene.language.groups[group].count if group < len(scene.language.groups) else 0
+
+
+def instructed(which: Sequence[dict[str, Any]]) -> list[Instructed]:
+    """Each instruction carried out on a fresh room."""
+    found = []
+    for case in which:
+        scene = rooms.moving_room(case["room"], DETAIL)
+        session = Session(scene)
+        before = session.scene
+        started, told = time.process_time(), ""
+        try:
+            session.do(case["text"])
+            wrong = _wrong(case["expect"], _Effect(before, session.scene))
+            told, outcome = wrong, "wrong" if wrong else "right"
+        except ScenewrightError as error:
+            told, outcome = str(error), "right" if case["expect"]["kind"] == "refuse" else "refused"
+        found.append(Instructed(case, outcome, told, time.process_time() - started))  # type: ignore[arg-type]
+    return found
+
+
+def _wrong(expect: dict[str, Any], effect: _Effect) -> str:
+    """What an effect lacks of what is expected; "" if nothing."""
+    kind = expect["kind"]
+    named = expect["thing"] if isinstance(expect["thing"], list) else [expect["thing"]]
+    if kind == "refuse":
+        return "something was done"
+    checks = {"remove": _removed, "hide": _hidden, "look": _looks, "static": _looks}
+    wrong = "; ".join(told for name in named if (told := checks.get(kind, _moves)(expect, name, effect)))
+    if not wrong and "order" in expect:
+        starts = [_spans(effect.course(n))[0][0] for n in expect["order"] if _spans(effect.course(n))]
+        wrong = "" if len(starts) == len(expect["order"]) and starts == sorted(starts) else "the order is another"
+    return wrong or _others(named, effect)
+
+
+def _removed(expect: dict[str, Any], name: str, effect: _Effect) -> str:
+    return "it is still there" if _count(effect.after, effect.group(name)) else ""
+
+
+def _hidden(expect: dict[str, Any], name: str, effect: _Effect) -> str:
+    start, stop = _range(expect)
+    seen = effect.is_there(effect.group(name))
+    for (t, _, _), there in zip(effect.shots, seen, strict=True):
+        if min(abs(t - start), abs(t - stop)) > _near(expect) and there == (start < t < stop):
+            return f"at {t:.2f} s it is {'there' if there else 'gone'}"
+    return ""
+
+
+def _looks(expect: dict[str, Any], name: str, effect: _Effect) -> str:
+    start, stop = _range(expect)
+    group, word = effect.group(name), expect["color"]
+    for t, before, after in effect.shots:
+        assert before.language is not None and after.language is not None
+        if min(abs(t - start), abs(t - stop)) <= _near(expect):
+            continue
+        own, other = (np.array(s.language.groups[group].lab) for s in (after, before))  # type: ignore[union-attr]
+        if start < t < stop and float(color_scores(word, own)) < COLOR_HOLDS:
+            return f"at {t:.2f} s it is not {word}"
+        if not start < t < stop and float(np.linalg.norm(own - other)) > 3.0:
+            return f"at {t:.2f} s it looks different"
+    return ""
+
+
+def _range(expect: dict[str, Any]) -> Span:
+    start, stop = expect.get("start"), expect.get("stop")
+    return -1.0 if start is None else float(start), math.inf if stop is None or stop >= _LAST else float(stop)
+
+
+def _near(expect: dict[str, Any]) -> float:
+    return float(expect.get("tolerance") or NEAR)
+
+
+def _spans(course: Course) -> list[Span]:
+    return events.movements(course)
+
+
+def _moves(expect: dict[str, Any], name: str, effect: _Effect) -> str:
+    """What is wrong with the motion of a thing."""
+    course, earlier = effect.course(name), effect.course(name, before=True)
+    spans = _spans(course)
+    if expect.get("factor") == 0:
+        return f"it moves from {spans[0][0]:.2f} s" if spans else ""
+    if not spans:
+        return "it does not move"
+    tests = (_timing, _pacing, _turning, _reaching)
+    return next((told for test in tests if (told := test(expect, course, earlier, spans, effect))), "")
+
+
+def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list[Span], effect: _Effect) -> str:
+    closes = expect["kind"] == "articulate" and expect.get("angle_deg") == 0
+    start = spans[-1][0] if closes else spans[0][0]
+    if expect["kind"] == "spin" and expect.get("start"):
+        start = next((a for a, _ in spans if abs(a - expect["start"]) <= _near(expect)), spans[-1][0])
+        if any(a - NEAR <= expect["start"] <= b for a, b in spans):
+            start = expect["start"]  # it goes on from another movement
+    if expect.get("start") is not None and not closes and abs(start - expect["start"]) > _near(expect):
+        return f"it begins at {start:.2f} s"
+    if closes and start < expect["start"] - _near(expect):
+        return f"it closes at {start:.2f} s"
+    returns = expect.get("distance_m") is not None and expect["kind"] == "articulate"
+    stop = spans[0][1] if returns else spans[-1][1]
+    if expect.get("stop") is not None and abs(stop - expect["stop"]) > _near(expect):
+        return f"it ends at {stop:.2f} s"
+    if "starts_after_s" in expect and start < expect["starts_after_s"]:
+        return f"it begins at {start:.2f} s"
+    if "duration_s" in expect and abs((spans[-1][1] - spans[0][0]) - expect["duration_s"]) > 0.4:
+        return f"it takes {spans[-1][1] - spans[0][0]:.2f} s"
+    for a, b in [expect["frozen"]] if "frozen" in expect else []:
+        if any(s[0] < b - 0.1 and a + 0.1 < s[1] for s in spans):
+            return f"it moves between {a} and {b} s"
+    return ""
+
+
+def _pacing(expect: dict[str, Any], course: Course, earlier: Course, spans: list[Span], effect: _Effect) -> str:
+    factor = expect.get("factor")
+    if factor is None or "turns_per_s" in expect:
+        return ""
+    if factor < 0:
+        ends = np.array([0.0, _LAST])
+        gaps = np.linalg.norm(course.centers(ends) - earlier.centers(ends[::-1]), axis=1)
+        return f"it is {gaps.max():.2f} m off its way back" if gaps.max() > 0.2 else ""
+    rates = [float(c.rates(np.concatenate([c.grid(s) for s in _spans(c)])).mean()) for c in (course, earlier)]
+    ratio = rates[0] / max(rates[1], 1e-9)
+    return f"its speed is {ratio:.2f} times the former" if abs(ratio / factor - 1) > 0.15 else ""
+
+
+def _turning(expect: dict[str, Any], course: Course, earlier: Course, spans: list[Span], effect: _Effect) -> str:
+    if "turns_per_s" in expect:
+        after = (max(spans[0][0], expect.get("start") or 0.0), spans[-1][1])
+        rate = events.yawed(course, after) / (after[1] - after[0]) / (2 * math.pi)
+        wanted = expect["turns_per_s"]
+        if expect["kind"] == "spin" and wanted < 0:
+            own = events.yawed(earlier, _spans(earlier)[0])
+            rate *= math.copysign(1.0, own)
+        return (
+            f"it turns {rate:.2f} times a second"
+            if abs(rate if wanted < 0 else abs(rate)) == 0
+            or abs((rate if wanted < 0 else abs(rate)) - wanted) > 0.15 * abs(wanted)
+            else ""
+        )
+    if expect["kind"] == "spin" and "angle_deg" in expect:
+        after = (expect["start"] - NEAR, _LAST)
+        turned = abs(math.degrees(events.yawed(course, after)))
+        return f"it turns by {turned:.0f} degrees" if abs(turned - expect["angle_deg"]) > 15 else ""
+    if "angle_deg" in expect:
+        angle = math.degrees(float(course.angles(np.array([_LAST]))[0]))
+        return f"it is open by {angle:.0f} degrees" if abs(angle - expect["angle_deg"]) > 5 else ""
+    if "turn_deg" in expect:
+        turned = sum(math.degrees(events.yawed(course, s)) for s in spans)
+        return f"it turns by {turned:.0f} degrees" if abs(turned - expect["turn_deg"]) > 20 else ""
+    return ""
+
+
+def _reaching(expect: dict[str, Any], course: Course, earlier: Course, spans: list[Span], effect: _Effect) -> str:
+    way = course.centers(course.grid()) - course.centers(np.array([0.0]))
+    if "distance_m" in expect:
+        far = float((way @ course.up).max() if expect.get("toward") == "up" else np.linalg.norm(way, axis=1).max())
+        if abs(far / expect["distance_m"] - 1) > 0.15:
+            return f"it moves by {far:.2f} m"
+    for key in ("toward", "at_end"):
+        if expect.get(key) in (None, "up"):
+            continue
+        pair = events.Encounter.of(effect.after, course.group, [effect.group(expect[key])])
+        gap = float(pair.gaps(np.array([_LAST]))[0])
+        if gap > BESIDE:
+            return f"at the end it is {gap:.2f} m from the {expect[key]}"
+    return ""
+
+
+def _others(named: Sequence[str], effect: _Effect) -> str:
+    """What moves differently though nobody spoke of it."""
+    spoken = {effect.group(n) for n in named}
+    assert effect.before.language is not None and effect.after.language is not None
+    times = np.linspace(0.0, _LAST, 11)
+    for group in effect.before.language.groups:
+        if group.level != "object" or group.id in spoken or not group.count:
+            continue
+        if not _count(effect.after, group.id):
+            return f"the {group.label} is gone"
+        ways = [course_of(s, group.id).centers(times) for s in (effect.before, effect.after)]
+        if float(np.abs(ways[0] - ways[1]).max()) > _MOVED:
+            return f"the {group.label} moves, too"
+    return ""
+
+
+def metrics(which: str) -> list[Metric]:
+    """The shares of a set of instructions; none if the set is not there.
+
+    Args:
+        which: "instructions" or "held_instructions".
+    """
+    found = instructed(cases(which))
+    if not found:
+        return []
+    counts = Counter(i.outcome for i in found)
+    return [
+        Metric(f"{which}.right", counts["right"] / len(found), "share", "higher", 0.02, RIGHT),
+        Metric(f"{which}.wrong", counts["wrong"] / len(found), "share", "lower", 0.02, WRONG),
+        Metric(f"{which}.given", float(len(found)), "count"),
+        Metric(f"{which}.cpu", median(i.seconds for i in found), "s", "lower", 0.5),
+    ]

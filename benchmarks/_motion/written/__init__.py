@@ -1,0 +1,24 @@
+"""Questions and instructions about the six moving rooms by somebody who knew the rooms from a description and no code.
+
+`questions.jsonl` and `instructions.jsonl` are the half that the readers were developed with. The other half, beside
+them as `held_questions.jsonl` and `held_instructions.jsonl`, is asked for afterwards only. A line holds room, text,
+expect and a note on who speaks.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+FOLDER = Path(__file__).parent
+
+
+def cases(name: str) -> list[dict[str, Any]]:
+    """The lines of a file, none if it is not there.
+
+    Args:
+        name: "questions", "instructions", "held_questions" or "held_instructions".
+    """
+    path = FOLDER / f"{name}.jsonl"
+    return [json.loads(line) for line in path.read_text().splitlines() if line] if path.exists() else []
