@@ -21,11 +21,12 @@ from ..kept import Kept
 from ..language.field.language_field import Group, LanguageField
 from ..language.field.measure import lab_of_cloud
 from ..rotations import from_matrix, multiply
-from ..rows import copied, empty, rows_of_ids, rows_where
+from ..rows import rows_of_ids, rows_where
 from ..scene import Scene
 from .boxes import boxes_over
 from .motion import Look, Motion, chained, combinations
 from .runs import ids_of
+from .spare import Rows, like
 
 F64 = NDArray[np.float64]
 _BLOCK = 1 << 13  # rows changed at a time: intermediates stay in a core's cache
@@ -163,17 +164,18 @@ class _Draft:
     def __init__(self, cloud: GaussianCloud) -> None:
         self._cloud = cloud
         self._written: dict[str, Tensor] = {}
+        self._rows: dict[str, list[Rows]] = {}  # of each written column, those that were written
 
     def done(self) -> GaussianCloud:
         return self._cloud.replace(**self._written) if self._written else self._cloud
 
     def set(self, name: str, rows: Tensor, values: Tensor) -> None:
-        self._own(name).index_copy_(0, rows, values)
+        self._own(name, rows).index_copy_(0, rows, values)
 
     def change(self, name: str, rows: Tensor, to: Callable[[Tensor], Tensor]) -> None:
         """Replace rows `[M]`, ascending, of a column by `to` of them, a block at a time."""
         span, source = _side_by_side(rows), self._written.get(name, getattr(self._cloud, name))
-        column = self._own(name, span)
+        column = self._own(name, rows if span is None else span, all_written=True)
         if span is None:
             for block in torch.split(rows, _BLOCK):
                 column.index_copy_(0, block, to(source.index_select(0, block)).to(column.dtype))
@@ -200,17 +202,12 @@ class _Draft:
             harmonics = turning(matrix, bands).to(self._cloud.sh)
             self.change("sh", rows, lambda sh: turned(sh, harmonics))
 
-    def _own(self, name: str, written_next: slice | None = None) -> Tensor:
-        """The column to write to; the rows that are all written next are not copied first."""
+    def _own(self, name: str, rows: Rows, all_written: bool = False) -> Tensor:
+        """The column, to write to `rows` of it."""
         if name not in self._written:
-            column = getattr(self._cloud, name)
-            if written_next is None:
-                self._written[name] = copied(column)
-            else:
-                out = empty(column.shape, column)
-                out[: written_next.start] = column[: written_next.start]
-                out[written_next.stop :] = column[written_next.stop :]
-                self._written[name] = out
+            next_written = rows if all_written and isinstance(rows, slice) else None
+            self._written[name], self._rows[name] = like(getattr(self._cloud, name), next_written)
+        self._rows[name].append(rows)
         return self._written[name]
 
 

@@ -93,6 +93,27 @@ def test_nothing_is_written_in_place() -> None:
     assert scene.cloud.digest() == before
 
 
+def test_a_moment_that_is_held_stays_as_it_is_and_one_that_is_not_is_written_again() -> None:
+    """Columns of earlier moments are memory for later ones, if nobody holds them, not even as an array."""
+    scene = moving()
+    fresh = {time: slowly(scene, time).cloud for time in (0.7, 1.6, 2.7)}
+    held = at(scene, 0.7).cloud
+    digest = held.digest()
+    array = at(scene, 1.6).cloud.sh.numpy()
+    kept = array.copy()
+    for time in (2.7, 1.6, 0.7, 2.7, 0.0, 1.6):
+        got = at(scene, time).cloud
+        if time in fresh:
+            torch.testing.assert_close(got.means, fresh[time].means, atol=2e-6, rtol=0)
+            torch.testing.assert_close(got.sh, fresh[time].sh, atol=2e-6, rtol=0)
+        del got
+    assert held.digest() == digest and np.array_equal(array, kept)
+    where = at(scene, 1.0).cloud.sh.data_ptr()
+    assert at(scene, 1.1).cloud.sh.data_ptr() == where  # the first of the two was let go
+    both = at(scene, 1.0).cloud.sh, at(scene, 1.1).cloud.sh
+    assert both[0].data_ptr() != both[1].data_ptr()
+
+
 def test_a_time_must_be_finite() -> None:
     with pytest.raises(UserError, match="finite number of seconds"):
         at(moving(), math.inf)
