@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from .camera import Camera, Vec3
 from .cloud import GaussianCloud
 from .errors import UserError
+from .motion.at import rows_at
 from .motion.motion import with_only
 from .render import contributions, render
 from .scene import Scene
 
 MAX_PSNR = 120.0  # dB, reported for equal images
+_MOMENTS = 4  # of a scene with motion, from its start to its stop, at which its Gaussians are ranked
 
 
 def crop_box(scene: Scene, low: Vec3, high: Vec3) -> Scene:
@@ -60,7 +62,8 @@ def rank_by_contribution(cloud: GaussianCloud, cameras: Sequence[Camera]) -> NDA
 
 
 def prune(scene: Scene, max_gaussians: int, cameras: Sequence[Camera]) -> Scene:
-    """At most `max_gaussians` Gaussians that contribute most to these views (`rank_by_contribution`), in row order.
+    """At most `max_gaussians` Gaussians that contribute most to these views (`rank_by_contribution`), in row order; of
+    a scene with motion, to these views at some time.
 
     Raises:
         UserError: `max_gaussians` is not positive, or no camera is given.
@@ -71,8 +74,23 @@ def prune(scene: Scene, max_gaussians: int, cameras: Sequence[Camera]) -> Scene:
         return scene
     if not cameras:
         raise UserError("no view shows anything of this scene, so its Gaussians cannot be ranked; crop it instead")
-    kept = np.sort(rank_by_contribution(scene.cloud, cameras)[:max_gaussians])
+    kept = np.sort(_ranked(scene, cameras)[:max_gaussians])
     return _rows(scene, torch.from_numpy(kept))
+
+
+def _ranked(scene: Scene, cameras: Sequence[Camera]) -> NDArray[np.int64]:
+    """Rows `[N]` by their contribution, largest first; where something moves, by the best rank that they have at some
+    time, so that what is hidden at the start (in a closed drawer) is not taken for nothing."""
+    motion = scene.motion
+    if motion is None:
+        return rank_by_contribution(scene.cloud, cameras)
+    best = np.full(len(scene.cloud), len(scene.cloud))
+    for time in np.linspace(motion.start, motion.stop, _MOMENTS):
+        order = rank_by_contribution(rows_at(scene.cloud, motion, float(time))[0], cameras)
+        places = np.empty(len(order), np.int64)
+        places[order] = np.arange(len(order))
+        best = np.minimum(best, places)
+    return np.argsort(best, kind="stable")
 
 
 def psnr(truth: GaussianCloud, other: GaussianCloud, cameras: Sequence[Camera]) -> tuple[float, ...]:

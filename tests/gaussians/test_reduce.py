@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import UserError
+from scenewright.gaussians.motion.motion import Motion, Track
 from scenewright.gaussians.reduce import MAX_PSNR, crop_box, crop_sphere, prune, psnr
 from scenewright.gaussians.scene import Scene
 
@@ -92,3 +93,17 @@ def test_pruning_needs_a_number_and_views() -> None:
 def test_equal_scenes_look_alike() -> None:
     cloud = scattered().cloud
     assert psnr(cloud, cloud, EYES) == (MAX_PSNR,) * len(EYES)
+
+
+def test_what_is_seen_at_some_time_counts() -> None:
+    """The first 40 Gaussians come into sight later; the others are not asked to move."""
+    scene = scattered()
+    away = torch.zeros(400, 3)
+    away[:40, 2] = 50.0
+    hidden = scene.replace(cloud=scene.cloud.replace(means=scene.cloud.means + away))
+    coming = Motion((Track.slide(np.arange(40), [0, 1], [0, -50.0], (0, 0, 1)),), stop=1.0)
+    still, moving = prune(hidden, 300, EYES), prune(hidden.replace(motion=coming), 300, EYES)
+    assert not bool((still.cloud.ids < 40).any())
+    there = int((prune(scene, 300, EYES).cloud.ids < 40).sum())
+    assert int((moving.cloud.ids < 40).sum()) >= 0.7 * there > 0
+    assert moving.motion is not None and len(moving.motion.tracks[0]) == int((moving.cloud.ids < 40).sum())
