@@ -181,6 +181,8 @@ def command(
     with closing(session):
         results = [_instruct(session, str(text), dry_run)] if chosen is None else _replay(session, chosen)
         lines, data = _report(results, chosen, dry_run)
+        if tiled and results[0].receipts:  # the result's scene is a window
+            data["gaussians"] = results[0].receipts[-1].total
         with timed(seconds, "write"):
             _write(session, results, targets, data)
     spent = {**data.pop("seconds", {}), **seconds, "total": time.perf_counter() - started}

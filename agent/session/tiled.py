@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 OF_THE_TARGET = frozenset({"select", "recolor", "opacity"})  # operations that look at their target alone
 NEARBY = frozenset({"delete"})  # operations that give the same bytes in a window with what is around the target
-_SAMPLE = 4000  # rows that colours are looked up in before the window is taken
+_SAMPLE = 1000  # rows that colours are looked up in before the window is taken
 
 
 class TiledSession(Session):

@@ -27,13 +27,18 @@ EDGE = 0.15
 MAX_DETERMINANT = 1e37  # px^4; a covariance near float32's range (a footprint of billions of pixels) is not drawn
 
 
+def sample_step(count: int) -> int:
+    """Of how many centres one is looked at for the near plane. A sample in this step is looked at whole."""
+    return max(1, count // _SAMPLE)
+
+
 def near_plane(means: NDArray[np.float32] | Tensor) -> float:
     """Distance of the near plane for centres `[N, 3]`, scene units.
 
     `NEAR`, or less where the whole scene is smaller than a unit: in a room of which a metre is a hundredth of a unit,
     0.01 units are a metre. The extent is that of an even sample of the finite centres; a scene without one has `NEAR`.
     """
-    part = means[:: max(1, len(means) // _SAMPLE)]
+    part = means[:: sample_step(len(means))]
     found = np.asarray(part.detach().cpu() if isinstance(part, Tensor) else part, np.float64)
     found = found[np.isfinite(found).all(axis=1)]
     if len(found) < 2:

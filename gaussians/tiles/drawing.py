@@ -12,6 +12,7 @@ from ..camera import Camera, Render, Vec3
 from ..render import convention
 from .records import Tile
 from .store import Tiles
+from .window import centres
 
 _COLUMNS = ("means", "quats", "scales", "opacities", "sh", "group")
 _LEAST, _MOST = 1 << 18, 1 << 23  # footprints of a slab
@@ -74,7 +75,7 @@ def draw(
             progress("drawing", 1 - len(waiting) / max(seen, 1))
             columns = [tiles.column(number, name, number not in checked) for name in (*_COLUMNS, "ids")]
             checked.add(number)
-            *shown, ids = (np.ascontiguousarray(column) for column in columns)
+            *shown, ids = (np.array(column) for column in columns)  # kernels are compiled for what can be written
             canvas.add(tuple(shown), ids)
             read += 1
         canvas.draw()
@@ -84,8 +85,8 @@ def draw(
 
 
 def near_plane(tiles: Tiles) -> float:
-    """Distance of the near plane, scene units, by the box of all centres (see `convention.near_plane`)."""
-    return convention.near_plane(np.array(tiles.bounds, np.float32))
+    """Distance of the near plane, scene units, by the same sample of centres as in memory."""
+    return convention.near_plane(centres(tiles, convention.sample_step(len(tiles))))
 
 
 def _in_view(tiles: Tiles, camera: Camera, near: float) -> Iterator[tuple[float, float, int]]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+from io import FileIO
 from pathlib import Path
 from typing import Any
 
@@ -72,13 +73,18 @@ def rows(folder: Path, stored: Stored, kind: np.dtype[Any], shape: tuple[int, ..
     """
     size = kind.itemsize * int(np.prod(shape, dtype=np.int64))
     try:
-        with open(folder / stored.file, "rb") as file:
-            found = b"".join(os.pread(file.fileno(), size, row * size) for row in wanted.tolist())
+        with open(folder / stored.file, "rb", buffering=0) as file:
+            found = b"".join(_part(file, row * size, size) for row in wanted.tolist())
     except OSError as error:
         raise FileError(f"cannot read {folder / stored.file}: {error.strerror or error}: {ADVICE}") from error
     if len(found) != size * len(wanted):
         raise FileError(f"{folder / stored.file} is cut off: {ADVICE}")
     return np.frombuffer(found, kind).reshape(len(wanted), *shape)
+
+
+def _part(file: FileIO, start: int, size: int) -> bytes:
+    file.seek(start)
+    return file.read(size)
 
 
 def sync(folder: Path) -> None:

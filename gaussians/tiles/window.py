@@ -304,6 +304,18 @@ def rows_with(tiles: Tiles, number: int, ids: NDArray[np.int64]) -> GaussianClou
     return GaussianCloud(**found, first_free=tiles.state.first_free, rest=None)
 
 
+def centres(tiles: Tiles, step: int) -> NDArray[np.float32]:
+    """`[M, 3]` the centres of each `step`-th row of the scene."""
+    ids = nth_ids(tiles, np.arange(0, len(tiles), step), np.zeros(0, np.int64))
+    homes, found = homes_of(tiles, ids), np.empty((len(ids), 3), np.float32)
+    for k in np.unique(homes).tolist():
+        mine = homes == k
+        rows = np.searchsorted(tiles.column(k, "ids", checked=False), ids[mine])
+        stored = tiles.state.tiles[k].columns["means"]
+        found[mine] = files.rows(tiles.folder / TILES, stored, *column_type("means", tiles.state.degree), rows)
+    return found
+
+
 def outline(tiles: Tiles, rows: int = 50_000) -> Scene:
     """The scene with about so many of its rows, evenly spaced, each grown to cover what the others did: for views."""
     step = max(1, -(-len(tiles) // rows))

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..camera import Vec3
 from ..language.field.language_field import Group, LanguageField
@@ -104,5 +105,16 @@ def standing_on(field: LanguageField, frame: Frame, support: Group) -> tuple[Gro
         return ()
     east, north, up = frame.basis()
     stand = Stand(east, north, up, np.zeros(3), field.typical_size)
-    others = (g for g in field.objects() if g.count and g.id != support.id)
+    over = _may_overlap(field, support, up)
+    others = (g for g in field.objects() if g.count and g.id != support.id and over[g.id])
     return tuple(g for g in others if score("on", g, [support], stand) >= HOLDS)
+
+
+def _may_overlap(field: LanguageField, support: Group, up: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """`[G]`: groups whose footprint may lie over that of a group: seen from above, their centres are no farther apart
+    than their boxes reach. Scenes of many rooms have thousands of things elsewhere."""
+    boxes = field.boxes
+    apart = boxes.centers - np.array(support.box.center)
+    level = np.linalg.norm(apart - (apart @ up)[:, None] * up, axis=1)
+    reach = (np.linalg.norm(boxes.sizes, axis=1) + np.linalg.norm(support.box.size)) / 2
+    return np.asarray(level <= reach * (1 + 1e-6) + 1e-9)

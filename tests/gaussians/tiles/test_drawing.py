@@ -10,8 +10,9 @@ from street import saved_street
 
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import FileError
-from scenewright.gaussians.files import load
+from scenewright.gaussians.files import load, save
 from scenewright.gaussians.render import render
+from scenewright.gaussians.render.convention import NEAR, near_plane
 from scenewright.gaussians.tiles import drawing
 from scenewright.gaussians.tiles.making import make
 from scenewright.gaussians.tiles.store import TILES, Tiles
@@ -43,8 +44,6 @@ def test_footprints_of_one_depth_follow_each_other_by_id(tmp_path: Path, monkeyp
     scene = load(saved_street(tmp_path))
     flat = scene.cloud.means.clone()
     flat[:, 1] = 2.0  # all at one depth for a camera that looks along y
-    from scenewright.gaussians.files import save
-
     save(scene.replace(cloud=scene.cloud.replace(means=flat)), tmp_path / "flat.ply")
     made = make([tmp_path / "flat.ply"], tmp_path / "b.tiles", most=1000)
     camera = Camera.look_at([6, -12, 1], [6, 2, 1], [0, 0, 1], 96, 64)
@@ -69,3 +68,14 @@ def test_drawing_stops_where_no_pixel_takes_more(tiles: Tiles, monkeypatch: pyte
     drawn = drawing.draw(tiles, wall, memory=1)
     assert drawn.render.alpha.min() > 0.99
     assert drawn.read <= drawn.tiles * drawn.slabs
+
+
+def test_the_near_plane_is_that_of_the_whole_of_a_tiny_scene(tmp_path: Path) -> None:
+    scene = load(saved_street(tmp_path))
+    tiny = scene.cloud.replace(means=scene.cloud.means * 0.01, scales=scene.cloud.scales * 0.01)
+    save(scene.replace(cloud=tiny), tmp_path / "tiny.ply")
+    made = make([tmp_path / "tiny.ply"], tmp_path / "b.tiles", most=1000)
+    whole = load(tmp_path / "tiny.ply").cloud
+    assert drawing.near_plane(made) == near_plane(whole.means) < NEAR
+    camera = Camera.look_at([0.005, -0.018, 0.016], [0.04, 0.01, 0.005], [0, 0, 1], 96, 64, 70)
+    assert torch.equal(drawing.draw(made, camera).render.rgb, render(whole, camera).rgb)
