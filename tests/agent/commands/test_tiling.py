@@ -48,6 +48,7 @@ def test_a_folder_of_tiles_is_told_selected_from_drawn_and_converted(
     assert call("convert", room, tmp_path / "other.tiles").code == 2
 
 
+@pytest.mark.slow
 def test_edits_stay_in_the_folder_until_they_are_undone(call: Any, room: Path, folder: Path, tmp_path: Path) -> None:
     answer = call("edit", folder, "make the green thing blue", "--no-infill", "--json")
     assert answer.code == 0 and answer.data["gaussians"] == 1173, answer.err

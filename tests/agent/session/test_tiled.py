@@ -46,12 +46,21 @@ def tiled(source: Path, encoder: Any, memory: int) -> TiledSession:
 @pytest.mark.parametrize(
     "ops",
     [
-        (Recolor(target=PIANO, color="teal"),),
-        (Recolor(target=ARMCHAIRS, adjust="darker"), Opacity(target=PIANO, value=0.5)),
-        (Delete(target=PIANO),),
-        (Opacity(target=PIANO, value=0.5), Delete(target=PIANO, on_it="goes"), Recolor(target=ARMCHAIRS, color="blue")),
+        (Delete(target=PIANO), Recolor(target=ARMCHAIRS, color="blue")),
+        pytest.param((Recolor(target=PIANO, color="teal"),), marks=pytest.mark.slow),
+        pytest.param(
+            (Recolor(target=ARMCHAIRS, adjust="darker"), Opacity(target=PIANO, value=0.5)), marks=pytest.mark.slow
+        ),
+        pytest.param(
+            (
+                Opacity(target=PIANO, value=0.5),
+                Delete(target=PIANO, on_it="goes"),
+                Recolor(target=ARMCHAIRS, color="#206040"),
+            ),
+            marks=pytest.mark.slow,
+        ),
     ],
-    ids=["recolor", "two", "delete", "three"],
+    ids=["both", "recolor", "two", "three"],
 )
 def test_an_edit_in_a_window_has_the_bytes_of_the_edit_in_memory(source: Path, encoder: Any, ops: Any) -> None:
     plan = EditPlan(instruction="edit", ops=ops, planner="said")
@@ -73,6 +82,7 @@ def test_an_edit_in_a_window_has_the_bytes_of_the_edit_in_memory(source: Path, e
     assert torch.equal(session.tiles.every_row().sh, now.sh)
 
 
+@pytest.mark.slow
 def test_what_looks_further_has_the_same_bytes_where_all_of_it_fits(source: Path, encoder: Any) -> None:
     plan = EditPlan(
         instruction="move", ops=(Move(target=PIANO, direction="left", distance={"value": 0.3}),), planner="said"
@@ -84,6 +94,7 @@ def test_what_looks_further_has_the_same_bytes_where_all_of_it_fits(source: Path
     assert all(torch.equal(column, getattr(now, name)) for name, column in whole.scene.cloud.columns())
 
 
+@pytest.mark.slow
 def test_names_are_told_by_the_table_and_edits_of_earlier_sessions_can_be_undone(source: Path, encoder: Any) -> None:
     session = tiled(source, encoder, 1 << 30)
     found = session.select(Query(text="piano", groups=(20,)))
@@ -97,6 +108,7 @@ def test_names_are_told_by_the_table_and_edits_of_earlier_sessions_can_be_undone
         again.do("redo")
 
 
+@pytest.mark.slow
 def test_what_does_not_fit_or_is_not_there_is_told_and_nothing_changes(source: Path, encoder: Any) -> None:
     session = tiled(source, encoder, 300_000)
     first = session.tiles.digest()
@@ -108,6 +120,7 @@ def test_what_does_not_fit_or_is_not_there_is_told_and_nothing_changes(source: P
     assert session.tiles.digest() == first and not Tiles.open(session.tiles.folder).head.past
 
 
+@pytest.mark.slow
 def test_tiles_without_names_say_what_to_do(source: Path, encoder: Any, tmp_path: Path) -> None:
     save(load_file(source), tmp_path / "bare.ply")
     session = tiled(tmp_path / "bare.ply", encoder, 1 << 30)
@@ -115,6 +128,7 @@ def test_tiles_without_names_say_what_to_do(source: Path, encoder: Any, tmp_path
         session.select(Query(text="piano"))
 
 
+@pytest.mark.slow
 def test_several_matches_are_a_question(source: Path, encoder: Any) -> None:
     session = tiled(source, encoder, 1 << 30)
     with pytest.raises(AmbiguousError):

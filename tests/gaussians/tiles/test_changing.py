@@ -65,6 +65,7 @@ def test_a_change_is_that_of_the_whole_scene_and_touches_only_its_tiles(tiles: T
     assert after.count([ARMCHAIR]) == len(taken.scene.cloud) - 8
 
 
+@pytest.mark.slow
 def test_only_columns_that_differ_are_written(tiles: Tiles) -> None:
     taken = window.of_groups(tiles, [ARMCHAIR], MEMORY)
     cloud = taken.scene.cloud
@@ -91,7 +92,7 @@ def test_undo_and_redo_give_the_same_files_again(tiles: Tiles) -> None:
         redo(tiles.folder)
 
 
-@pytest.mark.parametrize("stage", ["files", "state", "head"])
+@pytest.mark.parametrize("stage", ["head", *(pytest.param(s, marks=pytest.mark.slow) for s in ("files", "state"))])
 def test_a_stop_at_any_stage_leaves_the_scene_before(tiles: Tiles, stage: str, monkeypatch: pytest.MonkeyPatch) -> None:
     first = tiles.digest()
     taken = window.of_groups(tiles, [ARMCHAIR], MEMORY)
@@ -122,6 +123,7 @@ def test_a_stop_at_any_stage_leaves_the_scene_before(tiles: Tiles, stage: str, m
     assert on_disk == names(tiles) | names(after) | owners
 
 
+@pytest.mark.slow
 def test_two_programs_do_not_change_one_scene(tiles: Tiles) -> None:
     one, two = (window.of_groups(tiles, [g], MEMORY) for g in (ARMCHAIR, ARMCHAIR + 1))
     with locked(tiles.folder), pytest.raises(FileError, match="being changed by another program"):
@@ -132,6 +134,7 @@ def test_two_programs_do_not_change_one_scene(tiles: Tiles) -> None:
     assert [step.text for step in Tiles.open(tiles.folder).head.steps] == ["", "one"]
 
 
+@pytest.mark.slow
 def test_states_out_of_reach_are_removed(tiles: Tiles, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(changing, "KEPT", 2)
     for k in range(4):
@@ -144,6 +147,7 @@ def test_states_out_of_reach_are_removed(tiles: Tiles, monkeypatch: pytest.Monke
     assert undo(tiles.folder)[0].digest()
 
 
+@pytest.mark.slow
 def test_a_window_is_whole_groups_and_what_is_around_them(tiles: Tiles) -> None:
     whole = tiles.every_row()
     near = window.around(tiles, [ARMCHAIR], MEMORY)
@@ -157,6 +161,7 @@ def test_a_window_is_whole_groups_and_what_is_around_them(tiles: Tiles) -> None:
         window.around(tiles, [ARMCHAIR], 1000)
 
 
+@pytest.mark.slow
 def test_rows_of_the_whole_scene_are_those_of_a_file_after_an_edit(tiles: Tiles) -> None:
     whole = tiles.every_row()
     taken = window.of_groups(tiles, [ARMCHAIR], MEMORY).scene.cloud
@@ -177,6 +182,7 @@ def test_rows_of_the_whole_scene_are_those_of_a_file_after_an_edit(tiles: Tiles)
     assert torch.isin(near.ids, found.ids).all() and len(found) < len(expected[::3])
 
 
+@pytest.mark.slow
 def test_groups_outside_of_a_window_keep_their_rows_of_the_table(tiles: Tiles) -> None:
     taken = window.of_groups(tiles, [ARMCHAIR], MEMORY)
     field = tiles.field
@@ -189,6 +195,7 @@ def test_groups_outside_of_a_window_keep_their_rows_of_the_table(tiles: Tiles) -
         assert g == (replace(was, label="thing", count=was.count - 4) if g.id == ARMCHAIR else was)
 
 
+@pytest.mark.slow
 def test_a_scene_that_is_written_from_its_tiles_is_that_of_all_of_it(tiles: Tiles, tmp_path: Path) -> None:
     taken = window.of_groups(tiles, [ARMCHAIR], MEMORY)
     after = change(taken, taken.scene.replace(cloud=edited(taken.scene.cloud)), "change")
@@ -199,6 +206,7 @@ def test_a_scene_that_is_written_from_its_tiles_is_that_of_all_of_it(tiles: Tile
         write_ply(after, tmp_path / "streamed.ply")
 
 
+@pytest.mark.slow
 def test_a_scene_that_is_embedded_in_its_folder_has_its_table_there(tmp_path: Path) -> None:
     named = load(saved_street(tmp_path))
     save(named.replace(language=None), tmp_path / "bare.ply")

@@ -27,8 +27,15 @@ def tiles(tmp_path: Path) -> Tiles:
     return make([saved_street(tmp_path)], tmp_path / "a.tiles", most=1000)
 
 
-@pytest.mark.parametrize("camera", [INSIDE, ABOVE], ids=["inside", "above"])
-@pytest.mark.parametrize("room", [700, 1 << 18])
+@pytest.mark.parametrize(
+    ("camera", "room"),
+    [
+        pytest.param(INSIDE, 700, id="inside in slabs"),
+        pytest.param(INSIDE, 1 << 18, id="inside", marks=pytest.mark.slow),
+        pytest.param(ABOVE, 700, id="above in slabs", marks=pytest.mark.slow),
+        pytest.param(ABOVE, 1 << 18, id="above", marks=pytest.mark.slow),
+    ],
+)
 def test_a_picture_has_the_bytes_of_that_of_the_whole(
     tiles: Tiles, camera: Camera, room: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -40,6 +47,7 @@ def test_a_picture_has_the_bytes_of_that_of_the_whole(
     assert (drawn.slabs > 5) == (room == 700)
 
 
+@pytest.mark.slow
 def test_footprints_of_one_depth_follow_each_other_by_id(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = load(saved_street(tmp_path))
     flat = scene.cloud.means.clone()
@@ -62,6 +70,7 @@ def test_tiles_out_of_view_are_not_read(tiles: Tiles) -> None:
         drawing.draw(tiles, ABOVE)
 
 
+@pytest.mark.slow
 def test_drawing_stops_where_no_pixel_takes_more(tiles: Tiles, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(drawing, "_LEAST", 200)
     wall = Camera.look_at([0, 0, 1.3], [-2, 0, 1.3], [0, 0, 1], 32, 32, 20)
@@ -70,6 +79,7 @@ def test_drawing_stops_where_no_pixel_takes_more(tiles: Tiles, monkeypatch: pyte
     assert drawn.read <= drawn.tiles * drawn.slabs
 
 
+@pytest.mark.slow
 def test_the_near_plane_is_that_of_the_whole_of_a_tiny_scene(tmp_path: Path) -> None:
     scene = load(saved_street(tmp_path))
     tiny = scene.cloud.replace(means=scene.cloud.means * 0.01, scales=scene.cloud.scales * 0.01)

@@ -44,12 +44,14 @@ def test_every_row_is_in_one_tile_as_a_file_holds_it_and_tiles_divide_space(sour
     assert np.median(extents) < 0.2 * np.prod(np.subtract(*made.bounds[::-1])[:2])
 
 
+@pytest.mark.slow
 def test_the_same_file_gives_the_same_bytes(source: Path, tmp_path: Path) -> None:
     one, two = (make([source], tmp_path / name, most=1000) for name in ("a.tiles", "b.tiles"))
     assert one.digest() == two.digest()
     assert one.state == two.state
 
 
+@pytest.mark.slow
 def test_groups_are_found_in_the_tiles_that_hold_them(source: Path, tmp_path: Path) -> None:
     made = make([source], tmp_path / "a.tiles", most=1000)
     group = made.every_row().group
@@ -72,6 +74,7 @@ def test_several_files_become_one_scene_with_one_table(source: Path, tmp_path: P
     assert [g.label for g in made.field.groups] == 2 * [g.label for g in one.language.groups]
 
 
+@pytest.mark.slow
 def test_files_of_which_one_has_no_names_are_one_scene_without(source: Path, tmp_path: Path) -> None:
     save(load_file(source), tmp_path / "bare.ply")
     made = make([source, tmp_path / "bare.ply"], tmp_path / "a.tiles")
@@ -79,6 +82,7 @@ def test_files_of_which_one_has_no_names_are_one_scene_without(source: Path, tmp
     assert "bare.ply has no language field" in made.state.notes[-1]
 
 
+@pytest.mark.slow
 def test_rows_that_no_file_may_hold_are_dropped_and_ids_stay_row_numbers(tmp_path: Path) -> None:
     scene = load_file(saved_street(tmp_path))
     means = scene.cloud.means.clone()
@@ -89,6 +93,7 @@ def test_rows_that_no_file_may_hold_are_dropped_and_ids_stay_row_numbers(tmp_pat
     assert made.state.missing == 2 and "2 of" in made.state.notes[0]
 
 
+@pytest.mark.slow
 def test_a_million_rows_in_one_place_are_divided_too(tmp_path: Path) -> None:
     scene = load_file(saved_street(tmp_path))
     save(Scene(scene.cloud.replace(means=torch.zeros_like(scene.cloud.means))), tmp_path / "heap.ply")
@@ -97,7 +102,7 @@ def test_a_million_rows_in_one_place_are_divided_too(tmp_path: Path) -> None:
     assert same(made.every_row(), load_file(tmp_path / "heap.ply").cloud)
 
 
-@pytest.mark.parametrize("harm", ["cut", "flip", "gone"])
+@pytest.mark.parametrize("harm", ["flip", *(pytest.param(h, marks=pytest.mark.slow) for h in ("cut", "gone"))])
 def test_a_torn_tile_is_never_read(source: Path, tmp_path: Path, harm: str) -> None:
     made = make([source], tmp_path / "a.tiles", most=1000)
     path = made.folder / TILES / made.state.tiles[2].columns["sh"].file
@@ -121,6 +126,7 @@ def test_a_disk_without_room_is_told_before_anything_is_written(
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted([source.name, f"{source.name}.field.safetensors"])
 
 
+@pytest.mark.slow
 def test_what_exists_is_replaced_only_on_request_and_only_if_it_is_tiles(source: Path, tmp_path: Path) -> None:
     made = make([source], tmp_path / "a.tiles")
     with pytest.raises(UserError, match="exists"):
