@@ -24,7 +24,7 @@ from .enclosed import with_enclosed
 from .judging.case import Case
 from .judging.examine import measured
 from .keeping_motion import with_motion_kept
-from .operation import Context, EditOp, Outcome
+from .operation import Affine, Context, EditOp, Outcome
 from .ops.reframe import of_everything
 from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
 
@@ -36,11 +36,13 @@ class Done(NamedTuple):
         scene: the new scene (the old one itself if nothing changed).
         receipt: what was done and measured.
         selection: what "it" means in the next instruction.
+        moved: the map of each body, with rows of the new scene.
     """
 
     scene: Scene
     receipt: Receipt
     selection: Selection
+    moved: tuple[Affine, ...] = ()
 
 
 def carry_out(
@@ -76,7 +78,7 @@ def carry_out(
         where = (chosen.reason,) if query is not None and query.spatial and chosen.reason else ()
         outcome = replace(outcome, notes=(*where, *inner, *outcome.notes, *unsupported))
     receipt = checked(scene, op, chosen, outcome, context, seconds, seen)
-    return Done(outcome.scene, receipt, chosen if outcome.focus is None else outcome.focus)
+    return Done(outcome.scene, receipt, chosen if outcome.focus is None else outcome.focus, outcome.moved)
 
 
 def checked(

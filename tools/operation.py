@@ -27,6 +27,7 @@ from ..gaussians.world.lengths import Unit, in_metres
 from .alternatives import NOT_GIVEN, either, given
 from .docstrings import described
 from .receipt import Check, Pixels, Receipt, SelectionSummary
+from .when import When
 
 if TYPE_CHECKING:
     from ..gaussians.assets.modeling.make import Asset
@@ -183,6 +184,7 @@ class Context:
         photographs: of the scene, against which what was filled is optimised where they see it; None: there are none.
         references: photographs of materials that the user gave, by the names of their files.
         harmony: whether what is put into a scene is fitted to its light and casts a shadow (see `harmony`).
+        time: of a scene with motion, seconds, at which words are said and places are settled; None: its start.
     """
 
     viewer: Camera
@@ -200,6 +202,7 @@ class Context:
     photographs: Photographs | None = None
     references: Mapping[str, Photograph] = field(default_factory=dict)
     harmony: bool = True
+    time: float | None = None
 
     def resolve(self, scene: Scene, query: Query) -> Selection:
         """What `query` means in `scene`; whatever its verdict is (see `Selection.require`).
@@ -280,9 +283,14 @@ class EditOp(BaseModel):
     reveals: ClassVar[bool] = False  # whether it takes things from their place, and what they hid may be filled
     puts: ClassVar[bool] = False  # whether it puts things where they were not, and they cast shadows there
     takes_enclosed: ClassVar[bool] = False  # whether what a thing of a capture encloses is edited with it
+    makes_motion: ClassVar[bool] = False  # whether it changes the motion of the scene itself, and reads its own `when`
 
     def query(self) -> Query | None:
         """The query of its target, or None if it has no target."""
+        return None
+
+    def time(self) -> When | None:
+        """When it holds, or None at all times."""
         return None
 
     def subject(self) -> str:
@@ -330,6 +338,10 @@ class TargetedOp(EditOp):
     """An operation on something that is already in the scene."""
 
     target: Query
+    when: When | None = None
 
     def query(self) -> Query | None:
         return self.target
+
+    def time(self) -> When | None:
+        return self.when

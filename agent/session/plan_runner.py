@@ -61,8 +61,8 @@ def run_plan(
     """
     from ...tools import execute
     from ...tools.binding import bound_targets, exchanged_likes
-    from ...tools.completing import completed
     from ...tools.ops.reframe import of_everything
+    from ...tools.timing.through_time import carry_through_time
 
     words = plan.instruction if len(plan.ops) == 1 else ""
     carry_out = execute.carry_out if judge is None else partial(judge.carry_out, instruction=words)
@@ -80,9 +80,7 @@ def run_plan(
             op = of_everything(op)
             if step in early:
                 op = op.settled(start.scene, context_of(start.last))
-            about = bound[step]
-            done = carry_out(scene, op, context, *(() if about is None else (about,)))
-            scene, receipt, last = completed(scene, op, context, done)
+            scene, receipt, last, _ = carry_through_time(scene, op, context, bound[step], carry_out)
         except ScenewrightError as error:
             raise PlanFailed(_in_plan(error, plan, step), _question(plan, step, error, scene, context)) from error
         receipts.append(

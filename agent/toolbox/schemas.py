@@ -51,7 +51,7 @@ def _compact(schema: Keywords) -> Keywords:
 
 
 def described_once(schema: Keywords, told: set[str]) -> Keywords:
-    """A schema whose shared types have descriptions only if they are not among `told`, to which they are added."""
+    """A schema whose shared types are told in full only if they are not among `told`, to which they are added."""
     if "$defs" not in schema:
         return schema
     types = {name: _silent(made) if name in told else made for name, made in schema["$defs"].items()}
@@ -60,10 +60,26 @@ def described_once(schema: Keywords, told: set[str]) -> Keywords:
 
 
 def _silent(made: Keywords) -> Keywords:
-    """The schema of a type without its description and those of its fields."""
-    fields = {
-        name: {k: v for k, v in field.items() if k != "description"}
-        for name, field in made.get("properties", {}).items()
-    }
+    """The schema of a type without its description, those of its fields, their limits and their long enumerations:
+    they are told where the type is described, and checked when a function is called."""
+    fields = {name: _bare(field) for name, field in made.get("properties", {}).items()}
     kept = {k: v for k, v in made.items() if k != "description"}
     return {**kept, "properties": fields} if fields else kept
+
+
+_LIMITS = frozenset({
+    "description", "default", "minLength", "maxLength", "minItems", "maxItems", "minimum", "maximum", "exclusiveMinimum",
+    "exclusiveMaximum",
+})  # fmt: skip
+_LONG = 6  # values of an enumeration
+
+
+def _bare(schema: Keywords) -> Keywords:
+    """A schema of a value with its types alone."""
+    kept = {k: v for k, v in schema.items() if k not in _LIMITS and not (k == "enum" and len(v) > _LONG)}
+    if isinstance(kept.get("items"), dict):
+        kept["items"] = _bare(kept["items"])
+    for name in ("anyOf", "prefixItems"):
+        if name in kept:
+            kept[name] = [_bare(option) for option in kept[name]]
+    return kept

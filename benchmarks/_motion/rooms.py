@@ -115,8 +115,11 @@ class _Room:
         self.scene = self.scene.replace(language=replace(table, groups=groups))
 
     def done(self) -> Scene:
-        """The room with its motion."""
-        return self.scene.replace(motion=Motion(tuple(self.tracks), (), (), paths.START, paths.STOP))
+        """The room with its motion. Its names are given, not recognised: no encoder is asked whether they fit."""
+        table = self.scene.language
+        assert table is not None
+        named = replace(table, groups=tuple(replace(g, named_by="user") for g in table.groups))
+        return self.scene.replace(language=named, motion=Motion(tuple(self.tracks), (), (), paths.START, paths.STOP))
 
 
 @dataclass(frozen=True)

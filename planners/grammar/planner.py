@@ -35,6 +35,7 @@ from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
+from .timing.reading import TimeReader, may_be_timed
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
 
@@ -156,6 +157,35 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     """
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
+    if may_be_timed(cleaned) and (timed := TimeReader(_operations, _thing).read(cleaned)) is not None:
+        return _of_time(timed)
+    return _timeless(cleaned, previous)
+
+
+def _operations(cleaned: str) -> Sequence[Fields]:
+    """The operations of a plain command, as fields. Raises Refusal."""
+    return _timeless(cleaned, None).ops
+
+
+def _of_time(ops: Sequence[Fields]) -> _Outcome:
+    """The outcome of an instruction about time or motion."""
+    last: Query | None = ops[-1].get("target")
+    named = last is not None and not last.last
+    return _Outcome(
+        tuple(ops),
+        last.text if named and last is not None else "",
+        tuple(ops[-1:]),
+        (),
+        last.colors if named and last is not None else (),
+    )
+
+
+def _timeless(cleaned: str, previous: str | None) -> _Outcome:
+    """As `_understand`, of an instruction that is safe and says nothing of time.
+
+    Raises:
+        Refusal: any part of it is not understood, or none of it is an edit.
+    """
     if (shadows := shadows_heard(cleaned)) is not None:
         return _with_shadows(shadows, previous)
     if may_be_light(cleaned) and (parts := _lit(cleaned, previous)) is not None:
@@ -212,7 +242,7 @@ def _lit(cleaned: str, previous: str | None) -> list[Part] | None:
 def _thing(phrase: str) -> Query | None:
     """What a phrase for things means, None if it is not understood."""
     with suppress(Refusal, UserError):
-        (op,) = _understand(f"select {phrase}", None).ops
+        (op,) = _timeless(f"select {phrase}", None).ops
         target: Query = op["target"]
         return target
     return None

@@ -31,6 +31,7 @@ from ..operation import AssetName, ColorName, Context, EditOp, Length, Outcome, 
 from ..placement.place import anchors_of
 from ..placement.surroundings import Surroundings
 from ..receipt import Check, at_least
+from ..when import When
 
 
 class Insert(EditOp):
@@ -53,6 +54,10 @@ class Insert(EditOp):
     """How tall it is to be; otherwise as tall as such things are."""
     place: Placement | None = None
     harmony: bool = True  # whether its colours are fitted to the light of the scene, see `harmony`
+    when: When | None = None
+
+    def time(self) -> When | None:
+        return self.when
 
     def subject(self) -> str:
         return f"{self.count} {self.asset}" if self.count > 1 else self.asset

@@ -85,6 +85,7 @@ class Query(BaseModel):
         size: among those that otherwise match.
         relations: all must hold.
         region: only what lies in this part of space.
+        moving: only what moves at some time, or only what never does.
         pick: of several matches. "one" demands exactly one; "any" takes the best; superlatives and "nth" (with
             `ordinal`) order them; "rest" takes everything but the matches.
         ordinal: from 1, left to right as the viewer sees them; negative: right to left.
@@ -105,6 +106,7 @@ class Query(BaseModel):
     size: Sizes | None = None
     relations: Annotated[tuple[Relation, ...], Field(max_length=4)] = ()
     region: Region | None = None
+    moving: bool | None = None
     pick: Picks = "one"
     ordinal: Annotated[int, Field(ge=1, le=1000)] | Annotated[int, Field(ge=-1000, le=-1)] | None = None
     count: Annotated[int, Field(ge=1, le=1000)] | None = None
@@ -152,6 +154,8 @@ class Query(BaseModel):
             said += f" {r.describe()}"
         if self.region is not None:
             said += f" {self.region.describe()}"
+        if self.moving is not None:
+            said += " that moves" if self.moving else " that stands still"
         return said
 
 

@@ -31,6 +31,7 @@ from .background import background
 from .color.fallback import PARTS, by_color, by_hue, is_reliable
 from .floaters import floaters
 from .keeping import without_strays
+from .moving import moving_groups
 from .part_query import Piece, pieces_of
 from .parts import NAMED
 from .picking import by_distance, pick
@@ -190,6 +191,11 @@ class Resolver:
             if query.region is not None:
                 held = mostly_in(self.scene, self._inside(query.region).rows)
                 out = out | {g.id for g in self.field.groups if g.id not in held}
+            if query.moving is not None:
+                moving = moving_groups(self.scene, self.members)
+                if query.moving and not moving:
+                    return nothing(query, "nothing moves in this scene")
+                out = out | {g.id for g in self.field.groups if (g.id in moving) != query.moving}
             found = self.described(query, out)
             fronts = self._frames_told(query) if query.relations else ""
             for relation in query.relations if found.chosen else ():

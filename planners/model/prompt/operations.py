@@ -37,10 +37,14 @@ def described(detail: Detail = "full") -> str:
         made = cls.model_json_schema()
         words, data = cls.example
         parts += [f"### {name}", _about(made, detail), *_fields(made, detail)]
-        parts += [f"Example: {json.dumps(words)} is {json.dumps(data)}", ""] if detail == "full" else [""]
+        parts += (
+            [f"Example: {json.dumps(words)} is {json.dumps(data)}", ""]
+            if detail == "full"
+            else [""] * (detail == "plain")
+        )
         types |= made.get("$defs", {})
     for name, made in types.items():
-        parts += [f"### Type {name}", _about(made, detail), *_fields(made, detail), ""]
+        parts += [f"### Type {name}", _about(made, detail), *_fields(made, detail), *([""] * (detail != "brief"))]
     return "\n".join(parts).strip()
 
 
@@ -69,32 +73,42 @@ def _fields(made: dict[str, Any], detail: Detail) -> list[str]:
     for name, field in made.get("properties", {}).items():
         if "const" in field:
             continue
+        if detail == "brief" and (name in ("target", "when") or f"`{name}` is" in _about(made, detail)):  # said there
+            told.append(name)
+            continue
         needed = " (required)" if name in made.get("required", ()) else ""
         default = field.get("default")
         usual = f", default {json.dumps(default)}" if default not in (None, [], "", False) else ""
+        usual = usual.replace(", default ", " = ") if detail == "brief" else usual
         said = field.get("description") or listed.get(name, "")
         # What a type says of its fields is said nowhere else; fields of operations mostly speak for themselves.
         about = f". {' '.join(said.split())}" if said and (detail != "brief" or name in listed) else ""
-        told.append(f"{name}{needed}: {_type(field)}{usual}{about}")
+        told.append(f"{name}{needed}: {_type(field, detail)}{usual}{about}")
     if detail == "brief" and not listed:
-        return [f"Fields: {'; '.join(told)}"] if told else []
+        return ["; ".join(told)] if told else []
     return [f"- {one}" for one in told]
 
 
-def _type(field: dict[str, Any]) -> str:
-    """A schema in a few words."""
+def _type(field: dict[str, Any], detail: Detail = "full") -> str:
+    """A schema in a few words; if brief, without the limits of numbers and lists."""
     if "$ref" in field:
         return str(field["$ref"]).rpartition("/")[2]
     if "anyOf" in field:
-        return " or ".join(_type(f) for f in field["anyOf"] if f.get("type") != "null")
+        said = [_type(f, detail) for f in field["anyOf"] if f.get("type") != "null"]
+        return " or ".join(dict.fromkeys(said))
+    if "enum" in field and detail == "brief":
+        return "|".join(map(str, field["enum"]))
     if "enum" in field:
         return "one of " + ", ".join(map(str, field["enum"]))
     kind = str(field.get("type", "value"))
     if "prefixItems" in field:
-        return "list of " + ", ".join(map(_type, field["prefixItems"]))
+        return "list of " + ", ".join(_type(f, detail) for f in field["prefixItems"])
     if kind == "array":
         most = field.get("maxItems", _WIDE)
-        return f"list of {'' if most > _FEW else f'at most {most}: '}{_type(field['items'])}"
+        few = most <= _FEW and detail != "brief"
+        return f"list of {f'at most {most}: ' if few else ''}{_type(field['items'], detail)}"
+    if detail == "brief" and kind in ("integer", "number", "boolean"):
+        return {"integer": "whole number", "boolean": "flag"}.get(kind, kind)
     limits = " and ".join(form.format(f"{field[key]:g}") for key, form in _LIMITS if abs(field.get(key, _WIDE)) < _WIDE)
     return (
         f"{kind} {limits}".strip()

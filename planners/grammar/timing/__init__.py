@@ -1,0 +1,1 @@
+"""Words about time: when an edit holds, and what moves how."""

@@ -1,0 +1,280 @@
+"""Times in numbers: "from 1 to 3 s", "after two seconds", "in half a second", "at t = 2", "for the last second".
+
+A phrase is cut out of the words of a sentence; what it says is kept as a `Moment`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from ..vocabulary.quantities import NUMBERS
+
+End = float | Literal["middle", "end"]  # seconds, or a place in the time of the scene
+
+SLOW, BRIEF = 4.0, 0.6  # seconds of a movement that is told to be slow, or quick
+LITTLE_BY_LITTLE = 2.0  # seconds of a look that changes slowly
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What a sentence says of time in numbers.
+
+    Attributes:
+        start, stop: as `When` has them.
+        lasting: seconds that it takes or holds.
+        taken: whether `lasting` is how long a change takes ("in two seconds") and not how long it holds ("for two").
+        slowly: whether it is to change little by little.
+        always: whether it says that it holds at all times.
+        said: the words that were cut.
+    """
+
+    start: End | None = None
+    stop: End | None = None
+    lasting: float | None = None
+    taken: bool = False
+    slowly: bool = False
+    quickly: bool = False
+    always: bool = False
+    said: tuple[str, ...] = ()
+
+    @property
+    def empty(self) -> bool:
+        return self == Moment(always=self.always, said=self.said)
+
+
+_UNIT = r"(?:seconds?|secs?|s)\b"
+_ONES = "|".join(sorted((w for w in NUMBERS if NUMBERS[w] < 61), key=len, reverse=True))
+_WORD = rf"(?:(?:{_ONES})(?: (?:{_ONES}))?|a couple of|a few|a|an)"
+_DIGITS = r"\d+(?:[.,]\d+)?"
+_HALVES = r"(?:a half|half|a quarter|three quarters|one and a half|a)"
+_HEDGE = r"(?:(?:like|about|around|exactly|just|roughly|only|approximately|some|the|full|good|whole|first) )*"
+_NUMBER = rf"(?:{_DIGITS}|{_WORD})"
+_DURATION = (
+    rf"(?:{_NUMBER} and (?:a )?half {_UNIT}|{_NUMBER} {_UNIT} and a half|(?:{_NUMBER} and )?(?:a "
+    rf")?half (?:a |of a )?{_UNIT}|"
+    rf"(?:three )?quarters? (?:of )?a {_UNIT}|a quarter (?:of )?a {_UNIT}|(?:{_NUMBER}) (?:full |whole "
+    rf")?{_UNIT}|half a {_UNIT})"
+)
+_MARK = r"(?: mark| point)?"
+_NAMED: dict[str, End] = {
+    "start": 0.0,
+    "beginning": 0.0,
+    "outset": 0.0,
+    "end": "end",
+    "finish": "end",
+    "middle": "middle",
+    "halfway": "middle",
+}
+_CLIP = r"(?:clip|film|video|animation|shot|sequence|movie|time)"
+_NAME = (
+    rf"(?:(?:the )?(?:very )?(?:start|beginning|outset|end|finish)(?: of (?:the |this )?(?:scene|"
+    rf"{_CLIP}))?|(?:the )?middle of (?:the |this )?{_CLIP})"
+)
+_POINT = (
+    rf"(?:(?:the )?(?:t|time|second|sec|seconds) ?=? ?{_NUMBER}(?: {_UNIT})?{_MARK}|(?:the "
+    rf")?{_HEDGE}{_DURATION}{_MARK}|{_NAME})"
+)
+_BARE = rf"(?:{_POINT}|{_DIGITS}|(?:{_ONES}))"
+_TO = r"(?:to|until|till|til|and|up to|through|thru|-|through to|untill)"
+_ALWAYS = (
+    r"(?:(?:for |during |over |through )?(?:the )?(?:whole|entire|full) (?:time|clip|scene|film|video|"
+    r"animation|shot|sequence|thing)|"
+    r"all the time|all through|throughout(?: the (?:scene|clip|film|shot))?|always|permanently|"
+    r"forever|for ever|constantly|"
+    r"from (?:the )?(?:start|beginning) to (?:the )?(?:end|finish)|at all times|the whole way(?: "
+    r"through)?|the entire time)"
+)
+_SLOWLY = (
+    r"(?:slowly|gradually|little by little|bit by bit|step by step|smoothly|gently|steadily|over time|ever so slowly)"
+)
+_QUICKLY = r"(?:quickly|rapidly|swiftly|in no time)"
+
+
+def _value(text: str) -> float | None:
+    """Seconds that a number or a duration names."""
+    text = re.sub(rf"^{_HEDGE}", "", text.strip())
+    text = re.sub(r"^(?:the )?(?:t|time|seconds?|sec)\b(?: ?= ?| )(?=\w)", "", text)
+    text = re.sub(r" (?:mark|point)$", "", text)
+    half = 0.0
+    if re.search(r" and (?:a )?half\b", text):
+        half, text = 0.5, re.sub(r" and (?:a )?half\b(?: (?:a|of a))?", "", text)
+    if re.match(r"^(?:a )?half\b", text):
+        return 0.5 + half
+    if re.match(r"^three quarters", text):
+        return 0.75
+    if re.match(r"^a quarter|^quarter", text):
+        return 0.25
+    number = re.sub(rf" ?(?:full |whole )?{_UNIT}.*$", "", text).strip()
+    if re.fullmatch(_DIGITS, number):
+        return float(number.replace(",", ".")) + half
+    if number in ("a", "an", ""):
+        return 1.0 + half
+    if number == "a couple of":
+        return 2.0
+    if number == "a few":
+        return 3.0
+    parts = number.split()
+    if parts and all(p in NUMBERS for p in parts):
+        return float(sum(NUMBERS[p] for p in parts)) + half
+    return None
+
+
+def seconds_of(said: str) -> float | None:
+    """Seconds that words name if they name a duration and nothing else."""
+    return _value(said) if re.fullmatch(rf"{_HEDGE}{_DURATION}", said) else None
+
+
+def _end(text: str) -> End | None:
+    for name, end in _NAMED.items():
+        if re.search(rf"\b{name}\b", text):
+            return end
+    return _value(text)
+
+
+Made = Callable[[Moment, "re.Match[str]"], Moment | None]
+
+
+def _range(moment: Moment, found: re.Match[str]) -> Moment | None:
+    start, stop = _end(found["a"]), _end(found["b"])
+    if start is None or stop is None or (isinstance(start, float) and isinstance(stop, float) and stop <= start):
+        return None
+    return replace(moment, start=None if start == 0.0 else start, stop=None if stop == "end" else stop)
+
+
+def _start(moment: Moment, found: re.Match[str]) -> Moment | None:
+    start = _end(found["a"])
+    return None if start is None or moment.start is not None else replace(moment, start=start)
+
+
+def _stop(moment: Moment, found: re.Match[str]) -> Moment | None:
+    stop = _end(found["a"])
+    if stop is None or stop == 0.0 or moment.stop is not None:
+        return None
+    return replace(moment, stop=None if stop == "end" else stop, always=moment.always or stop == "end")
+
+
+def _holds(moment: Moment, found: re.Match[str]) -> Moment | None:
+    value = _value(found["a"])
+    return None if not value or moment.lasting is not None else replace(moment, lasting=value)
+
+
+def _takes(moment: Moment, found: re.Match[str]) -> Moment | None:
+    made = _holds(moment, found)
+    return None if made is None else replace(made, taken=True)
+
+
+def _first(moment: Moment, found: re.Match[str]) -> Moment | None:
+    value = _value(found["a"])
+    return None if not value else replace(moment, stop=value)
+
+
+def _last(moment: Moment, found: re.Match[str]) -> Moment | None:
+    value = _value(found["a"])
+    return None if not value else replace(moment, start=-value)
+
+
+_PHRASES: tuple[tuple[str, Made], ...] = (
+    (rf"(?:for |during |in |over |within )?(?:the )?first (?P<a>{_DURATION}|second)(?! later)", _first),
+    (rf"(?:for |during |in |over |within )?(?:the )?(?:last|final) (?P<a>{_DURATION}|second)", _last),
+    (rf"(?:from|starting (?:at|from)) (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
+    (rf"(?:in )?between (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
+    (rf"(?:from )?(?P<a>{_POINT}|{_DIGITS}) ?{_TO} (?P<b>{_POINT})", _range),
+    (
+        rf"(?:from|starting(?: at| from)?|beginning(?: at| from)?|as of|since|as from) "
+        rf"(?P<a>{_POINT})(?: (?:on|onwards?|and on))?",
+        _start,
+    ),
+    (
+        rf"(?:only )?(?:after|past|following) (?P<a>{_POINT})(?: (?:have passed|has passed|is over|are "
+        rf"over|are up))?",
+        _start,
+    ),
+    (
+        rf"(?P<a>{_DURATION}) (?:into (?:it|the (?:clip|scene|film|video|animation))|in|from the "
+        rf"start)\b(?! (?:the|a|to))",
+        _start,
+    ),
+    (
+        rf"(?:at|@|when (?:it is|the time is|time is|t is)) (?:around |about |exactly "
+        rf")*(?P<a>{_POINT})(?: (?:on|onwards?))?",
+        _start,
+    ),
+    (rf"(?:only )?(?:until|till|til|untill|up to|up until|before|by) (?P<a>{_POINT})", _stop),
+    (rf"(?:for|lasting) (?:the (?:next )?)?(?P<a>{_HEDGE}{_DURATION})(?: long| only)?", _holds),
+    (
+        rf"(?:so (?:that )?(?:it|this|that|\w+ing) (?:takes|lasts)|which takes|and take|taking|takes) "
+        rf"(?P<a>{_HEDGE}{_DURATION})",
+        _takes,
+    ),
+    (
+        rf"(?:, )?(?:in|over|within|across|inside|during|in the space of|over the course of|in the "
+        rf"course of|within the space of|"
+        rf"in the span of|over a (?:span|period) of) (?P<a>{_HEDGE}{_DURATION})(?: time| flat)?",
+        _takes,
+    ),
+    (
+        r"(?:at|by) (?P<a>the (?:very )?(?:end|start|beginning)|halfway|half time|the middle)(?: of "
+        r"it| through| point)?",
+        _start,
+    ),
+    (r"(?P<a>halfway) (?:through|in)(?: (?:it|the (?:clip|scene|film|video|animation)))?", _start),
+)
+_COMPILED = tuple((re.compile(rf"(?:^|(?<= )){pattern}(?= |$)"), made) for pattern, made in _PHRASES)
+_ADVERBS = (
+    (re.compile(rf"(?:^|(?<= )){_ALWAYS}(?= |$)"), "always"),
+    (re.compile(rf"(?:^|(?<= )){_SLOWLY}(?= |$)"), "slowly"),
+    (re.compile(rf"(?:^|(?<= )){_QUICKLY}(?= |$)"), "quickly"),
+)
+TIMED = re.compile(rf"\b(?!an? second\b){_DURATION}|\b(?:\d+ ?{_UNIT}|(?:t|second|sec) ?=? ?\d)")
+
+
+def cut(said: str) -> tuple[str, Moment]:
+    """The words of a sentence without those that name times in numbers, and what those say.
+
+    >>> cut("hide the vase from 1 to 3 s")
+    ('hide the vase', Moment(start=1.0, stop=3.0, ..., said=('from 1 to 3 s',)))
+    """
+    moment = Moment()
+    for _ in range(4):
+        for pattern, made in _COMPILED:
+            found = next((m for m in pattern.finditer(said) if _fits(said, m)), None)
+            if found is None:
+                continue
+            changed = made(moment, found)
+            if changed is None:
+                continue
+            moment = replace(changed, said=(*moment.said, found[0]))
+            said = _without(said, found)
+            break
+        else:
+            break
+    for pattern, name in _ADVERBS:
+        if (found := pattern.search(said)) is not None:
+            moment = replace(moment, **{name: True}, said=(*moment.said, found[0]))
+            said = _without(said, found)
+    return said, moment
+
+
+def _fits(said: str, found: re.Match[str]) -> bool:
+    """Whether a phrase names a time: bare numbers do only where a unit, or "from", stands with them."""
+    text = found[0]
+    after = said[found.end() :].strip().split(" ")[0]
+    if after == "of" or (
+        re.search(r"\ba second$", text) and after not in ("", ",", ".", "and", "then", "later", "it", "while", "when")
+    ):
+        return False  # "at the end of the bed", "a second lamp"
+    if "=" in text or re.search(rf"{_UNIT}|\b(?:t|sec|time|start|beginning|end|middle|halfway)\b", text):
+        behind = said[found.end() :].strip().split(" ")[0]
+        return behind not in ("chair", "one", "of") or "second" not in text
+    behind = said[found.end() :].strip().split(" ")[0]
+    return text.startswith(("from", "between", "in between")) and behind in ("", ",", ".", "then", "and")
+
+
+def _without(said: str, found: re.Match[str]) -> str:
+    left = said[: found.start()].rstrip(" ,")
+    right = said[found.end() :].lstrip()
+    right = right.lstrip(", ") if not left else right
+    return " ".join(f"{left} {right}".split())

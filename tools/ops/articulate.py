@@ -1,0 +1,202 @@
+"""The operation articulate: open or close what swings on a hinge or slides."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field
+from torch import Tensor
+
+from ...gaussians.errors import InstructionError
+from ...gaussians.language.query.selection import Selection, mask_of
+from ...gaussians.motion.at import at
+from ...gaussians.motion.motion import Track, carried, poses
+from ...gaussians.rotations import axis_rotation
+from ...gaussians.scene import Scene
+from ..alternatives import NOT_GIVEN, either
+from ..checks import count_matches, moved_as_asked
+from ..cloud_diff import Draft
+from ..field_update import after_move
+from ..operation import Affine, Context, Length, Outcome, TargetedOp
+from ..placement.bodies import Body, bodies_of
+from ..receipt import Check, at_most
+from ..timing.hinges import Opening, opening_of
+from ..timing.retiming import angles_at, with_tracks
+from ..timing.spans import length_of, spans_of
+from ..transform import turn
+
+F64 = NDArray[np.float64]
+
+_TAKES = 1.5  # seconds, where nobody says how long
+_SAME = 1e-6
+
+
+class Articulate(TargetedOp):
+    """Open or close a door, a drawer or a lid: a share of the way, to an angle, or a drawer by a distance.
+
+    Without `when` it is open or closed; what opens by itself in the scene does so as far as was said. With `when` it
+    moves from how it is then. How it opens is found from its shape, its handle and what it touches.
+    """
+
+    model_config = ConfigDict(
+        json_schema_extra=either(
+            {"degrees": NOT_GIVEN, "distance": NOT_GIVEN}, {"share": NOT_GIVEN, "distance": NOT_GIVEN},
+            {"share": NOT_GIVEN, "degrees": NOT_GIVEN},
+        )
+    )  # fmt: skip
+    example: ClassVar[tuple[str, dict[str, Any]]] = (
+        "open the door halfway from 1 to 2 s",
+        {"op": "articulate", "target": {"text": "door"}, "share": 0.5, "when": {"start": 1, "stop": 2}},
+    )
+    makes_motion: ClassVar[bool] = True
+    op: Literal["articulate"] = "articulate"
+    change: Literal["open", "close"] = "open"
+    share: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
+    degrees: Annotated[float, Field(gt=0, le=180, allow_inf_nan=False)] | None = None
+    distance: Length | None = None
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return mask_of(scene.cloud, selection.ids)
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        after, moved, notes = scene, list[Affine](), list[str]()
+        touched: list[Tensor] = []
+        for body in bodies_of(scene, selection):
+            ids = scene.cloud.ids[body.rows]
+            touched.append(ids)
+            own = self._own_track(after, ids.cpu().numpy())
+            if own is not None:
+                after, told = self._moving(after, own, selection, context)
+            elif self.when is not None:
+                after, told = self._from_rest(after, body, ids, selection, context)
+            else:
+                after, body_map, told = self._at_once(after, body)
+                moved.append(body_map)
+            notes += [t for t in told if t]
+        return Outcome(after, touched=torch.cat(touched).sort().values, moved=tuple(moved), notes=tuple(notes))
+
+    def _own_track(self, scene: Scene, ids: NDArray[np.int64]) -> Track | None:
+        """The track on which most of a body opens by itself."""
+        for track in scene.motion.tracks if scene.motion is not None else ():
+            opens = track.kind in ("hinge", "slide") and track.angles is not None
+            if opens and 2 * int(np.isin(ids, track.ids).sum()) > len(ids):
+                return track
+        return None
+
+    def _goal(self, most: float, slides: bool, scene: Scene) -> float:
+        """Radians or scene units at which it shall be; `most` is wide open, with its sign."""
+        if self.degrees is not None or self.distance is not None:
+            if slides != (self.distance is not None):
+                raise InstructionError("a drawer slides by a distance, and a door or lid turns by degrees")
+            said = self.distance.in_units(scene.frame) if self.distance is not None else math.radians(self.degrees or 0)
+            return math.copysign(said, most)
+        share = 1.0 if self.share is None else self.share  # closed by a share of the way, or wholly
+        return most * (1 - share if self.change == "close" else share)
+
+    def _moving(
+        self, scene: Scene, own: Track, selection: Selection, context: Context
+    ) -> tuple[Scene, tuple[str, ...]]:
+        """What opens by itself: as far as was said, or from a time on otherwise."""
+        assert scene.motion is not None and own.angles is not None
+        motion, slides = scene.motion, own.kind == "slide"
+        most = float(own.angles[int(np.argmax(np.abs(own.angles)))])
+        stop = motion.stop
+        if self.when is None:
+            goal = self._goal(most, slides, scene)
+            asked = self.share is not None or self.degrees is not None or self.distance is not None
+            if asked and self.change == "open":
+                made = replace(own, angles=own.angles * (goal / most))
+                told = f"it opens by itself, now by {_told(goal, slides, scene)}"
+            else:
+                made = replace(own, times=np.array([motion.start]), angles=np.array([goal]))
+                told = "it does not move any more"
+        else:
+            start, end = self._time(spans_of(self.when, scene, selection, context)[0], motion.start, context)
+            now = float(angles_at(own, np.array([start]))[0])
+            goal = self._goal(most, slides, scene)
+            before = [t for t in own.times if t < start - _SAME]
+            dense = np.unique(np.round([*before, *np.arange(before[-1], start, 1 / 30)], 9)) if before else np.zeros(0)
+            times = np.array([*dense, start, end])
+            angles = np.array([*angles_at(own, dense), now, goal])
+            made = replace(own, times=times, angles=angles)
+            told = f"{start:.3g} to {end:.3g} s: from {_told(now, slides, scene)} to {_told(goal, slides, scene)}"
+            stop = max(stop, end)
+        tracks = [made if t is own else t for t in motion.tracks]
+        return with_tracks(scene, tracks, stop), (told,)
+
+    def _time(self, span: tuple[float, float], first: float, context: Context) -> tuple[float, float]:
+        start = span[0] if math.isfinite(span[0]) else (first if context.time is None else context.time)
+        return start, span[1] if math.isfinite(span[1]) else start + _TAKES
+
+    def _from_rest(
+        self, scene: Scene, body: Body, ids: Tensor, selection: Selection, context: Context
+    ) -> tuple[Scene, tuple[str, ...]]:
+        """What does not open by itself yet: from closed, or for "close" from how it is told to be open."""
+        assert self.when is not None
+        whole = length_of(scene)
+        start, end = self._time(spans_of(self.when, scene, selection, context)[0], whole.start, context)
+        found = self._opening(at(scene, start), body)
+        if self.change == "close":
+            raise InstructionError(f"nothing tells how far {self.target.describe()} is open: open it first")
+        goal = self._goal(found.most, found.how == "drawer", scene)
+        names = ids.cpu().numpy()
+        if found.how == "drawer":
+            made = Track.slide(names, (start, end), (0.0, goal), found.axis)
+        else:
+            made = Track.hinge(names, (start, end), (0.0, goal), found.axis, found.pivot)
+        tracks = [*(scene.motion.tracks if scene.motion is not None else ()), made]
+        return with_tracks(scene, tracks, max(whole.stop, end)), (found.told,)
+
+    def _opening(self, scene: Scene, body: Body) -> Opening:
+        return opening_of(scene, body, self.target.text or body.label)
+
+    def _at_once(self, scene: Scene, body: Body) -> tuple[Scene, Affine, tuple[str, ...]]:
+        """The scene with it open."""
+        if self.change == "close":
+            raise InstructionError(f"nothing tells how far {self.target.describe()} is open: undo what opened it")
+        found = self._opening(scene, body)
+        goal = self._goal(found.most, found.how == "drawer", scene)
+        if found.how == "drawer":
+            matrix, offset = np.eye(3), goal * found.axis
+        else:
+            matrix = axis_rotation(found.axis, math.degrees(goal))
+            offset = found.pivot - matrix @ found.pivot
+        draft = Draft(scene.cloud)
+        turn(draft, body.rows, matrix, offset)
+        cloud = draft.done()
+        made = Affine(body.rows, matrix, offset, body.rows)
+        after = scene.replace(cloud=cloud, language=after_move(scene, cloud, (made,)))
+        ids = scene.cloud.ids[body.rows].cpu().numpy()
+        return after.replace(motion=carried(scene.motion, ids, matrix, offset)), made, (found.told,)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        counted = count_matches(before, outcome.scene, outcome)
+        if outcome.moved:
+            return counted, moved_as_asked(before, outcome.scene, outcome.moved)
+        return counted, self._on_its_axis(outcome)
+
+    def _on_its_axis(self, outcome: Outcome) -> Check:
+        """The hinge stays where it is at every key."""
+        motion, worst = outcome.scene.motion, 0.0
+        for track in motion.tracks if motion is not None else ():
+            if (
+                track.kind == "hinge"
+                and track.axis is not None
+                and np.isin(track.ids, outcome.touched.cpu().numpy()).all()
+            ):
+                turns, shifts = poses(track, track.times)
+                for along in (0.0, 1.0):
+                    point = track.pivot + along * track.axis
+                    worst = max(worst, float(np.abs(turns @ point + shifts - point).max(initial=0.0)))
+        return at_most("hinge stays", worst, 1e-6, "units", f"its hinge moves by {worst:.2g} units")
+
+
+def _told(amount: float, slides: bool, scene: Scene) -> str:
+    if slides:
+        return f"{abs(amount) * (scene.frame.metres_per_unit or 1.0) * 100:.3g} cm"
+    return f"{abs(math.degrees(amount)):.3g} degrees"

@@ -1,0 +1,253 @@
+"""The operation pace: when, how fast and in which direction of time the target moves."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field, model_validator
+from torch import Tensor
+
+from ...gaussians.errors import InstructionError
+from ...gaussians.language.query.query import ALL
+from ...gaussians.language.query.selection import Selection, mask_of
+from ...gaussians.motion.motion import Motion, Track, moving_ids
+from ...gaussians.scene import Scene
+from ..alternatives import NOT_GIVEN, either, given
+from ..checks import count_matches
+from ..operation import Context, Outcome, TargetedOp
+from ..placement.bodies import rows_by_thing
+from ..receipt import Check, at_most
+from ..timing.retiming import Warp, divided, movement, playing, with_tracks
+from ..timing.spans import Span, spans_of
+
+I64 = NDArray[np.int64]
+F64 = NDArray[np.float64]
+
+_TURNS = 2.1 * math.pi  # radians from which a turn is one of many, whose speed is not how soon it ends
+_NO_TIME = 1e-3  # seconds
+
+
+class Pace(TargetedOp):
+    """Change when and how fast the target moves, of what moves already.
+
+    "stop": it stands still in the time of `when`, and goes on behind it; without `when` at all times. "begin": its
+    movement begins at `when`, and takes as long as that lasts. "speed": `factor` times as fast. "later": by `seconds`,
+    negative is earlier. "reverse": played backwards. "return": it goes back the way it came. "go_on": it keeps its last
+    speed until the end of `when`. Everything is the whole scene, which then gets longer or shorter.
+    """
+
+    model_config = ConfigDict(
+        json_schema_extra=either(
+            {"change": {"enum": ["speed"]}, "factor": given(), "seconds": NOT_GIVEN},
+            {"change": {"enum": ["later"]}, "seconds": given(), "factor": NOT_GIVEN},
+            {
+                "change": {"enum": ["stop", "begin", "reverse", "return", "go_on"]},
+                "factor": NOT_GIVEN,
+                "seconds": NOT_GIVEN,
+            },
+        )
+    )
+    example: ClassVar[tuple[str, dict[str, Any]]] = (
+        "stop the fan after two seconds",
+        {"op": "pace", "target": {"text": "fan"}, "change": "stop", "when": {"start": 2}},
+    )
+    makes_motion: ClassVar[bool] = True
+    op: Literal["pace"] = "pace"
+    change: Literal["stop", "begin", "speed", "later", "reverse", "return", "go_on"]
+    factor: Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)] | None = None
+    seconds: Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)] | None = None
+
+    @model_validator(mode="after")
+    def _says_how_much(self) -> Self:
+        for name, change in (("factor", "speed"), ("seconds", "later")):
+            if (getattr(self, name) is not None) != (self.change == change):
+                raise ValueError(f"{name} goes with {change}, and {change} needs it")
+        return self
+
+    def stronger(self, times: float) -> Self | None:
+        if self.factor is not None:
+            return self.model_copy(update={"factor": min(max(self.factor**times, 1e-3), 1000.0)})
+        return None if self.seconds is None else self.model_copy(update={"seconds": self.seconds * times})
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        """All of the moving things that the target is: their place at the start may be another."""
+        return mask_of(scene.cloud, torch.from_numpy(self._ids(scene, selection)))
+
+    def _ids(self, scene: Scene, selection: Selection) -> I64:
+        moving = moving_ids(scene.motion)
+        return moving if self._whole else moving[np.isin(moving, selection.ids.cpu().numpy())]
+
+    @property
+    def _whole(self) -> bool:
+        return self.target.text in ALL and not self.target.exclude and self.target.region is None
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        motion, ids = scene.motion, self._ids(scene, selection)
+        if motion is None or not len(ids):
+            raise InstructionError(
+                f"{self.target.describe()} does not move: say what it is to do, as 'move it to the sofa in 3 seconds'"
+            )
+        spans = spans_of(self.when, scene, selection, context) if self.when is not None else []
+        tracks, inside = divided(motion, ids)
+        stop = motion.stop
+        made = list(tracks)
+        for group in _things(scene, selection, ids, self._whole):
+            held = [i for i, t in enumerate(tracks) if inside[i] and np.isin(t.ids, group).any()]
+            own = [tracks[i] for i in held]
+            span = movement(own, motion.start, motion.stop)
+            if span is None:
+                continue
+            if (
+                self.change in ("speed", "reverse", "go_on")
+                and (turning := [_is_turning(t, motion) for t in own])
+                and all(turning)
+            ):
+                for i in held:
+                    made[i], end = self._turned(tracks[i], motion, spans)
+                    stop = max(stop, end)
+                continue
+            warp, end = self._warp(motion, span, spans)
+            for i in held:
+                made[i] = playing(tracks[i], warp)
+            stop = end if self._whole else max(stop, end)
+        after = with_tracks(scene, made, stop)
+        moving = torch.from_numpy(ids)
+        return Outcome(after, touched=moving, notes=self._notes(stop, motion))
+
+    def _notes(self, stop: float, motion: Motion) -> tuple[str, ...]:
+        return (f"the scene lasts {stop - motion.start:g} s now",) if abs(stop - motion.stop) > _NO_TIME else ()
+
+    def _warp(self, motion: Motion, span: Span, spans: list[Span]) -> tuple[Warp, float]:
+        """Which old time is shown when, and when the scene or the movement then ends."""
+        low, high = (motion.start, motion.stop) if self._whole else span
+        start = spans[0][0] if spans and math.isfinite(spans[0][0]) else None
+        stop = spans[0][1] if spans and math.isfinite(spans[0][1]) else None
+        if self.change == "stop":
+            return self._stopped(motion, spans, high)
+        if self.change == "begin":
+            begin = low if start is None else start
+            lasting = high - low if stop is None else stop - begin
+            if self.when is not None and self.when.lasting is not None:
+                begin, lasting = (
+                    (low if self.when.start is None and self.when.during is None else begin),
+                    self.when.lasting,
+                )
+            return Warp((begin, begin + lasting), (low, high), 0.0, 0.0), begin + lasting
+        if self.change == "later":
+            assert self.seconds is not None
+            by = max(self.seconds, motion.start - low)
+            return Warp((low + by,), (low,), 0.0, 1.0), high + by
+        if self.change == "reverse":
+            return Warp((low, high), (high, low), 0.0, 0.0), high
+        if self.change == "return":
+            back = max(high, start) if start is not None else high
+            taken = high - low if self.when is None or self.when.lasting is None else self.when.lasting
+            taken = (
+                stop - back if stop is not None and stop > back and (self.when and self.when.lasting is None) else taken
+            )
+            return Warp(
+                (low, high, back + _NO_TIME, back + _NO_TIME + taken), (low, high, high, low), 0.0, 0.0
+            ), back + taken
+        if self.change == "go_on":
+            raise InstructionError(f"{self.target.describe()} does not turn or run at one speed: say where it is to go")
+        assert self.factor is not None
+        first = low if start is None else start
+        last = math.inf if stop is None else stop
+        if math.isinf(last):
+            return Warp((first,), (first,), 1.0, self.factor), first + (high - first) / self.factor
+        gained = first + (last - first) * self.factor
+        return Warp((first, last), (first, gained), 1.0, 1.0), high + last - gained
+
+    def _stopped(self, motion: Motion, spans: list[Span], high: float) -> tuple[Warp, float]:
+        """It stands still in the spans, and goes on behind each of them."""
+        if not spans:
+            return Warp((motion.start,), (motion.start,), 0.0, 0.0), motion.stop
+        new, old, late = [], [], 0.0
+        for start, stop in spans:
+            first = max(start, motion.start)
+            new.append(first)
+            old.append(first - late)
+            if math.isinf(stop):
+                return Warp(tuple(new), tuple(old), 1.0, 0.0), motion.stop
+            late += stop - first
+            new.append(stop)
+            old.append(stop - late)
+        return Warp(tuple(new), tuple(old), 1.0, 1.0), high + late
+
+    def _turned(self, track: Track, motion: Motion, spans: list[Span]) -> tuple[Track, float]:
+        """A track of many turns at another speed, the other way round, or without an end; and its end."""
+        assert track.axis is not None and track.angles is not None
+        low, high = movement([track], motion.start, motion.stop) or (motion.start, motion.stop)
+        start = max(spans[0][0], low) if spans else low
+        stop = min(spans[0][1], math.inf) if spans else math.inf
+        if self.change == "go_on":
+            rate = _rate(track, low, high)
+            angle = _angle(track, (low + high) / 2)
+            middle = (low + high) / 2
+            end = stop if math.isfinite(stop) else middle + 1.0
+            before = [float(t) for t in track.times if t < middle]
+            keys = np.array([*before, middle, max(end, middle + _NO_TIME)])
+            turned = np.array([*(_angle(track, t) for t in keys[:-1]), angle + rate * (keys[-1] - middle)])
+            kind: Literal["hinge", "spin"] = "hinge" if math.isfinite(stop) else "spin"
+            onward = Track(track.runs, keys, track.quats, track.offsets, track.pivot, kind, track.axis, turned, False,
+                           track.name)  # fmt: skip
+            return onward, high
+        factor = self.factor if self.change == "speed" and self.factor is not None else -1.0
+        if not spans or (start <= low and stop >= high):
+            return _scaled(track, factor), motion.stop
+        edges = [t for t in (start, stop) if math.isfinite(t)]
+        times = np.unique(np.concatenate([track.times, edges, [max(high, *edges) + 1.0]]))
+        rates = np.diff([_angle(track, t) for t in times]) / np.diff(times)
+        middles = (times[1:] + times[:-1]) / 2
+        rates = np.where((middles > start) & (middles < stop), rates * factor, rates)
+        angles = np.concatenate([[0.0], np.cumsum(rates * np.diff(times))])
+        made = Track(track.runs, times, track.quats, track.offsets, track.pivot, track.kind, track.axis, angles, False,
+                     track.name)  # fmt: skip
+        return made, motion.stop
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        after, was = outcome.scene.motion, before.motion
+        assert was is not None
+        lost = len(moving_ids(was)) - len(moving_ids(after)) if self.change != "stop" else 0
+        said = f"{max(lost, 0)} Gaussians that moved before do not move any more"
+        return count_matches(before, outcome.scene, outcome), at_most("still moves", max(lost, 0), 0, "Gaussians", said)
+
+
+def _things(scene: Scene, selection: Selection, ids: I64, whole: bool) -> list[I64]:
+    """The moving ids of each thing; all of them where the whole scene is meant."""
+    if whole:
+        return [ids]
+    found = [scene.cloud.ids[rows].cpu().numpy() for _, rows in rows_by_thing(scene, selection)]
+    return [own for own in (np.intersect1d(thing, ids) for thing in found) if len(own)]
+
+
+def _is_turning(track: Track, motion: Motion) -> bool:
+    """Whether a track turns round and round, so that its speed is turns a second."""
+    if track.angles is None or track.kind == "slide":
+        return False
+    return track.kind == "spin" or float(np.ptp(track.angles)) > _TURNS
+
+
+def _angle(track: Track, time: float) -> float:
+    assert track.angles is not None
+    beyond = 0.0
+    if track.kind == "spin" and time > track.times[-1]:
+        beyond = _rate(track, float(track.times[-2]), float(track.times[-1])) * (time - float(track.times[-1]))
+    return float(np.interp(time, track.times, track.angles)) + beyond
+
+
+def _rate(track: Track, low: float, high: float) -> float:
+    """Radians a second in a time."""
+    assert track.angles is not None
+    ends = np.interp([low, min(high, float(track.times[-1]))], track.times, track.angles)
+    return float((ends[1] - ends[0]) / max(min(high, float(track.times[-1])) - low, 1e-9))
+
+
+def _scaled(track: Track, factor: float) -> Track:
+    assert track.angles is not None and track.axis is not None
+    return Track(track.runs, track.times, track.quats, track.offsets, track.pivot, track.kind, track.axis,
+                 track.angles * factor, track.smooth, track.name)  # fmt: skip

@@ -1,0 +1,154 @@
+"""The operation spin: let the target turn about itself, for a time or without an end."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from pydantic import Field
+from torch import Tensor
+
+from ...gaussians.language.query.selection import Selection, mask_of
+from ...gaussians.motion.at import at
+from ...gaussians.motion.motion import Track, poses
+from ...gaussians.rows import rows_of_ids
+from ...gaussians.scene import Scene
+from ..carried_objects import with_carried
+from ..checks import count_matches
+from ..operation import Context, Outcome, TargetedOp
+from ..placement.bodies import bodies_of, heading
+from ..receipt import Check, at_most
+from ..timing.retiming import divided, with_tracks
+from ..timing.spans import length_of, spans_of
+
+F64 = NDArray[np.float64]
+
+_LASTS = 5.0  # seconds of a scene that stood still before something turns in it without an end
+_ONE = 1.0  # turns a second, where nothing is said
+
+
+class Spin(TargetedOp):
+    """Let the target turn about itself without an end, or by a number of turns.
+
+    `turns_per_second` is positive counter-clockwise seen from the tip of `axis`. `turns` is how many in all; they fill
+    the time that it lasts. What turns already keeps its axis and the time in which it turns; `other_way` turns it
+    against its sense.
+    """
+
+    example: ClassVar[tuple[str, dict[str, Any]]] = (
+        "let the globe spin twice a second from 1 to 4 s",
+        {"op": "spin", "target": {"text": "globe"}, "turns_per_second": 2, "when": {"start": 1, "stop": 4}},
+    )
+    makes_motion: ClassVar[bool] = True
+    op: Literal["spin"] = "spin"
+    turns_per_second: Annotated[float, Field(ge=-100, le=100, allow_inf_nan=False)] | None = None
+    turns: Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)] | None = None
+    other_way: bool = False
+    axis: Literal["up", "right", "forward"] = "up"
+
+    def stronger(self, times: float) -> Self | None:
+        rate = self.turns_per_second if self.turns_per_second is not None else _ONE
+        return self.model_copy(update={"turns_per_second": min(max(rate * times, -100.0), 100.0)})
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return mask_of(scene.cloud, selection.ids)
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        whole = length_of(scene)
+        spans = spans_of(self.when, scene, selection, context) if self.when is not None else []
+        start, stop = spans[0] if spans else (-math.inf, math.inf)
+        begin = start if math.isfinite(start) else whole.start
+        now = at(scene, begin)
+        motion = scene.motion
+        tracks, inside = divided(motion, selection.ids.cpu().numpy()) if motion is not None else ([], [])
+        touched, end = list[Tensor](), whole.stop
+        for body in with_carried(now, bodies_of(now, selection)):
+            ids = now.cloud.ids[body.rows]
+            names = np.sort(ids.cpu().numpy())
+            touched.append(ids)
+            turning = [
+                i
+                for i, t in enumerate(tracks)
+                if inside[i] and t.kind in ("spin", "hinge") and np.isin(t.ids, names).any()
+            ]
+            if turning:
+                old = tracks[turning[0]]
+                tracks = [t for i, t in enumerate(tracks) if i not in turning]
+                inside = [f for i, f in enumerate(inside) if i not in turning]
+                made = self._again(old, begin, stop, bool(spans))
+            else:
+                axis, pivot = heading(context.viewer, scene.frame, self.axis), np.asarray(body.center)
+                made = self._new(names, axis, pivot, begin, stop)
+            tracks.append(made)
+            inside.append(True)
+            end = max(
+                end, float(made.times[-1]) if made.kind == "hinge" else begin + (_LASTS if not whole.known else 0.0)
+            )
+        after = with_tracks(scene, tracks, end)
+        told = () if whole.known else (f"the scene lasts {end:g} s now",)
+        return Outcome(after, touched=torch.cat(touched).sort().values, notes=told)
+
+    def _rate(self, lasting: float) -> float:
+        """Turns a second."""
+        sense = -1.0 if self.other_way else 1.0
+        if self.turns is not None and math.isfinite(lasting):
+            return sense * self.turns / lasting
+        if self.turns_per_second is not None:
+            return (
+                sense
+                * abs(self.turns_per_second)
+                * (math.copysign(1.0, self.turns) if self.turns else math.copysign(1.0, self.turns_per_second))
+            )
+        return sense * math.copysign(_ONE, self.turns if self.turns is not None else 1.0)
+
+    def _new(self, ids: NDArray[np.int64], axis: F64, pivot: F64, begin: float, stop: float) -> Track:
+        rate = self._rate(stop - begin)
+        if self.turns is not None and not math.isfinite(stop):
+            stop = begin + abs(self.turns / rate)
+        if math.isinf(stop):
+            return Track.spin(ids, rate, axis, pivot, begin)
+        angle = 2 * math.pi * rate * (stop - begin)
+        return Track.hinge(ids, (begin, stop), (0.0, angle), axis, pivot, smooth=self.turns is not None)
+
+    def _again(self, old: Track, begin: float, stop: float, timed: bool) -> Track:
+        """A track that turns already, at another rate, or the other way."""
+        assert old.axis is not None and old.angles is not None
+        if timed:
+            axis, pivot = old.axis, old.pivot
+            return self._new(old.ids, axis, pivot, begin, stop)
+        span = max(float(old.times[-1] - old.times[0]), 1e-9)
+        rate = float(old.angles[-1] - old.angles[0]) / (2 * math.pi * span)
+        wanted = (
+            rate
+            if self.turns_per_second is None
+            else math.copysign(self.turns_per_second, self.turns_per_second * (rate or 1.0))
+        )
+        if self.turns is not None:
+            wanted = math.copysign(self.turns / span, rate)
+        factor = (-1.0 if self.other_way else 1.0) * wanted / (rate or 1.0)
+        return replace(old, angles=old.angles * factor)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        after, motion = outcome.scene, outcome.scene.motion
+        assert motion is not None
+        return count_matches(before, after, outcome), self._kept_apart(after, outcome.touched)
+
+    def _kept_apart(self, after: Scene, ids: Tensor) -> Check:
+        """What turns keeps its distance from its axis through a whole turn."""
+        motion = after.motion
+        assert motion is not None
+        worst = 0.0
+        for track in motion.tracks:
+            if track.axis is None or not np.isin(track.ids, ids.cpu().numpy()).all():
+                continue
+            rows = rows_of_ids(after.cloud.ids, torch.from_numpy(track.ids))[:2000]
+            points = after.cloud.means[rows].double().cpu().numpy() - track.pivot
+            turns, shifts = poses(track, (motion.start, (motion.start + motion.stop) / 2))
+            moved = (points + track.pivot) @ turns[1].T + shifts[1] - track.pivot
+            far = [np.linalg.norm(np.cross(p, track.axis), axis=1) for p in (points, moved)]
+            worst = max(worst, float(np.abs(far[0] - far[1]).max(initial=0.0)))
+        return at_most("turns about its axis", worst, 1e-6, "units", f"it strays {worst:.2g} units from its circle")

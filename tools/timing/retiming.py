@@ -1,0 +1,192 @@
+"""Play motion at other times: tracks as functions of a time that is mapped, and the cloud as it is at the new start."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, replace
+
+import numpy as np
+import torch
+from numpy.typing import ArrayLike, NDArray
+
+from ...gaussians.motion.motion import Motion, Residual, Track, carried, poses
+from ...gaussians.motion.runs import runs_of
+from ...gaussians.rows import rows_of_ids
+from ...gaussians.scene import Scene
+from ..cloud_diff import Draft
+from ..field_update import after_move
+from ..operation import Affine
+from ..transform import turn
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+_STEP = 1 / 30  # seconds between keys where a path is not played at one rate
+_STILL = 2e-3  # units and radians between keys: less is no movement
+_SAME = 1e-9  # seconds
+
+
+@dataclass(frozen=True)
+class Warp:
+    """Which old time is shown at a new one: straight lines between knots, at the outer rates beyond them.
+
+    Attributes:
+        new, old: `[M]` seconds, M > 0; `new` ascends.
+        before, after: rates before the first and after the last knot, old seconds a new second.
+    """
+
+    new: tuple[float, ...]
+    old: tuple[float, ...]
+    before: float = 1.0
+    after: float = 1.0
+
+    def __call__(self, times: ArrayLike) -> F64:
+        now = np.asarray(times, dtype=np.float64)
+        new, old = np.array(self.new), np.array(self.old)
+        inner = np.interp(now, new, old)
+        early, late = np.minimum(now - new[0], 0.0), np.maximum(now - new[-1], 0.0)
+        return np.asarray(inner + self.before * early + self.after * late)
+
+    def when(self, old: F64) -> F64:
+        """The new times `[L]`, ascending, at which any of some old times is shown."""
+        knots, values = np.array(self.new), np.array(self.old)
+        found = list[float]()
+        pieces = [(-np.inf, knots[0], self.before, values[0], knots[0])]
+        for a, b, u, v in zip(knots[:-1], knots[1:], values[:-1], values[1:], strict=True):
+            pieces.append((a, b, (v - u) / (b - a), u, a))
+        pieces.append((knots[-1], np.inf, self.after, values[-1], knots[-1]))
+        for low, high, rate, value, at in pieces:
+            if abs(rate) > _SAME:
+                times = at + (old - value) / rate
+                found += [float(t) for t in times if low <= t <= high]
+        return np.unique(np.round(found, 9))
+
+    @property
+    def rate(self) -> float | None:
+        """Its one rate, None if it has several."""
+        new, old = np.array(self.new), np.array(self.old)
+        inner = np.diff(old) / np.diff(new)
+        rates = np.array([self.before, *inner, self.after])
+        return float(rates[0]) if np.ptp(rates) < 1e-9 and abs(rates[0]) > _SAME else None
+
+
+def playing(track: Track, warp: Warp) -> Track:
+    """A track that shows at each time what it showed at the mapped time; its start may not be at rest."""
+    times, values = _keys(track, warp)
+    if track.axis is not None and track.angles is not None:
+        spins = track.kind == "spin" and abs(warp.after) > _SAME
+        angles = angles_at(track, values)
+        if track.kind == "spin" and not spins:
+            return replace(track, times=times, angles=angles, kind="hinge", smooth=False)
+        if spins:
+            times = np.append(times, times[-1] + 1.0)
+            angles = angles_at(track, warp(times))
+        return replace(track, times=times, angles=angles, smooth=track.smooth and not spins)
+    turns, shifts = poses(track, values)
+    return Track.poses_at(track.ids, times, turns, shifts, track.pivot, track.smooth, track.name)
+
+
+def _keys(track: Track, warp: Warp) -> tuple[F64, F64]:
+    """The times of the keys of a track that is played in other time, and the old times that they show."""
+    times = warp.when(track.times)
+    single = len(warp.new) == 1 or warp.rate is not None
+    if not single or not len(times):
+        times = np.unique(np.concatenate([times, np.array(warp.new)]))
+        between = [np.arange(a, b, _STEP) for a, b in itertools.pairwise(times) if warp(b) != warp(a)]
+        times = np.unique(np.round(np.concatenate([times, *between]), 9))
+    if len(times) > 1:
+        times = times[np.concatenate([[True], np.diff(times) > 1e-7])]
+    return times, warp(times)
+
+
+def angles_at(track: Track, times: F64) -> F64:
+    """`[T]` angles, or distances, of a track on an axis; whole turns are kept."""
+    assert track.axis is not None and track.angles is not None
+    if track.kind == "slide":
+        return np.asarray(poses(track, times)[1] @ track.axis)
+    # A turn is read from a slide along an axis of the same keys: poses know an angle only up to whole turns.
+    along = replace(track, kind="slide", pivot=np.zeros(3)) if track.kind == "hinge" else None
+    if along is not None:
+        return np.asarray(poses(along, times)[1] @ track.axis)
+    rate = (track.angles[-1] - track.angles[-2]) / (track.times[-1] - track.times[-2]) if len(track.times) > 1 else 0.0
+    return np.asarray(np.interp(times, track.times, track.angles) + rate * np.maximum(0.0, times - track.times[-1]))
+
+
+def movement(tracks: tuple[Track, ...] | list[Track], start: float, stop: float) -> tuple[float, float] | None:
+    """When what the tracks move begins and ends to move, seconds; None if it never does."""
+    first, last = np.inf, -np.inf
+    for track in tracks:
+        times = np.unique(
+            np.clip(np.concatenate([track.times, [start, stop]]), start, max(stop, float(track.times[-1])))
+        )
+        turns, shifts = poses(track, times)
+        places = turns @ track.pivot + shifts
+        reach = np.eye(3) * 0.5  # points half a unit from the pivot tell turns
+        corners = np.einsum("tij,kj->tki", turns, reach) + places[:, None]
+        steps = np.abs(np.diff(corners, axis=0)).max(axis=(1, 2))
+        moving = np.flatnonzero(steps > _STILL)
+        if track.kind in ("spin", "hinge") and track.angles is not None:  # whole turns between keys
+            moving = np.flatnonzero(np.abs(np.diff(angles_at(track, times))) > _STILL)
+        if len(moving):
+            first, last = min(first, float(times[moving[0]])), max(last, float(times[moving[-1] + 1]))
+    return (first, last) if last > first else None
+
+
+def divided(motion: Motion, ids: I64) -> tuple[list[Track], list[bool]]:
+    """The tracks of a motion, those that hold only some of the ids in two, and for each whether it holds them."""
+    tracks, inside = list[Track](), list[bool]()
+    for track in motion.tracks:
+        own = np.isin(track.ids, ids)
+        for part, flag in ((~own, False), (own, True)):
+            if part.all():
+                tracks.append(track)
+                inside.append(flag)
+                break
+            if part.any():
+                tracks.append(replace(track, runs=runs_of(track.ids[part])))
+                inside.append(flag)
+    return tracks, inside
+
+
+def with_tracks(scene: Scene, tracks: list[Track], stop: float, residuals: tuple[Residual, ...] | None = None) -> Scene:
+    """The scene with other tracks, which need not be at rest at its start: the cloud becomes what they show there.
+
+    Raises:
+        UserError: as `Motion`.
+    """
+    old = scene.motion
+    start = 0.0 if old is None else old.start
+    looks = () if old is None else old.looks
+    kept = (() if old is None else old.residuals) if residuals is None else residuals
+    after, done = scene, list[Track]()
+    for track in tracks:
+        turns, shifts = poses(track, (start,))
+        begin, away = turns[0], shifts[0]
+        if np.abs(begin - np.eye(3)).max() < 1e-9 and np.abs(away).max() < 1e-9:
+            done.append(track)
+            continue
+        ids = track.ids
+        motion = carried(Motion(tuple(done), looks, (), start, max(stop, start)), ids, begin, away)
+        if motion is not None:
+            done, looks = list(motion.tracks), motion.looks
+        rows = rows_of_ids(after.cloud.ids, torch.from_numpy(ids))
+        draft = Draft(after.cloud)
+        turn(draft, rows, begin, away)
+        cloud = draft.done()
+        body = Affine(rows, begin, away, rows)
+        after = after.replace(cloud=cloud, language=after_move(after, cloud, (body,)))
+        done.append(_from_start(track, begin, away, start))
+    made = Motion(tuple(t for t in done if not t.still), looks, kept, start, max(stop, start))
+    return after.replace(motion=made or None)
+
+
+def _from_start(track: Track, begin: F64, away: F64, start: float) -> Track:
+    """A track as seen from its pose at the start, which becomes the identity."""
+    if track.axis is not None and track.angles is not None:
+        first = float(angles_at(track, np.array([start]))[0])
+        return replace(track, angles=track.angles - first)
+    turns, shifts = poses(track, track.times)
+    back = turns @ begin.T
+    return Track.poses_at(
+        track.ids, track.times, back, shifts - (back @ away), begin @ track.pivot + away, track.smooth, track.name
+    )

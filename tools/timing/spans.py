@@ -1,0 +1,230 @@
+"""The spans of a scene's time that a `When` means."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import torch
+
+from ...gaussians.errors import InstructionError
+from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.selection import Selection
+from ...gaussians.scene import Scene
+from ...gaussians.world.relation_geometry import viewer_stand
+from ..operation import Context
+from ..when import During, When
+
+if TYPE_CHECKING:
+    from ...gaussians.motion.courses import Course
+
+Span = tuple[float, float]  # start and stop, seconds
+
+SHORTEST = 1e-3  # seconds: spans that are shorter are none
+_APART = 1e-6  # seconds: spans that are nearer are one
+
+
+class Length(NamedTuple):
+    """Start and stop of a scene, seconds, and whether it has a motion that says so."""
+
+    start: float
+    stop: float
+    known: bool
+
+
+def length_of(scene: Scene) -> Length:
+    """The time of a scene; one that stands still has none yet, and starts at 0."""
+    motion = scene.motion
+    return Length(0.0, 0.0, False) if motion is None else Length(motion.start, motion.stop, True)
+
+
+def spans_of(when: When | None, scene: Scene, target: Selection, context: Context) -> list[Span]:
+    """The spans that are meant, in order, seconds; open ends are infinite. At all times without a `When`.
+
+    Raises:
+        AbsentError, AmbiguousError: a thing by which the time is told is not in the scene, or not unique.
+        InstructionError: nothing of the kind happens in the scene, or the time lies outside it.
+    """
+    if when is None:
+        return [(-math.inf, math.inf)]
+    whole = length_of(scene)
+    if when.during is not None:
+        found = _told(when, when.during, scene, target, context)
+    else:
+        start = _moment(when.start, whole, -math.inf)
+        if when.lasting is not None and when.start is None:
+            start = whole.start if context.time is None else context.time
+        found = [(start, math.inf)]
+    stop = _moment(when.stop, whole, math.inf)
+    found = [(a, min(b, stop, a + when.lasting if when.lasting is not None else math.inf)) for a, b in found]
+    found = [(a, b) for a, b in found if b - a > SHORTEST]
+    if not found:
+        raise InstructionError(f"no time is left {when.describe()}: it would end before it starts")
+    first = found[0][0]
+    if whole.known and first > whole.stop:
+        raise InstructionError(f"the scene lasts until {whole.stop:g} s, and {first:g} s is later: say an earlier time")
+    return found
+
+
+def _moment(said: float | str | None, whole: Length, default: float) -> float:
+    """A time, seconds."""
+    if said is None:
+        return default
+    if isinstance(said, str) or said < 0:
+        if not whole.known:
+            raise InstructionError("this scene has no end in time, as nothing moves in it: give seconds from its start")
+        if isinstance(said, str):
+            return whole.stop if said == "end" else (whole.start + whole.stop) / 2
+        return whole.stop + said
+    return float(said)
+
+
+def _told(when: When, during: During, scene: Scene, target: Selection, context: Context) -> list[Span]:
+    """The spans that are told by what happens."""
+    whole = length_of(scene)
+    found = _happening(during, scene, target, context)
+    if during.state == "closest":
+        return [(found[0][0] + _delay(when), math.inf)]
+    if not found:
+        if during.part == "unless":
+            return [(-math.inf, math.inf)]
+        raise InstructionError(f"that never happens in this scene: {during.describe().split(' ', 1)[1]}")
+    first, last = found[0], found[-1]
+    delay = _delay(when)
+    if during.part == "while":
+        return [(_open(a, whole.start, -math.inf) + delay, _open(b, whole.stop, math.inf)) for a, b in found]
+    if during.part == "unless":
+        return [
+            (_open(a, whole.start, -math.inf) + delay, _open(b, whole.stop, math.inf))
+            for a, b in _rest(found, whole.start, whole.stop)
+        ]
+    if during.part == "from":  # "when it touches the wall" is not said of what touches it from the start
+        begun = next((a for a, _ in found if a > whole.start + SHORTEST), first[0])
+        return [(begun + delay, math.inf)]
+    if during.part == "after":
+        if first[1] >= whole.stop - SHORTEST:
+            raise InstructionError(f"that does not end in this scene: {during.describe().split(' ', 1)[1]}")
+        ended = first[1] if during.state not in ("moving", "falling") else last[1]
+        return [(ended + delay, math.inf)] if ended < whole.stop - SHORTEST else [(first[1] + delay, math.inf)]
+    if during.part == "until":
+        begun = next((a for a, _ in found if a > whole.start + SHORTEST), first[0])
+        return [(-math.inf, begun - delay)]
+    return [(-math.inf, last[1] - delay)]
+
+
+def _delay(when: When) -> float:
+    return float(when.start) if isinstance(when.start, float | int) else 0.0
+
+
+def _open(time: float, end: float, without: float) -> float:
+    """A time, open where it is the end of the scene."""
+    return without if abs(time - end) < SHORTEST else time
+
+
+def _happening(during: During, scene: Scene, target: Selection, context: Context) -> list[Span]:
+    """When it is so, for any of the things that it is about."""
+    from ...gaussians.motion.courses import course_of
+    from ...gaussians.motion.events import falls, intervals, nearest_time
+    from ...gaussians.motion.holding import joined
+
+    groups = _groups(target if during.of is None else _meant(scene, during.of, context), scene)
+    anchors = [_groups(_meant(scene, q, context), scene) for q in during.anchors]
+    if scene.motion is None:
+        raise InstructionError("nothing moves in this scene: give the time in seconds")
+    up, field = scene.frame.up_vector, scene.language
+    assert field is not None
+    if during.state == "closest":
+        time, _ = nearest_time(scene, groups[0], anchors[0][0])
+        return [(time, math.inf)]
+    stand = viewer_stand(context.viewer, up, field.typical_size, field.middle)
+    found: list[Span] = []
+    unit = 1.0 / (scene.frame.metres_per_unit or 1.0)
+    for group in groups:
+        if during.state in ("falling", "turning", "open"):
+            course = course_of(scene, group)
+            found += falls(course, unit) if during.state == "falling" else _own(course, during.state, unit)
+        elif during.state == "touches":  # "the wall" may be several
+            found += [s for anchor in anchors[0] for s in _touching(scene, group, anchor, unit)]
+        elif len(anchors) == 1:
+            found += [s for anchor in anchors[0] for s in intervals(scene, group, during.state, (anchor,), stand)]
+        else:
+            found += intervals(scene, group, during.state, [a[0] for a in anchors], stand)
+    exact = _edges(scene, groups) if during.state in ("moving", "still", "falling", "open") else []
+    return joined(sorted((_snapped(a, exact), _snapped(b, exact)) for a, b in found), _APART)
+
+
+_ROUGH = 0.1  # seconds: an edge that was measured is the key of a track that is nearer
+_TURNS = 0.2  # radians a second about the vertical from which a thing turns
+_AWAY = 0.02  # metres, or radians, from where it is at the start: then it is open
+_REACHED = 0.35  # metres: what comes this near and no nearer has reached it
+
+
+def _edges(scene: Scene, groups: tuple[int, ...]) -> list[float]:
+    """The times of the keys of the tracks that hold groups."""
+    assert scene.motion is not None and scene.language is not None
+    leaves = torch.tensor([i for g in groups for i in scene.language.leaves(g)], dtype=torch.int32)
+    ids = scene.cloud.ids[torch.isin(scene.cloud.group.cpu(), leaves)].cpu().numpy()
+    return sorted({float(t) for track in scene.motion.tracks if np.isin(ids, track.ids).any() for t in track.times})
+
+
+def _snapped(time: float, edges: list[float]) -> float:
+    nearest = min(edges, key=lambda t: abs(t - time), default=time)
+    return nearest if abs(nearest - time) <= _ROUGH else time
+
+
+def _own(course: Course, state: str, unit: float) -> list[Span]:
+    """When a thing turns about the vertical, or is away from where it is at the start."""
+    from ...gaussians.motion.holding import spans
+
+    times = course.grid()
+    if state == "turning":
+        return spans(lambda t: np.abs(course.turns(t) @ course.up), times, _TURNS)
+    first = course.centers(np.array([course.start]))
+    return spans(lambda t: np.linalg.norm(course.centers(t) - first, axis=1), times, _AWAY * unit)
+
+
+def _touching(scene: Scene, group: int, anchor: int, unit: float) -> list[Span]:
+    """When a thing touches another; where it never does, when it is as near as it comes, if it moves there."""
+    from ...gaussians.motion.events import Encounter
+    from ...gaussians.motion.holding import lowest, spans
+
+    pair = Encounter.of(scene, group, (anchor,))
+    if pair.touching:
+        return pair.touching
+    course = pair.course
+    time = lowest(pair.gaps, course.start, course.stop)
+    least = float(pair.gaps(np.array([time]))[0])
+    first = float(pair.gaps(np.array([course.start]))[0])
+    if least > _REACHED * unit or first - least < _AWAY * unit:
+        return []
+    return spans(lambda t: -pair.gaps(t), course.grid(), -least - 0.005 * unit)
+
+
+def _rest(found: list[Span], start: float, stop: float) -> list[Span]:
+    """What the spans leave of a time from start to stop."""
+    bounds = [start, *(t for span in found for t in span), stop]
+    return [(a, b) for a, b in zip(bounds[::2], bounds[1::2], strict=True) if a < b]
+
+
+_SEVERAL = ("wall", "walls", "floor", "ground", "ceiling")
+
+
+def _meant(scene: Scene, query: Query, context: Context) -> Selection:
+    several = query.text in _SEVERAL and query.pick == "one" and not query.relations
+    return moving_one(scene, query.model_copy(update={"pick": "all"}) if several else query, context).require()
+
+
+def moving_one(scene: Scene, query: Query, context: Context) -> Selection:
+    """What a query means where time is spoken of: of several things that it may mean, the one that moves."""
+    found = context.resolve(scene, query)
+    if found.verdict != "ambiguous" or scene.motion is None or query.moving is not None:
+        return found
+    moves = context.resolve(scene, query.model_copy(update={"moving": True}))
+    return moves if moves.chosen else found
+
+
+def _groups(found: Selection, scene: Scene) -> tuple[int, ...]:
+    if not found.groups:
+        raise InstructionError(f"{found.query.describe()} is no thing of its own, so that its way cannot be followed")
+    return found.groups

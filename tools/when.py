@@ -1,0 +1,112 @@
+"""`When`: the time during which an edit holds, or that a movement takes, as data."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from ..gaussians.language.query.query import Query
+from ..gaussians.world.relations import named, names
+from .alternatives import either, given
+
+Part = Literal["while", "unless", "from", "until", "after", "until_end"]
+STATES = (
+    "moving",
+    "still",
+    "falling",
+    "turning",
+    "open",
+    "touches",
+    "closest",
+    *(n for n in names("query") if named(n).score is not None),
+)
+_ALONE = ("moving", "still", "falling", "turning", "open")  # states that say nothing of another thing
+_STATED = {
+    "moving": "moves",
+    "still": "stands still",
+    "falling": "falls",
+    "turning": "turns",
+    "open": "is open",
+    "touches": "touches",
+    "closest": "is closest to",
+}
+_PARTS: dict[Part, str] = {
+    "while": "while {}", "unless": "while it is not so that {}", "from": "from when {}", "until": "until {}",
+    "after": "after {}", "until_end": "as long as {}",
+}  # fmt: skip
+
+Seconds = Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)]
+
+
+class During(BaseModel):
+    """A time told by what happens: "while it is on the rug". `state` is moving, still, falling, turning, open, touches,
+    closest, or a name of Relation.
+
+    `part`: while or unless it is so, from when it first is on, until then, after it was, or until it no longer is.
+    "open" is not being where it is at the start; "closest" the moment of being nearest to the middle of another thing.
+    """
+
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        defer_build=True,
+        json_schema_extra=either(
+            {"state": given(enum=list(_ALONE)), "anchors": {"maxItems": 0}},
+            {"state": given(enum=[s for s in STATES if s not in _ALONE]), "anchors": given(minItems=1)},
+        ),
+    )
+
+    state: Annotated[str, Field(max_length=24, json_schema_extra={"enum": list(STATES)})]
+    anchors: Annotated[tuple[Query, ...], Field(max_length=2)] = ()
+    of: Query | None = None  # whose state it is; None: that of the target
+    part: Part = "while"
+
+    @model_validator(mode="after")
+    def _anchored(self) -> Self:
+        if self.state not in STATES:
+            raise ValueError(f"there is no state {self.state!r}; states are {', '.join(STATES)}")
+        wanted = 0 if self.state in _ALONE else 1
+        if len(self.anchors) < wanted or (self.anchors and not wanted):
+            raise ValueError(f'"{self.state}" takes {"what it is about" if wanted else "no anchor"}')
+        return self
+
+    def describe(self) -> str:
+        """ "while it is on the rug"."""
+        who = "it" if self.of is None else self.of.describe()
+        whom = " and ".join(q.describe() for q in self.anchors)
+        said = _STATED[self.state] if self.state in _STATED else named(self.state).says(whom)
+        return _PARTS[self.part].format(f"{who} {said} {whom if self.state in _STATED else ''}".strip())
+
+
+class When(BaseModel):
+    """`when` of any operation on a target: seconds of the scene in which a look holds, or that a movement takes.
+
+    A missing end is open. Negative seconds count from the end of the scene. With `during`, `start` counts from when
+    that begins.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
+
+    start: Seconds | Literal["middle", "end"] | None = None
+    stop: Seconds | Literal["middle", "end"] | None = None
+    lasting: Annotated[float, Field(gt=0, le=3600, allow_inf_nan=False)] | None = None  # seconds, at most until `stop`
+    during: During | None = None
+    gradual: bool = False  # a look that changes little by little from start to stop, and stays
+
+    def describe(self) -> str:
+        """ "from 1 s to 3 s"."""
+        said = [] if self.during is None else [self.during.describe()]
+        if self.start is not None:
+            said.append(f"from {_told(self.start)}" if self.during is None else f"{self.start:g} s later")
+        if self.stop is not None:
+            said.append(f"to {_told(self.stop)}")
+        if self.lasting is not None:
+            said.append(f"for {self.lasting:g} s")
+        return " ".join([*said, *(["little by little"] if self.gradual else [])])
+
+
+def _told(moment: float | str) -> str:
+    if isinstance(moment, str):
+        return f"the {moment}"
+    return f"{moment:g} s" if moment >= 0 else f"{-moment:g} s before the end"
