@@ -154,6 +154,7 @@ class Session:
         self._dialled = SessionDial.of(effort)
         self._asker = Asker()
         self._viewer = viewer
+        self._time: float | None = None
         self._seed = seed
         self.pixel_checks = pixel_checks
         self.accept_unconfirmed = accept_unconfirmed
@@ -219,6 +220,28 @@ class Session:
     @viewer.setter
     def viewer(self, camera: Camera) -> None:
         self._viewer = camera
+
+    @property
+    def time(self) -> float:
+        """The time of a scene with motion at which words are said, seconds: edits without a time are placed as things
+        are then. The start at first; 0 in a scene that stands still.
+
+        Raises (when set):
+            UserError: the scene does not last until then.
+        """
+        motion = self.scene.motion
+        if motion is None:
+            return 0.0
+        return motion.start if self._time is None else min(max(self._time, motion.start), motion.stop)
+
+    @time.setter
+    def time(self, seconds: float) -> None:
+        motion = self.scene.motion
+        if motion is None:
+            raise UserError("nothing moves in this scene, so that it has no time; say for example 'open the door'")
+        if not motion.start <= seconds <= motion.stop:
+            raise UserError(f"the scene lasts from {motion.start:g} to {motion.stop:g} s; {seconds:g} s is not in it")
+        self._time = float(seconds)
 
     @property
     def encoder(self) -> Encoder:
@@ -305,6 +328,7 @@ class Session:
             restyler=self._restyler,
             references=self._references,
             harmony=self._harmony,
+            time=None if self._time is None or self.scene.motion is None else self.time,
         )  # fmt: skip
 
     # -- planner ----------------------------------------------------------------------------------------------------
@@ -579,7 +603,7 @@ class Session:
 
         self._dialled.begin()
         survey = self.survey()
-        reading = route(text, survey, self._asker.timeline(self.scene, self.viewer, self.encoder, self.last))
+        reading = route(text, survey, self._asker.timeline(self.scene, self.viewer, self.encoder, self.last, self.time))
         given = reading.answer
         if self._vision and reading.sight:
             first = self._dialled.views(FIRST_VIEWS)

@@ -169,6 +169,7 @@ class Chat:
             doubted: what is asked about: it is lit and the rest dimmed, from where it is seen if the view does not
                 show it.
         """
+        from ...gaussians.motion.at import at
         from ...gaussians.render import render
         from ...gaussians.viewpoints.coverage import fit_camera
         from ..pictures.scene_pictures import camera_showing, spotlight
@@ -177,7 +178,7 @@ class Chat:
         width, height = 4 * columns, 4 * round(columns * 2 / 3)
         if doubted is None:
             camera = fit_camera(self.session.viewer, width, height)
-            image = render(self.session.scene.cloud, camera).to_uint8()
+            image = render(at(self.session.scene, self.session.time).cloud, camera).to_uint8()
         else:
             camera = fit_camera(camera_showing(self.session.scene, doubted, self.session.viewer), width, height)
             image = spotlight(self.session.scene, camera, doubted)

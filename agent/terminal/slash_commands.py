@@ -248,6 +248,21 @@ def _file_of(arguments: str, command: str) -> tuple[str, bool]:
     return names[0], "--force" in words
 
 
+def _time(chat: Conversation, text: str) -> None:
+    session = chat.session
+    if text:
+        try:
+            session.time = float(text.removesuffix("s").strip())
+        except ValueError as error:
+            raise UserError(f"give seconds: /time 2.5, not {text!r}") from error
+        chat.show_picture()
+    motion = session.scene.motion
+    told = "nothing moves in this scene"
+    if motion is not None:
+        told = f"{session.time:g} s, of {motion.start:g} to {motion.stop:g} s"
+    chat.tell(told, {"verdict": "ok", "time": session.time})
+
+
 def _quit(chat: Conversation, _: str) -> None:
     chat.end()
 
@@ -272,6 +287,7 @@ SLASH_COMMANDS: dict[str, SlashCommand] = {
         "select everything that is not selected", lambda chat, _: chat.show_result(chat.session.adjust(invert=True))
     ),
     "/show": SlashCommand("a picture of the current view; /show 2 changes to the scene's camera 2", _show),
+    "/time": SlashCommand("[SECONDS]: at which time of a scene with motion words are meant; alone: at which", _time),
     "/things": SlashCommand("list the things in the scene", _things),
     "/planner": SlashCommand("[NAME]: the planner and what its models cost; with a name, change the planner", _planner),
     "/judge": SlashCommand("[NAME|on|off]: judge each edit after it was made; alone: who judges", _judge),

@@ -68,8 +68,8 @@ def _silent(made: Keywords) -> Keywords:
 
 
 _LIMITS = frozenset({
-    "description", "default", "minLength", "maxLength", "minItems", "maxItems", "minimum", "maximum", "exclusiveMinimum",
-    "exclusiveMaximum",
+    "description", "default", "minLength", "maxLength", "minItems", "maxItems", "minimum", "maximum",
+    "exclusiveMinimum", "exclusiveMaximum",
 })  # fmt: skip
 _LONG = 6  # values of an enumeration
 

@@ -89,8 +89,9 @@ def playing(track: Track, warp: Warp) -> Track:
 def _keys(track: Track, warp: Warp) -> tuple[F64, F64]:
     """The times of the keys of a track that is played in other time, and the old times that they show."""
     times = warp.when(track.times)
-    single = len(warp.new) == 1 or warp.rate is not None
-    if not single or not len(times):
+    complete = len(warp.new) == 1 and len(times) == len(track.times)
+    single = complete and (times[0] >= warp.new[0] or times[-1] <= warp.new[0])  # all of it is played at one rate
+    if not single and warp.rate is None:
         times = np.unique(np.concatenate([times, np.array(warp.new)]))
         between = [np.arange(a, b, _STEP) for a, b in itertools.pairwise(times) if warp(b) != warp(a)]
         times = np.unique(np.round(np.concatenate([times, *between]), 9))

@@ -1,0 +1,182 @@
+"""Edits in scenes with time: they hold when they are said to, nothing else changes, and undo is a reference."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from scenewright.gaussians.errors import InstructionError
+from scenewright.gaussians.motion.at import at
+from scenewright.gaussians.motion.motion import Motion, Track, moving_ids
+from scenewright.gaussians.scene import Scene
+from scenewright.tools.execute import Done, carry_out
+from scenewright.tools.judging.changes import changes_between
+from scenewright.tools.operation import Context
+from scenewright.tools.registry import OPS, parse
+from scenewright.tools.timing.retiming import Warp
+from scenewright.tools.timing.through_time import carry_through_time
+
+TABLE, CHAIR, ARMCHAIR, VASE, FLOOR = range(5)
+A_CHAIR = {"groups": [CHAIR]}
+Json = dict[str, Any]
+
+
+@pytest.fixture
+def moving(corner: Scene) -> Scene:
+    """The corner, in which the chair slides half a unit along x from 1 to 3 s; 0 to 4 s."""
+    ids = corner.cloud.ids[corner.cloud.group == CHAIR].numpy()
+    track = Track.along(ids, (1.0, 3.0), ((0, 0, 0), (0.5, 0, 0)), smooth=False)
+    return corner.replace(motion=Motion((track,), (), (), 0.0, 4.0))
+
+
+def done(scene: Scene, data: Json, context: Context) -> Done:
+    return carry_through_time(scene, parse(data), context, None, partial(carry_out, seen=False))
+
+
+def middle(scene: Scene, time: float, group: int = CHAIR) -> np.ndarray:
+    cloud = at(scene, time).cloud
+    return cloud.means[cloud.group == group].double().mean(dim=0).numpy()
+
+
+def differs(before: Scene, after: Scene, time: float) -> torch.Tensor:
+    """The groups in which a Gaussian differs at a time."""
+    was, now = at(before, time).cloud, at(after, time).cloud
+    return was.group[changes_between(was, now).any].unique()
+
+
+def test_a_look_holds_in_its_time_and_nothing_else_changes(moving: Scene, context: Context) -> None:
+    data = {"op": "recolor", "target": A_CHAIR, "color": "red", "when": {"start": 1.5, "stop": 2.5}}
+    made = done(moving, data, context)
+    assert made.scene.cloud is moving.cloud and made.receipt.op["when"] == {"start": 1.5, "stop": 2.5}
+    assert differs(moving, made.scene, 2.0).tolist() == [CHAIR]
+    for time in (0.0, 1.49, 2.5, 4.0):
+        assert not len(differs(moving, made.scene, time))
+    told = {c.name: c for c in made.receipt.checks}
+    assert told["as before at other times"].value == 0 and told["changed in time"].value > 0
+
+
+def test_what_is_deleted_for_a_while_comes_back(moving: Scene, context: Context) -> None:
+    data = {"op": "delete", "target": {"groups": [VASE]}, "infill": False, "when": {"start": 1, "lasting": 1}}
+    made = done(moving, data, context)
+    assert len(made.scene.cloud) == len(moving.cloud)
+    there = [int((at(made.scene, t).cloud.group == VASE).sum()) for t in (0.5, 1.5, 2.5)]
+    assert there[0] == there[2] > 0 == there[1]
+
+
+def test_a_way_starts_where_it_is_then_and_goes_on_with_what_was_there(moving: Scene, context: Context) -> None:
+    far = {"value": 30, "unit": "cm"}
+    data = {"op": "move", "target": A_CHAIR, "direction": "up", "distance": far, "when": {"start": 2, "stop": 3}}
+    made = done(moving, data, context)
+    for time in (0.0, 1.5, 2.0):
+        assert np.allclose(middle(made.scene, time), middle(moving, time), atol=1e-6)
+    for time in (3.0, 4.0):  # the way of the chair and the new one add up
+        assert np.allclose(middle(made.scene, time) - middle(moving, time), [0, 0, 0.3], atol=1e-5)
+
+
+def test_a_size_cannot_change_for_a_while(moving: Scene, context: Context) -> None:
+    with pytest.raises(InstructionError, match="size"):
+        done(moving, {"op": "scale", "target": A_CHAIR, "factor": 2, "when": {"start": 1}}, context)
+
+
+def test_an_edit_without_a_time_holds_at_all_times_and_is_placed_at_the_time_it_is_said(
+    moving: Scene, context: Context
+) -> None:
+    far = {"value": 20, "unit": "cm"}
+    data = {"op": "move", "target": A_CHAIR, "direction": "up", "distance": far}
+    for said in (None, 2.0):
+        made = done(moving, data, replace(context, time=said))
+        for time in (0.0, 2.0, 4.0):
+            assert np.allclose(middle(made.scene, time) - middle(moving, time), [0, 0, 0.2], atol=1e-5)
+    turned = done(moving, {"op": "rotate", "target": A_CHAIR, "degrees": 90}, replace(context, time=3.0))
+    off = middle(turned.scene, 3.0) - middle(moving, 3.0)  # it turns about its box, not the mean of its Gaussians
+    assert np.linalg.norm(off) < 0.15  # about its place at the start it would be 0.7 away
+    assert not len(differs(moving, turned.scene, 3.0)[differs(moving, turned.scene, 3.0) != CHAIR])
+
+
+CLEAN: list[Json] = [
+    {"op": "pace", "target": A_CHAIR, "change": "stop", "when": {"start": 2}},
+    {"op": "spin", "target": A_CHAIR, "turns_per_second": 1},
+    {"op": "articulate", "target": {"groups": [TABLE]}, "degrees": 30, "when": {"start": 0, "stop": 1}},
+]
+
+
+def test_every_operation_that_makes_motion_is_tried_here() -> None:
+    assert {data["op"] for data in CLEAN} == {name for name, op in OPS.items() if op.makes_motion}
+
+
+@pytest.mark.parametrize(
+    ("more", "places"),
+    [
+        ({"change": "stop", "when": {"start": 2}}, {1.0: 0.0, 2.0: 0.25, 3.0: 0.25, 4.0: 0.25}),
+        ({"change": "stop", "when": {"start": 1.5, "stop": 2.0}}, {2.0: 0.125, 3.0: 0.375, 3.5: 0.5}),
+        ({"change": "stop"}, {2.0: 0.0, 4.0: 0.0}),
+        ({"change": "begin", "when": {"start": 0}}, {1.0: 0.25, 2.0: 0.5}),
+        ({"change": "begin", "when": {"start": 2, "lasting": 1}}, {2.0: 0.0, 2.5: 0.25, 3.0: 0.5}),
+        ({"change": "speed", "factor": 2}, {1.0: 0.0, 1.5: 0.25, 2.0: 0.5, 4.0: 0.5}),
+        ({"change": "later", "seconds": 0.5}, {1.5: 0.0, 2.5: 0.25, 3.5: 0.5}),
+        ({"change": "reverse"}, {0.0: 0.5, 1.0: 0.5, 2.0: 0.25, 3.0: 0.0}),
+        ({"change": "return"}, {3.0: 0.5, 4.001: 0.25, 5.001: 0.0}),
+    ],
+)
+def test_motion_is_played_at_other_times(
+    moving: Scene, context: Context, more: Json, places: dict[float, float]
+) -> None:
+    made = done(moving, {"op": "pace", "target": A_CHAIR, **more}, context)
+    start = middle(moving, 0.0)[0]
+    for time, place in places.items():
+        assert middle(made.scene, time)[0] - start == pytest.approx(place, abs=2e-3)
+
+
+def test_the_whole_scene_at_half_speed_lasts_twice_as_long(moving: Scene, context: Context) -> None:
+    everything = {"text": "everything", "pick": "all"}
+    made = done(
+        moving, {"op": "pace", "target": everything, "change": "speed", "factor": 0.5}, replace(context, resolver=None)
+    )
+    assert made.scene.motion is not None and made.scene.motion.stop == 8.0
+    assert np.allclose(middle(made.scene, 4.0), middle(moving, 2.0), atol=1e-6)
+
+
+def test_what_spins_turns_about_itself_as_often_as_was_said(corner: Scene, context: Context) -> None:
+    made = done(corner, {"op": "spin", "target": A_CHAIR, "turns": 2, "when": {"start": 1, "stop": 3}}, context)
+    motion = made.scene.motion
+    assert motion is not None and len(motion.tracks) == 1
+    (track,) = motion.tracks
+    assert track.angles is not None and track.angles[-1] == pytest.approx(4 * math.pi)
+    assert np.allclose(middle(made.scene, 3.0), middle(corner, 0.0), atol=1e-5)
+    assert set(moving_ids(motion).tolist()) == set(corner.cloud.ids[corner.cloud.group == CHAIR].tolist())
+
+
+def test_a_door_that_opens_by_itself_opens_as_far_as_is_said(corner: Scene, context: Context) -> None:
+    ids = corner.cloud.ids[corner.cloud.group == TABLE].numpy()
+    track = Track.hinge(ids, (1.0, 2.0), (0.0, 1.0), (0, 0, 1), (0.5, 0, 0))
+    scene = corner.replace(motion=Motion((track,), (), (), 0.0, 4.0))
+    table = {"groups": [TABLE]}
+    half = done(scene, {"op": "articulate", "target": table, "share": 0.5}, context).scene.motion
+    assert half is not None and half.tracks[0].angles is not None and half.tracks[0].angles[-1] == 0.5
+    shut = done(
+        scene, {"op": "articulate", "target": table, "change": "close", "when": {"start": 3, "stop": 4}}, context
+    )
+    assert np.allclose(middle(shut.scene, 4.0, TABLE), middle(scene, 0.0, TABLE), atol=1e-6)
+    assert np.allclose(middle(shut.scene, 2.5, TABLE), middle(scene, 2.5, TABLE), atol=1e-6)
+
+
+def test_what_moves_is_told_from_what_stands(moving: Scene, context: Context) -> None:
+    from scenewright.gaussians.language.query.query import Query
+    from scenewright.gaussians.language.query.resolve import resolve
+
+    found = [resolve(moving, Query(pick="all", moving=m), context.viewer) for m in (True, False)]
+    assert found[0].groups == (CHAIR,) and CHAIR not in found[1].groups and len(found[1].groups) > 1
+    none = resolve(moving.replace(motion=None), Query(pick="all", moving=True), context.viewer)
+    assert none.verdict == "absent" and "nothing moves" in none.reason
+
+
+def test_a_warp_is_undone_by_its_inverse() -> None:
+    warp = Warp((0.0, 1.0, 3.0), (0.0, 2.0, 3.0), 1.0, 0.5)
+    for old in (-1.0, 0.5, 2.5, 4.0):
+        assert warp(warp.when(np.array([old]))) == pytest.approx(old)
