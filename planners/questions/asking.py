@@ -102,7 +102,7 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     asked = Asked(text, words=words, timeline=timeline)
     refused: Reading | None = None
     for kind in kinds.OF_MOTION:
-        for slots in kind.templates[0].match(words, READERS):
+        for slots in (found for template in kind.templates for found in template.match(words, READERS)):
             try:
                 given = kind.answer(replace(asked, slots=slots), survey)
             except NotResolved as error:

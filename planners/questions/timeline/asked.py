@@ -348,6 +348,9 @@ def cap(said: str) -> str:
     return said[:1].upper() + said[1:]
 
 
+_DOING = {"open": "opening", "close": "closing", "fall": "falling", "turn": "turning", "cross": "crossing it"}
+
+
 def verb(told: Told, what: Happening | None = None) -> str:
     """A deed in words, as a predicate: "moves", "falls", "reaches the wall"."""
     what = what or told.frame.what
@@ -370,15 +373,13 @@ def verb(told: Told, what: Happening | None = None) -> str:
         "speeds_up": "speeds up",
         "appear": "appears",
         "vanish": "disappears",
+        "recolor": "changes its colour",
     }
     other = f" {what.object.describe()}" if what.object is not None else ""
     if deed is None or deed.kind in plain:
         said = plain[deed.kind if deed is not None else None]
         if deed is not None and deed.phase in ("start", "stop"):
-            said = (
-                f"{'starts' if deed.phase == 'start' else 'stops'} "
-                f"{'opening' if deed.kind == 'open' else 'closing' if deed.kind == 'close' else 'falling'}"
-            )
+            said = f"{deed.phase}s {_DOING.get(deed.kind, 'moving')}"
         elif deed is not None and deed.phase:
             said = said.replace("is ", "is half " if deed.phase == "half" else "is fully ")
         return said

@@ -49,7 +49,7 @@ def spans_of(deed: Deed, body: Body, others: Sequence[Thing], timeline: Timeline
         return moving if bobs(body) > 0.005 * timeline.unit else []
     if kind in ("open", "close", "is_open", "is_closed"):
         return _opening(deed, body, timeline)
-    if kind in ("appear", "vanish"):
+    if kind in ("appear", "vanish", "recolor"):
         return _seen(kind, body, timeline)
     if kind == "land":
         others = others or tuple(survey.at(survey.stage.ids.index("floor")) for _ in range("floor" in survey.stage.ids))
@@ -295,12 +295,15 @@ def _nearing(closer: bool, body: Body, others: Sequence[Thing], timeline: Timeli
 
 
 def _seen(kind: str, body: Body, timeline: Timeline) -> list[Span]:
-    """The times at which most of it disappears, or appears again."""
+    """The times at which most of it disappears, appears again, or gets another colour."""
     motion = timeline.scene.motion
     assert motion is not None and timeline.scene.language is not None
     from ....gaussians.language.field.group_index import index_groups
 
     ids = index_groups(timeline.scene.cloud).ids_of(timeline.scene.language.leaves(body.group.id)).cpu().numpy()
+    if kind == "recolor":
+        worn = [look for look in motion.looks if look.sh is not None and np.isin(ids, look.ids).mean() > 0.5]
+        return [(t, t) for look in worn for t in (look.start, look.stop) if timeline.start < t < timeline.stop]
     hidden = [
         (look.start, look.stop)
         for look in motion.looks

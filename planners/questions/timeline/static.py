@@ -56,6 +56,10 @@ class AtMoment:
     said: bool = True
 
 
+_PLACE_OF = re.compile(r"^(?P<x>(?:the )?\w+(?: \w+)?)(?: 's)? (?:position|location|place)$")
+_ASKS = re.compile(
+    r"^(?:how|what|which|when|where|who|why|is|are|was|were|does|do|did|has|have|can|in|on|at|to|list|name|count)\b"
+)
 _ADVERB = re.compile(r"\b(?:still|already|yet) (?=(?:on|in|at|next|near|under|beside|behind|by|above|against)\b)")
 _RELATIVE = re.compile(r"\b(?P<np>the (?:\w+ ){0,2}?(?P<noun>\w+)) (?:that|which|who) (?P<clause>.+)$")
 _PARTICIPLE = re.compile(r"\bthe (moving|rolling|falling|spinning|turning|walking|rotating|sliding) (?!of\b)(\w+)")
@@ -126,6 +130,10 @@ def _readings(said: str) -> Iterator[tuple[When | None, str]]:
     yield from clauses(said)
     when, rest = without_time(said)
     if when is not None:
+        if (found := _PLACE_OF.match(rest)) is not None:
+            yield when, f"where is {found['x']}"
+        elif not _ASKS.match(rest):
+            yield when, f"is {rest}"  # "ball on the rug at 2 s?"
         yield when, rest
     yield None, said
 

@@ -3,6 +3,7 @@
 from . import lasting, movers, order, places, speeds, when, whether
 
 KINDS = (
+    lasting.CLIP,
     lasting.BETWEEN,
     order.ORDER,
     order.DOES,

@@ -8,6 +8,9 @@ import re
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
+from ...kind import Asked, Kind
+from ...reading.phrase_templates import templates
+from ...survey import Survey
 from ...timeline.asked import Told, Untold, agreed, at, cap, kind, number, spoken, verb, within
 from ...timeline.bodies import Body
 from .when import moment
@@ -82,5 +85,19 @@ def _between(told: Told) -> Answer | None:
     return number(apart, "s", f"{at(apart)}: {said[0]} and {said[1]}.", bodies, min(times))
 
 
+def _clip(asked: Asked, survey: Survey) -> Answer | None:
+    if asked.timeline is None:
+        return None
+    seconds = asked.timeline.stop - asked.timeline.start
+    return number(seconds, "s", f"The scene lasts {at(seconds)}.", [])
+
+
+_CLIPS = """
+    how long (is|does|lasts) [the|this] (film|clip|video|scene|recording|animation|shot|movie|sequence|footage) \
+        [last|take|run|long]
+    [what is] [the] (length|duration) of [the|this] (film|clip|video|scene|recording|animation|shot|movie|sequence|\
+        footage)
+"""
+CLIP = Kind("how_long_the_scene", templates(_CLIPS), _clip)
 LONG = kind("how_long", "how_long", _long)
 BETWEEN = kind("between_events", "between", _between)

@@ -12,6 +12,7 @@ from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...reading.time.deeds import Deed
+from ...reading.time.moments import When
 from ...timeline.asked import Told, Untold, agreed, at, cap, during, kind, number, spoken, within
 from ...timeline.bodies import Body
 from ...timeline.happening import bobs, hinged, opened
@@ -155,6 +156,7 @@ def _turning(told: Told, body: Body, now: float | None) -> Answer:
 
 
 def _far(told: Told) -> Answer | None:
+    told = _so_far(told)
     what = told.frame.what
     if what.deed is None and what.subject is not None and re.search(r"\b(?:opening|angle)\b", told.asked.said):
         opened_by = replace(told.frame, what=replace(what, deed=Deed("open")))
@@ -164,6 +166,14 @@ def _far(told: Told) -> Answer | None:
     if told.frame.measure == "nearest":
         return _nearest(told)
     return agreed(told, lambda body: _far_one(told, body))
+
+
+def _so_far(told: Told) -> Told:
+    """The question with the time up to a moment, where it asks what has been done after some seconds."""
+    when = told.frame.when
+    if when is None or when.kind != "after" or not re.search(r"\b(?:has|have|had)\b", told.asked.said):
+        return told
+    return replace(told, frame=replace(told.frame, when=When("span", told.timeline.start, when.start)))
 
 
 def _nearest(told: Told) -> Answer | None:
@@ -276,6 +286,7 @@ def hinged_track(body: Body) -> bool:
 
 
 def _often(told: Told) -> Answer | None:
+    told = _so_far(told)
     deed = told.frame.what.deed
     said = " ".join(told.asked.words)
     body = told.one()

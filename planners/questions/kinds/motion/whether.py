@@ -13,13 +13,15 @@ from ...timeline.bodies import Body
 from .when import moment
 
 _ROUND = 0.15  # seconds: what starts so soon after the start of the scene starts with it
-_CHANGES = ("start", "stop", "reach", "enter", "leave", "land", "pass", "vanish", "appear")
+_CHANGES = ("recolor", "start", "stop", "reach", "enter", "leave", "land", "pass", "vanish", "appear")
 
 
 def _whether(told: Told) -> Answer | None:
     what, when = told.frame.what, told.frame.when
     deed = what.deed
     if deed is None:
+        return None
+    if what.subject is None:
         return None
     if told.frame.other is not None and told.frame.asks == "yesno":
         return _before(told)

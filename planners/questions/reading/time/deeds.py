@@ -11,7 +11,7 @@ from typing import Literal
 Kind = Literal[
     "move", "turn", "open", "close", "fall", "land", "reach", "enter", "leave", "cross", "pass", "approach", "recede",
     "bob", "appear", "vanish", "still", "is_open", "is_closed", "related", "start", "stop", "slows",
-    "speeds_up", "nearest", "farthest",
+    "speeds_up", "nearest", "farthest", "recolor",
 ]  # fmt: skip
 Phase = Literal["", "start", "stop", "half", "full"]
 
@@ -47,6 +47,7 @@ _IRREGULAR = {
 _DOUBLED = frozenset(
     [
         "stop",
+        "travel",
         "drop",
         "run",
         "spin",
@@ -165,7 +166,8 @@ def _patterns() -> tuple[tuple[re.Pattern[str], Deed], ...]:
         (rf"(?:{_START}|{forms('come', 'set out')}|set off) (?:out )?from", Deed("start", way="from")),
         (rf"(?:{_START}) (?:to |in )?(?:be in )?(?:{both}|motion)(?: (?:around|round|about))?|(?:{_START}) {_ITS} "
          rf"(?:{_NOUNS['move']}|{_NOUNS['turn']})|(?:{forms('set')}) (?:off|out|in motion)|(?:{forms('take')}) off|"
-         rf"(?:{forms('get')}) (?:going|moving|rolling)|(?:{forms('go', 'move')}) off(?! )|(?:{_START})(?: up)?",
+         rf"(?:{forms('get')}) (?:going|moving|rolling)|(?:{forms('go', 'move')}) off(?! )|(?<!the )(?<!very "
+         rf"){_START}(?: up)?",
          Deed("start")),
         # falling
         (rf"(?:{forms('fall', 'drop', 'tumble', 'plunge', 'topple')}) (?:down )?(?:off|from|out of)", Deed("fall")),
@@ -218,6 +220,9 @@ def _patterns() -> tuple[tuple[re.Pattern[str], Deed], ...]:
         (rf"{forms('appear', 'reappear')}|(?:{forms('show')}) up|{forms('become')} visible", Deed("appear")),
         (rf"(?:{_BE} |gets? |comes? |{forms('come')} )?(?:the )?(?:closest|nearest) to", Deed("nearest")),
         (rf"(?:{_BE} |gets? )?(?:the )?(?:farthest|furthest) (?:away )?from", Deed("farthest")),
+        (rf"(?:{forms('change')})(?: (?:its|the|their))? (?:colors?|looks?|appearance)|(?:{_TURNS}) (?:another|a "
+         rf"different) color",
+         Deed("recolor")),
         # still, moving
         (rf"(?:{_BE} |stays? |remains? |stands? |keeps? |sits? |lies |stayed |standing |staying |lying )?(?:in (?:its "
          rf"|the |"

@@ -18,7 +18,7 @@ from .....gaussians.world import kinds
 from ....grammar.tagging.words import bag
 from .. import noun_phrase, relation_phrases
 from ..noun_phrase import is_color_word
-from .deeds import Deed, Kind, as_noun, said_in, verb_words
+from .deeds import Deed, Kind, Phase, as_noun, said_in, verb_words
 from .moments import When, clauses, without_time
 
 Asks = Literal[
@@ -127,7 +127,7 @@ _CUES: tuple[tuple[Asks, re.Pattern[str]], ...] = tuple(
                   r"event)?(?: that happens| to happen| that takes "
          r"place)$"),
         ("how_often", r"^(?:and )?(?:how (?:often|many times|frequently)|(?:how many|(?:what is )?the (?:total "
-                      r")?number of|what number of) "
+                      r")?number of|what number of|(?:the )?total(?: number of)?) "
          r"(?:full |complete |whole |total |single )?(?:turns?|rotations?|revolutions?|spins?|rounds?|circles?|laps|"
          r"loops|cycles|"
          r"revs|times|twists))(?! (?:per|a|/|every|each|in one|in a) (?:second|sec|minute|min|s))"
@@ -178,7 +178,7 @@ _CUES: tuple[tuple[Asks, re.Pattern[str]], ...] = tuple(
         ("faster", r"^(?:and )?(?:which|what|who)(?: one| thing)?(?: is| goes| moves| turns| travels)? (?:the "
                    r")?(?P<more>faster|quicker|slower)"
          r"(?: one)?(?: ,| :)? (?P<rest>.+ or .+)$"),
-        ("which", r"^(?:and )?(?:(?:name|list|show|tell)(?: me)? )?(?:which|what|everything|anything|all|the things?|"
+        ("which", r"^(?:and )?(?:(?:name|list|show|tell)(?: me)? )?(?:which|what|everything|all|the things?|"
                   r"the objects?|"
          r"things|all things|all the things|something)(?: one| ones| of (?:these|them|the things|the objects|all)| "
          r"things?| objects?| items?"
@@ -192,6 +192,9 @@ _CUE_LAST = re.compile(
     rf"^(?P<rest>.+?)(?: ,)? (?P<cue>when(?: exactly)?|at what time|what time|at which second|how far|how long|how "
     rf"fast|"
     rf"how many (?:{_LENGTH}|{_ANGLE}|turns|times|seconds|rotations|revolutions)|where|which way|how often)$"
+)
+_ANY_MOTION = re.compile(
+    r"^(?:is|are) there (?:still )?(?:any |some )?(?:movements?|motion)(?: here| in the room)?(?= |$)"
 )
 _TWO_QUESTIONS = re.compile(r"\band (?:when|how|where|what|which|why|does|is|are|do)\b")
 _LATER = re.compile(
@@ -306,6 +309,7 @@ def frames(words: tuple[str, ...]) -> tuple[Frame, ...]:
 def _frames(said: str) -> Iterator[Frame]:
     if _TWO_QUESTIONS.search(said):
         return
+    said = _ANY_MOTION.sub("does anything move", said)
     if found := _LATER.match(said):
         for b in happenings(found["b"]):
             a = _short(found["a"], b)
@@ -363,8 +367,13 @@ def _filled(start: Frame, said: str) -> Iterator[Frame]:
     if start.asks == "yesno" and (found := _STATES_OR.search(said)):
         yield from _either(start, said, found)
         return
+    read = False
     for when, rest in _timed(said):
-        yield from _told(replace(start, when=when), rest)
+        if when is None and read:
+            return  # the words of the time belong to nothing else
+        for frame in _told(replace(start, when=when), rest):
+            read = True
+            yield frame
 
 
 def _either(start: Frame, said: str, found: re.Match[str]) -> Iterator[Frame]:
@@ -515,6 +524,11 @@ def _by_noun(said: str) -> Iterator[Happening]:
 
 def _around(deed: Deed, before: str, after: str) -> Iterator[Happening]:
     """A deed with the things before and behind it."""
+    noun = as_noun(_stripped(before))
+    if noun is not None and not after and deed.kind in ("start", "stop"):
+        phase: Phase = "start" if deed.kind == "start" else "stop"
+        yield Happening(Deed(noun.kind, phase, verb=noun.verb))  # "when does the turn end"
+        return
     subject = _subject(before)
     if subject is False:
         return

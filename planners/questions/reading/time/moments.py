@@ -108,7 +108,7 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
         (rf"\b(?:right |just )?(?:at|in|from|on) (?:the )?(?:very )?(?:start|beginning|outset){_OF_CLIP}(?= |$)|"
          r"\b(?:initially|originally|to begin with|to start with|at first|in the first frame|immediately|right away|"
          r"straight away|at once|instantly)(?= |$)", _plain("start")),
-        (rf"\b(?:right |just )?(?:at|in|by|until|till|to) (?:the )?(?:very )?(?:end|finish|close){_OF_CLIP}(?= |$)|"
+        (rf"\b(?:right |just )?(?:at|in|by|until|till|to) (?:the|its) (?:very )?(?:end|finish|close){_OF_CLIP}(?= |$)|"
          rf"\b(?:finally|eventually|ultimately|afterwards|afterward|at last|in the last frame|in the final frame|"
          rf"when (?:it|everything|all) is over|after everything|after it all)(?= |$)", _plain("end")),
         (rf"\b(?:(?:for |during )?(?:the|this) (?:whole|entire|full) (?:time|clip|video|film|scene|shot|recording|"
