@@ -46,7 +46,12 @@ TOGETHER = frozenset(
     }
 )
 # What no run of all measures: each takes long by itself, and its figures stand on a page of its own.
-ALONE = {"batch": "docs/batch.md", "fit_blocks": "docs/fit.md", "motion": "docs/motion.md"}
+ALONE = {
+    "batch": "docs/batch.md",
+    "fit_blocks": "docs/fit.md",
+    "motion": "docs/motion.md",
+    "scale": "docs/scale.md",
+}
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
 LONG = frozenset({"dream", "edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure", "view"})
 # Parts that whole runs leave out, with the reason.
