@@ -121,11 +121,26 @@ def _wrong(expect: dict[str, Any], effect: _Effect) -> str:
     if kind == "refuse":
         return "something was done"
     checks = {"remove": _removed, "hide": _hidden, "look": _looks, "static": _looks}
-    wrong = "; ".join(told for name in named if (told := checks.get(kind, _moves)(expect, name, effect)))
+    single = len(named) == 1 or kind in checks
+    each = expect if single else {k: v for k, v in expect.items() if k not in ("start", "stop")}
+    wrong = "; ".join(told for name in named if (told := checks.get(kind, _moves)(each, name, effect)))
+    if not single and not wrong:
+        wrong = _together(expect, named, effect)
     if not wrong and "order" in expect:
         starts = [_spans(effect.course(n))[0][0] for n in expect["order"] if _spans(effect.course(n))]
         wrong = "" if len(starts) == len(expect["order"]) and starts == sorted(starts) else "the order is another"
     return wrong or _others(named, effect)
+
+
+def _together(expect: dict[str, Any], named: Sequence[str], effect: _Effect) -> str:
+    """What is wrong with when several things move: the first of them begins and the last of them stops in time."""
+    spans = [s for name in named for s in _spans(effect.course(name))]
+    if not spans:
+        return "" if expect.get("factor") == 0 else "nothing moves"
+    for key, time in (("start", min(a for a, _ in spans)), ("stop", max(b for _, b in spans))):
+        if expect.get(key) is not None and abs(time - expect[key]) > _near(expect):
+            return f"they {'begin' if key == 'start' else 'end'} at {time:.2f} s"
+    return ""
 
 
 def _removed(expect: dict[str, Any], name: str, effect: _Effect) -> str:

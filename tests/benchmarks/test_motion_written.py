@@ -66,6 +66,20 @@ def test_effects_are_judged_by_what_they_change() -> None:
     assert "times the former" in _wrong(twice | {"factor": 3}, _Effect(driving(1, 3, 1.0), driving(1, 2, 1.0)))
 
 
+def test_several_things_are_judged_by_the_first_and_the_last() -> None:
+    def both(start: float) -> Scene:
+        return blocks(
+            {**THINGS, "box": ((0.0, 2.0, 0.1), (0.2, 0.2, 0.2))},
+            lambda ids: Track.slide(ids("cart"), [start, start + 1], [0, 1], (1, 0, 0), smooth=False),
+            lambda ids: Track.slide(ids("box"), [start + 1, start + 2], [0, 1], (1, 0, 0), smooth=False),
+            stop=5.0,
+        )
+
+    expect = {"kind": "pace", "thing": ["cart", "box"], "start": 2, "stop": 4}
+    assert _wrong(expect, _Effect(both(1.0), both(2.0))) == ""
+    assert _wrong(expect, _Effect(both(1.0), both(1.0))) == "they begin at 1.00 s"
+
+
 def test_hidden_things_are_gone_for_that_time_only() -> None:
     import torch
 
