@@ -137,9 +137,9 @@ def _together(expect: dict[str, Any], named: Sequence[str], effect: _Effect) -> 
     spans = [s for name in named for s in _spans(effect.course(name))]
     if not spans:
         return "" if expect.get("factor") == 0 else "nothing moves"
-    for key, time in (("start", min(a for a, _ in spans)), ("stop", max(b for _, b in spans))):
-        if expect.get(key) is not None and abs(time - expect[key]) > _near(expect):
-            return f"they {'begin' if key == 'start' else 'end'} at {time:.2f} s"
+    for key, seen in (("start", min(a for a, _ in spans)), ("stop", max(b for _, b in spans))):
+        if expect.get(key) is not None and abs(seen - expect[key]) > _near(expect):
+            return f"they {'begin' if key == 'start' else 'end'} at {seen:.2f} s"
     return ""
 
 
