@@ -21,7 +21,7 @@ from ..world.box import Boxes, distances
 from ..world.relation_geometry import HOLDS, Stand, Things, viewer_stand
 from ..world.support import is_sheet
 from .courses import Course, course_of
-from .holding import Span, Value, common, grid, is_in, joined, lowest, rest, spans
+from .holding import Span, Value, common, grid, joined, lowest, rest, spans
 
 F64 = NDArray[np.float64]
 
@@ -329,11 +329,6 @@ def nearest_gap(scene: Scene, group: int, anchor: int) -> tuple[float, float]:
     pair = Encounter.of(scene, group, [anchor])
     time = lowest(pair.gaps, pair.course.start, pair.course.stop)
     return time, float(pair.gaps(np.array([time]))[0])
-
-
-def is_moving(course: Course, time: float, unit: float = 1.0) -> bool:
-    """Whether a group moves at a time."""
-    return is_in(movements(course, unit), time)
 
 
 def _swept(course: Course, span: Span) -> float:

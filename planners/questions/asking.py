@@ -26,7 +26,7 @@ from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
 from .telling import absent, absent_text, evidence
 from .timeline import static
-from .timeline.asked import STATIC, Untold, at, is_of_motion, nothing
+from .timeline.asked import STATIC, Untold, at, is_of_motion, nothing, spoken
 from .timeline.bodies import Timeline
 
 NOT_READ = "this question is not understood"
@@ -159,8 +159,12 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
 
 def _present(answer: Answer, survey: Survey, timeline: Timeline) -> str:
     """The text of an answer about the present, which says so where it is about something that moves."""
-    moving = [b for b in timeline.movers(survey) if b.thing is not None and b.thing.id in answer.evidence.ids]
-    return f"{answer.text} (This is at {at(timeline.now)}; {moving[0].name} moves later.)" if moving else answer.text
+    told = [
+        f"{b.name} moves {spoken(b.moving)}"
+        for b in timeline.movers(survey)
+        if (b.thing is not None and b.thing.id in answer.evidence.ids) or b.name in answer.text.lower()
+    ]
+    return f"{answer.text} (This is at {at(timeline.now)}; {'; '.join(told)}.)" if told else answer.text
 
 
 def _static(text: str, survey: Survey) -> Reading:

@@ -153,7 +153,7 @@ def test_answers_show_the_time_that_they_are_about(session: Session) -> None:
     given = said(session, "where is the red book at the end?")
     assert given.evidence.time == 4.0 and given.text.startswith("At 4 s: ")
     now = said(session, "where is the ball?")
-    assert "(This is at 0 s; the ball moves later.)" in now.text
+    assert "(This is at 0 s; the ball moves from 1 s to 3 s.)" in now.text
     assert said(session, "how wide is the chair?").text.endswith("wide.")
 
 
