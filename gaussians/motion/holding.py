@@ -74,11 +74,6 @@ def rest(found: list[Span], start: float, stop: float) -> list[Span]:
     return [(a, b) for a, b in zip(bounds[::2], bounds[1::2], strict=True) if a < b]
 
 
-def is_in(found: list[Span], time: float) -> bool:
-    """Whether a time lies in one of the spans, their ends included."""
-    return any(start <= time <= stop for start, stop in found)
-
-
 def lowest(value: Value, start: float, stop: float, step: float = STEP) -> float:
     """The time at which a value is lowest between start and stop; the first of several."""
     times = grid(start, stop, step)

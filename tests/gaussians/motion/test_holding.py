@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenewright.gaussians.motion.holding import common, grid, is_in, joined, lowest, rest, spans
+from scenewright.gaussians.motion.holding import common, grid, joined, lowest, rest, spans
 
 EXACT = 1e-4  # seconds: a step halved nine times
 
@@ -45,7 +45,6 @@ def test_sets_of_spans() -> None:
     assert common(a, b) == [(0.5, 1.0), (2.0, 2.5)]
     assert rest(a, 0.0, 4.0) == [(1.0, 2.0), (3.0, 4.0)]
     assert joined([(0.0, 1.0), (1.05, 2.0), (2.5, 3.0)], 0.1) == [(0.0, 2.0), (2.5, 3.0)]
-    assert is_in(a, 2.0) and not is_in(a, 1.5)
     assert spans(lambda t: t, grid(0.0, 1.0), 2.0) == []
     assert spans(lambda t: np.ones_like(t), grid(3.0, 3.0), 0.5) == [(3.0, 3.0)]
 
