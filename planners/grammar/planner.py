@@ -35,7 +35,7 @@ from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
-from .timing.reading import TimeReader, may_be_timed
+from .timing.reading import TimeReader, is_misread, may_be_timed
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
 
@@ -157,9 +157,14 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     """
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
-    if may_be_timed(cleaned) and (timed := TimeReader(_operations, _thing).read(cleaned)) is not None:
+    if not may_be_timed(cleaned):
+        return _timeless(cleaned, previous)
+    if (timed := TimeReader(_operations, _thing).read(cleaned)) is not None:
         return _of_time(timed)
-    return _timeless(cleaned, previous)
+    outcome = _timeless(cleaned, previous)
+    if is_misread(outcome.ops):
+        raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
+    return outcome
 
 
 def _operations(cleaned: str) -> Sequence[Fields]:

@@ -40,7 +40,7 @@ _ONCE = (
 )
 _AFTER = r"(?:(?:right |just |only |directly |immediately )?after)"
 _UNTIL = r"(?:until|till|til|up until|up to when|before|by the time|right before|just before|right until|only until)"
-_CONJUNCTION = re.compile(rf"(?:^|(?<= ))(?:only |but only |just )?(?P<word>{_WHILE}|{_ONCE}|{_AFTER}|{_UNTIL})(?= )")
+_CONJUNCTION = re.compile(rf"(?:^|(?<= ))(?:only |but only |just )?(?P<word>{_ONCE}|{_WHILE}|{_AFTER}|{_UNTIL})(?= )")
 
 _PRONOUNS = ("it", "he", "she", "they", "that", "this")
 _PEOPLE = re.compile(r"^(?:i|we|you|people|guests?|everyone|someone|somebody|my .*|anyone|nobody|there)\b")

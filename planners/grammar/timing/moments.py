@@ -58,6 +58,7 @@ _DURATION = (
     rf"(?:three )?quarters? (?:of )?a {_UNIT}|a quarter (?:of )?a {_UNIT}|(?:{_NUMBER}) (?:full |whole "
     rf")?{_UNIT}|half a {_UNIT})"
 )
+DURATION = rf"(?:{_HEDGE}{_DURATION})"
 _MARK = r"(?: mark| point)?"
 _NAMED: dict[str, End] = {
     "start": 0.0,
@@ -81,7 +82,7 @@ _BARE = rf"(?:{_POINT}|{_DIGITS}|(?:{_ONES}))"
 _TO = r"(?:to|until|till|til|and|up to|through|thru|-|through to|untill)"
 _ALWAYS = (
     r"(?:(?:for |during |over |through )?(?:the )?(?:whole|entire|full) (?:time|clip|scene|film|video|"
-    r"animation|shot|sequence|thing)|"
+    r"animation|shot|sequence)|"
     r"all the time|all through|throughout(?: the (?:scene|clip|film|shot))?|always|permanently|"
     r"forever|for ever|constantly|"
     r"from (?:the )?(?:start|beginning) to (?:the )?(?:end|finish)|at all times|the whole way(?: "
@@ -225,7 +226,7 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
 _COMPILED = tuple((re.compile(rf"(?:^|(?<= )){pattern}(?= |$)"), made) for pattern, made in _PHRASES)
 _ADVERBS = (
     (re.compile(rf"(?:^|(?<= )){_ALWAYS}(?= |$)"), "always"),
-    (re.compile(rf"(?:^|(?<= )){_SLOWLY}(?= |$)"), "slowly"),
+    (re.compile(rf"(?:^|(?<= ))(?<!more )(?<!less )(?<!too )(?<!as )(?<!very ){_SLOWLY}(?= |$)"), "slowly"),
     (re.compile(rf"(?:^|(?<= )){_QUICKLY}(?= |$)"), "quickly"),
 )
 TIMED = re.compile(rf"\b(?!an? second\b){_DURATION}|\b(?:\d+ ?{_UNIT}|(?:t|second|sec) ?=? ?\d)")

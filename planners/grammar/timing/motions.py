@@ -16,7 +16,7 @@ from ....tools.operation import Length
 from ..tagging.words import bag
 from ..vocabulary import quantities
 from .happenings import Thing
-from .moments import Moment
+from .moments import DURATION, Moment
 
 Fields = dict[str, Any]
 Kind = Literal["motion", "path", "look"]
@@ -96,7 +96,8 @@ _GOING = (
 )
 _GOES = "|".join(f"{w}s" for w in _GO.split("|") if w != "go") + "|goes"
 _TIMES = (
-    r"(?P<times>(?:at )?(?:double|twice|triple|three times|four times|half|quarter|a quarter of|a third of|half of|"
+    r"(?P<times>in slow motion|(?:at )?(?:double|twice|triple|three times|four times|half|quarter|"
+    r"a quarter of|a third of|half of|"
     r"\d+(?:[.,]\d+)? ?(?:x|times|%|percent)|x ?\d+(?:[.,]\d+)?|(?:two|three|four|five|six|ten)(?: ?x| times|fold)?)"
     r"(?: (?:as|the|its|their|of|a|normal|usual|original|present|current))*(?: (?:fast|quick(?:ly)?|"
     r"slow(?:ly)?|speed|pace|tempo|rate|faster|quicker|slower))?|"
@@ -132,7 +133,7 @@ _RATE = (
 _WHOLE = (
     rf"(?P<turns>(?:for |by |a |through |of |with |, |do |does |doing |make |makes |around |round "
     rf")*(?P<c>{_COUNT}) ?(?:full |complete |whole )?(?:{_ROUNDS})|(?:a )?(?P<angle>360|720|1080|"
-    rf"180)(?: degrees?|°|s)?|(?:a )?full circle|(?:a )?pirouette)"
+    rf"180)(?: degrees?|°|s)?|(?:a )?full circle|(?:a )?pirouette|(?P<adv>once|twice|thrice))"
 )
 _ENDLESS = (
     r"(?: (?:like crazy|continuously|constantly|endlessly|around|round|round and round|around "
@@ -178,7 +179,8 @@ def commands(said: str, thing: Thing, moment: Moment, told: bool) -> Iterator[Co
     """
     for read in (_paces, _opening, _spinning, _going):
         for command in read(said, thing, moment):
-            if told or not command.needs:
+            closes_it = any(op.get("change") == "close" and op["target"].last for op in command.ops)
+            if told or not (command.needs or closes_it):  # "close it" may be said of a gap
                 yield command
 
 
@@ -217,6 +219,8 @@ def _opening(said: str, thing: Thing, moment: Moment) -> Iterator[Command]:
     for pattern, change in forms:
         found = re.match(rf"^{pattern}$", said)
         if found is None:
+            continue
+        if re.search(r"\b(?:slower|faster|quicker|more slowly|more quickly|earlier|later|sooner)\b", found["how"]):
             continue
         for np, how in _parted(found["np"], found["how"]):
             if np in ("it", "that", "this", "them") and re.match(
@@ -287,6 +291,7 @@ def _spinning(said: str, thing: Thing, moment: Moment) -> Iterator[Command]:
         rf"{_SPIN} {_NP}{_ENDLESS} ?,? ?(?:{_RATE}|{_WHOLE}){_ENDLESS}",
         rf"(?:{_LET} )?{_NP}(?: {_OUGHT})? (?:{_SPIN}|{_SPINS}){_ENDLESS} ?,? ?(?:{_RATE}|{_WHOLE}){_ENDLESS}",
         rf"(?:{_LET} |set )?{_NP} (?:at|to)? ?{_RATE}",
+        rf"(?:speed up|slow down|speed|slow|set|bring|turn) {_NP}(?: up| down)? to {_RATE}",
         rf"{_NP} (?:speed )?{_RATE}",
     )
     for found in _first(forms, said):
@@ -331,7 +336,8 @@ def _turning(found: re.Match[str]) -> Fields | None:
     if got.get("turns"):
         if got.get("angle"):
             return {"turns": float(got["angle"]) / 360}
-        value = _number(got["c"]) if got.get("c") else 1.0
+        counted = got.get("c") or got.get("adv")
+        value = _number(counted) if counted else 1.0
         return {"turns": value} if value else None
     return None
 
@@ -372,6 +378,7 @@ def _backwards(said: str, thing: Thing) -> Iterator[Command]:
         rf"(?:play|run) {_BACKWARDS}(?P<np>)",
         rf"(?:reverse|rewind|invert|flip) (?P<np>{_PLAYED})",
         rf"(?P<np>{_PLAYED}) (?:{_OUGHT} )?(?:plays?|runs?|goes|go|be played|happens?)? ?{_BACKWARDS}",
+        r"(?P<np>rewind|backwards)",
     )
     if next(_first(forms, said), None) is not None:
         yield _pace(ALL_OF_IT, "reverse")
@@ -427,6 +434,9 @@ def _backwards(said: str, thing: Thing) -> Iterator[Command]:
             return
 
 
+_BESIDE = "at|by|near|next to|beside|in front of"
+
+
 def _middle(said: str, thing: Thing) -> Iterator[Command]:
     """ "stop the ball in the middle of the rug": a place at which what moves comes to rest."""
     forms = (
@@ -437,7 +447,8 @@ def _middle(said: str, thing: Thing) -> Iterator[Command]:
         rf"center) of (?P<goal>.+)",
         rf"(?:{_LET} )?{_NP}(?: {_OUGHT})? (?:stops?|halts?|comes? to (?:a )?(?:rest|stop)) (?:right |"
         rf"exactly )?(?:on|over) (?P<goal>.+)",
-        rf"(?:stop|halt) {_NP} (?:right )?(?:on|over) (?P<goal>(?:the|this|that|a) .+)",
+        rf"(?:stop|halt) {_NP} (?:right )?(?:on|over|{_BESIDE}) (?P<goal>(?:the|this|that|a) .+)",
+        rf"(?:{_LET} )?{_NP}(?: {_OUGHT})? (?:stops?|halts?) (?:right )?(?:{_BESIDE}|before) (?P<goal>.+)",
     )
     for found in _first(forms, said):
         target, goal = thing(found["np"]), thing(_without_staying(found["goal"]))
@@ -472,6 +483,9 @@ def _speeds(said: str, thing: Thing) -> Iterator[Command]:
         r"(?:double|halve|triple) the (?:speed|pace|tempo) of (?P<np>.+?)(?P<named>)",
         rf"(?:make|let|have|get|set|put) (?P<np>.+?) (?:to |run at |go at |at )?{_TIMES}",
         rf"(?P<np>.+?) (?:at )?{_TIMES}",
+        rf"(?:open|close|shut|turn|spin|roll|move|drop|walk|drive|swing) (?P<np>.+?) {_TIMES}",
+        rf"(?:{_LET} )?(?P<np>.+?)(?: {_OUGHT})? (?:slows? down|decelerates?|gets? slower|brakes?)(?P<slower>)",
+        rf"(?:{_LET} )?(?P<np>.+?)(?: {_OUGHT})? (?:speeds? up|accelerates?|gets? faster)(?P<faster>)",
     )
     for found in _first(forms, said):
         got = found.groupdict()
@@ -510,6 +524,8 @@ def _factor(said: str, faster: bool, slower: bool) -> float | None:
     for word, number in _FACTORS:
         if value is None and re.search(rf"\b{word}", said):
             value = number
+    if said == "in slow motion":
+        return 0.5
     slow = slower or re.search(r"\bslow", said) is not None
     quick = faster or re.search(r"\b(?:fast|quick)", said) is not None
     if value is None:
@@ -535,7 +551,7 @@ def _shifted(said: str, thing: Thing, moment: Moment) -> Iterator[Command]:
         (rf"(?:advance|bring forward) (?P<np>.+?) by {by}", -1),
         (
             rf"(?:{_LET} )?(?P<np>.+?)(?: {_OUGHT})? (?:(?:{_GO}|{_GOES}|happens?|be|is|comes?)(?: "
-            rf"(?:{_GO}|{_GOING}|to \w+))? )?(?P<by>(?:\S+ ){{1,5}}?)(?P<way>later|earlier|sooner)",
+            rf"(?:{_GO}|{_GOING}|to \w+))? )?(?P<by>{DURATION}) (?P<way>later|earlier|sooner)",
             0,
         ),
         (
@@ -583,13 +599,17 @@ def _stops(said: str, thing: Thing) -> Iterator[Command]:
         rf"(?:keep|leave|hold|make) (?P<np>.+?) {_STILL}",
         rf"(?:{_LET} )?(?P<np>.+?) not move",
     )
+    off = re.match(r"^(?:(?:turn|switch|shut) )?(?P<np>.+?) (?:goes |go |turns |switches |is |be )?off$", said)
+    if off is not None and _RUNS.search(off["np"]) and (runs := thing(off["np"])) is not None:
+        yield _pace(runs, "stop")
+        return
     for found in _first(still, said):
         target = MOVING if found["np"] in ("nothing", "none of it", "no thing") else _moved(found["np"], thing)
         if target is not None:
             yield _pace(target, "stop")
             return
     for found in _first(plain, said):
-        if said.startswith(("turn off", "switch off")):
+        if said.startswith(("turn off", "switch off")) and _RUNS.search(found["np"]) is None:
             continue
         if (target := _moved(found["np"], thing)) is not None:
             named = re.match(
@@ -599,6 +619,12 @@ def _stops(said: str, thing: Thing) -> Iterator[Command]:
             )
             yield Command(({"op": "pace", "target": target, "change": "stop"},), needs=named is not None)  # "stop sign"
             return
+
+
+# What has a motor, so that it stops when it is switched off; a lamp goes dark.
+_RUNS = re.compile(
+    r"\b(?:fans?|motors?|engines?|robots?|toys?|trains?|wheels?|machines?|mixers?|clocks?|propellers?|carousels?|blades?)$"
+)
 
 
 def _moved(np: str, thing: Thing) -> Query | None:

@@ -11,10 +11,10 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from ....gaussians.errors import UserError
-from ....gaussians.language.query.nested import with_queries
+from ....gaussians.language.query.nested import queries, with_queries
 from ....gaussians.language.query.query import Query
 from ....tools.registry import OPS
 from ....tools.registry import parse as parse_op
@@ -126,6 +126,7 @@ _SHOWING = (
 )
 
 
+_FADES = re.compile(r"^(?:fade|dissolve) (?:out|away)\b|\b(?:fades?|dissolves?) (?:out|away)$|^fade .+ (?:out|away)$")
 _RIDDING = re.compile(r"^(?:delete|remove|take|get rid of|throw|put|move|erase|bin|save|catch)\b")
 _REMARK = re.compile(
     r"^(?P<np>.+?) (?:is|are|looks?|seems?|opens?|starts?|moves?|goes|comes?|turns?|feels?)(?: "
@@ -300,6 +301,8 @@ class TimeReader:
                 found = self._made(command, moment, happening)
                 if found:
                     return found
+        if not told and _FADES.search(said):
+            moment, told = replace(moment, slowly=True), True
         if not told and not moment.always:
             return None
         return self._look(said, moment, happening)
@@ -307,8 +310,8 @@ class TimeReader:
     def _made(self, command: Command, moment: Moment, happening: Happening | None) -> tuple[Fields, ...] | None:
         ops = list(command.ops)
         if command.text:
-            ops = [op for op in self._understand(command.text)]
-            if any(op["op"] not in ("move", "rotate") for op in ops):
+            ops = list(self._understand(command.text))
+            if is_misread(ops) or any(op["op"] not in ("move", "rotate") for op in ops):
                 return None
         if command.during is not None:
             if happening is not None:
@@ -328,8 +331,10 @@ class TimeReader:
             ops: Sequence[Fields] = ()
             with suppress(Refusal, UserError):
                 ops = self._understand(text)
-            if not ops or any(not _takes_time(op) for op in ops):
+            if not ops or any(not _takes_time(op) for op in ops) or is_misread(ops):
                 continue
+            if re.search(r"\b(?:off|out|on)$", said) and any(op["op"] == "delete" for op in ops):
+                continue  # "the light should go out"
             own, seen = moment, happening
             if inverse:
                 flipped = _inverse(moment, happening)
@@ -439,6 +444,34 @@ def _takes_time(op: Fields) -> bool:
     return made is not None and "when" in made.model_fields and "held" not in op and op["op"] != "select"
 
 
+def is_misread(ops: Sequence[Fields]) -> bool:
+    """Whether a name in operations ends with a word that is no name: "the robot stop", "slow motion", "the end"."""
+    names = [q.text for op in ops for v in op.values() if isinstance(v, BaseModel) for _, q in queries((v,))]
+    names += [q.get("text", "") for op in ops for q in _plain_queries(op)]
+    names += [str(op.get("asset", "")) for op in ops]
+    return any(_NO_THING.search(name) for name in names if name)
+
+
+_NO_THING = re.compile(
+    r"(?:^| )(?:end|start|beginning|motion|slow|appears?|once|twice|while|finish|stops?|opens?|closed|disappears?|vanish|"
+    r"begins?|walks?|rolls|goes|becomes|flash|falls|spins|moves)$"
+)
+
+
+def _plain_queries(value: object) -> Iterator[Fields]:
+    """Queries that operations hold as plain data."""
+    if isinstance(value, dict):
+        if isinstance(value.get("text"), str):
+            yield value
+        for inner in value.values():
+            yield from _plain_queries(inner)
+    elif isinstance(value, list | tuple):
+        for inner in value:
+            yield from _plain_queries(inner)
+    elif isinstance(value, Query):
+        yield {"text": value.text}
+
+
 def _settled(target: Query | None, during: During) -> tuple[Query | None, During]:
     """The target and the time, with "it" in each read as what the other names."""
     of = during.of
@@ -523,6 +556,13 @@ def _plain_commands(said: str, thing: Callable[[str], Query | None]) -> Iterator
     )
     if show is not None and thing(show["np"] or show["np2"]) is not None:
         yield f"hide {_named(show['np'] or show['np2'])}", True
+    new = re.match(
+        r"^(?P<np>(?:an?|one|two|three|another) .+?) (?:appears?|shows? up|pops? up|spawns?|is there|materiali[sz]es?) "
+        r"(?P<where>(?:on|in|next to|beside|behind|under|near|at|in front of|to the) .+)$",
+        said,
+    )
+    if new is not None:
+        yield f"add {new['np']} {new['where']}", False
     fade = re.match(
         r"^(?:fade|dissolve)(?: out| away)? (?P<np>.+?)(?: out| away| to nothing| to (?:zero|0))?$", said
     ) or re.match(

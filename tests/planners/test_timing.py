@@ -1,0 +1,93 @@
+"""Words about time and motion: what they mean, and that none of them is guessed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from scenewright.planners.grammar.planner import GrammarPlanner
+
+PLANNER = GrammarPlanner()
+UNDERSTOOD: list[tuple[str, str, dict[str, Any]]] = [
+    ("make the ball red while it is on the rug", "recolor", {"during": {"state": "on", "anchors": [{"text": "rug"}]}}),
+    ("let the toy car drive to the sofa in three seconds", "move", {"lasting": 3.0}),
+    ("hide the vase between second 1 and 3", "opacity", {"start": 1.0, "stop": 3.0}),
+    ("ball disappears at 3.5 s", "opacity", {"start": 3.5}),
+    ("turn the ball yellow for the last second", "recolor", {"start": -1.0}),
+    ("stop the fan after two and a half seconds", "pace", {"start": 2.5}),
+    ("the lamp should slowly rise by half a metre over two seconds", "move", {"lasting": 2.0}),
+    ("vase turns blue once fan stops", "recolor", {"during": {
+        "state": "moving", "of": {"text": "fan"}, "part": "after"}}),
+    ("lamp goes green until the first book falls", "recolor", {"during": {
+        "state": "falling", "of": {"text": "book", "pick": "all"}, "part": "until"}}),
+    ("close the door again after it has opened", "articulate", {"during": {"state": "moving", "part": "after"}}),
+    ("paint the box white from 0 to 2.5 s, then back to normal", "recolor", {"stop": 2.5}),
+    ("fade out the chair", "opacity", {"lasting": 2.0, "gradual": True}),
+    ("a red ball appears on the table after 2 s", "insert", {"start": 2.0}),
+    ("green book falls at t=3", "pace", {"start": 3.0}),
+]  # fmt: skip
+WITHOUT_TIME: list[tuple[str, dict[str, Any]]] = [
+    ("open the door halfway", {"op": "articulate", "share": 0.5}),
+    ("pull the drawer out 40 cm", {"op": "articulate", "distance": {"value": 40.0, "unit": "cm"}}),
+    ("play it backwards", {"op": "pace", "change": "reverse"}),
+    ("let the ball roll back", {"op": "pace", "change": "return"}),
+    ("make the robot walk twice as fast", {"op": "pace", "change": "speed", "factor": 2.0}),
+    ("red book falls 1 s later", {"op": "pace", "change": "later", "seconds": 1.0}),
+    ("fan rpm 120", {"op": "spin", "turns_per_second": 2.0}),
+    ("have the fan spin the other way round", {"op": "spin", "other_way": True}),
+    ("let nothing move", {"op": "pace", "change": "stop"}),
+    ("remove whatever moves", {"op": "delete"}),
+]
+REFUSED = (
+    "frobnicate the ball at 2 s",
+    "make the fan spin and stand still at the same time",
+    "the light should go out at 2 s",
+    "the drawer should stay open at the end",
+    "robot turns right instead of left at 2 s",
+)
+TIMELESS = (
+    "I'd like a second lamp to the left of the sofa",
+    "put the bench at the end of the bed",
+    "there is a gap behind the sofa, please close it",
+    "delete the vase before it falls",
+    "move the mug to the sink",
+)
+
+
+def said(op: Any) -> dict[str, Any]:
+    data: dict[str, Any] = op.model_dump(mode="json", exclude_defaults=True) | {"op": op.op}
+    return data
+
+
+@pytest.mark.parametrize(("text", "op", "when"), UNDERSTOOD, ids=[c[0] for c in UNDERSTOOD])
+def test_a_time_becomes_part_of_the_operation(text: str, op: str, when: dict[str, Any]) -> None:
+    plan = PLANNER.plan(text)
+    assert plan.ok, plan.reason
+    (only,) = map(said, plan.ops)
+    assert only["op"] == op and only["when"] == when
+
+
+@pytest.mark.parametrize(("text", "meant"), WITHOUT_TIME, ids=[c[0] for c in WITHOUT_TIME])
+def test_commands_about_motion_need_no_time(text: str, meant: dict[str, Any]) -> None:
+    plan = PLANNER.plan(text)
+    assert plan.ok, plan.reason
+    (only,) = map(said, plan.ops)
+    assert {k: v for k, v in only.items() if k != "target"} == meant
+
+
+def test_what_moves_and_what_stands_still_are_queries() -> None:
+    for text, moving in (("hide everything that moves", True), ("delete all things that stand still", False)):
+        (op,) = PLANNER.plan(text).ops
+        query = op.query()
+        assert query is not None and query.moving is moving and query.pick == "all"
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_what_is_not_understood_is_refused(text: str) -> None:
+    assert not PLANNER.plan(text).ok
+
+
+@pytest.mark.parametrize("text", TIMELESS)
+def test_words_that_only_look_like_time_mean_what_they_meant(text: str) -> None:
+    assert all(op.time() is None and not op.makes_motion for op in PLANNER.plan(text).ops)
