@@ -136,6 +136,10 @@ def _unnamed(error: NotResolved, survey: Survey) -> Answer:
     return nothing(absent_text(survey, error.query, error.found))
 
 
+_IMAGINED = ("would it fit", "where would it fit", "space for an activity")  # asked of things that are not there
+_IMAGINE = re.compile(r"\b(?:fit|fits|space|room for|would|could|can|might)\b")
+
+
 def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Timeline) -> Reading:
     """The answer of the static scene at a moment; of several moments the one that holds at all of them, or at any."""
     first: Reading | None = None
@@ -145,6 +149,8 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
         answer = found.answer
         if answer.answer is None or (answer.answer == "no" and answer.text.startswith("No. There is no ")):
             return replace(found, answer=nothing(answer.text.removeprefix("No. ")))  # what is not there is not asked of
+        if moment.said and found.kind in _IMAGINED and not _IMAGINE.search(moment.words):
+            return replace(found, answer=nothing(f"Nothing here tells what happens then: {moment.words}."))
         evidence = answer.evidence.model_copy(update={"time": time})
         said = f"At {at(time)}: {answer.text}" if moment.said else _present(answer, survey, timeline)
         found = replace(found, answer=answer.model_copy(update={"text": said[:4000], "evidence": evidence}))

@@ -141,6 +141,7 @@ def test_numbers(session: Session, text: str, value: float | None, unit: str) ->
         ("what does the ball cross?", "rug"),
         ("is the clock moving or still at 1 s?", "moving"),
         ("does the sofa move?", None),
+        ("does a cat ever sit on the chair?", None),
     ],
 )
 def test_words(session: Session, text: str, value: str | tuple[str, ...] | None) -> None:
