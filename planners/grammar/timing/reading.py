@@ -453,8 +453,8 @@ def is_misread(ops: Sequence[Fields]) -> bool:
 
 
 _NO_THING = re.compile(
-    r"(?:^| )(?:end|start|beginning|motion|slow|appears?|once|twice|while|finish|stops?|opens?|closed|disappears?|vanish|"
-    r"begins?|walks?|rolls|goes|becomes|flash|falls|spins|moves)$"
+    r"(?:^| )(?:end|start|beginning|motion|slow|appears?|once|twice|while|finish|stops?|opens?|closed|disappears?|"
+    r"vanish|begins?|walks?|rolls|goes|becomes|flash|falls|spins|moves)$"
 )
 
 
