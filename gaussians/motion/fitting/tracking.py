@@ -29,6 +29,7 @@ CANDIDATES, ROUNDS, ELITE = 300, 4, 24  # of the search at a time
 BLURS = (2.0, 1.2)  # standard deviations of the pictures' blur during the search, pixels: first rounds, last rounds
 CLIP = 0.35  # difference of a colour beyond which it does not matter
 TURN = 1.4  # radians: the largest turn about one of its own axes that is tried from one time to the next
+UNSEEN = CLIP  # the difference of a point outside a picture: as bad as the worst, or bodies would hide there
 VIEWS = 6  # cameras that a pose is refined in
 STEPS = 14  # of the refinement at each time
 MARGIN = 10  # pixels around a body that are rendered
@@ -77,6 +78,7 @@ class Tracker:
         _, _, axes = np.linalg.svd((means - self.pivot) * np.sqrt(weight)[:, None], full_matrices=False)
         around = np.concatenate([np.outer(np.linspace(-TURN, TURN, 28), axis) for axis in axes])
         self._turns = np.concatenate([np.zeros_like(around), around], axis=1)  # of hinges and fans
+        self._bare: dict[tuple[int, int], NDArray[np.bool_]] = {}
         self._blurred: dict[tuple[int, float], F32] = {}
         every = np.concatenate([self._rest[0], means])
         self._low, self._high = np.quantile(every, 0.02, axis=0), np.quantile(every, 0.98, axis=0)
@@ -165,10 +167,29 @@ class Tracker:
             y = np.clip(pixels[:, 1].astype(np.int64), 0, camera.height - 1)
             seen = self._picture(self._footage.frames[c, t], blur)[y, x].reshape(len(turns), -1, 3)
             off = np.minimum(np.abs(seen - self._colors).mean(axis=2), CLIP)
+            off = np.where(self._unchanged(c, t)[y, x].reshape(len(turns), -1), CLIP, off)
             own = inside.reshape(len(turns), -1)
-            total += np.where(own, off, CLIP * 0.5).sum(axis=1)
+            total += np.where(own, off, UNSEEN).sum(axis=1)
             count += own.shape[1]
         return np.asarray(total / np.maximum(count, 1))
+
+    def _unchanged(self, c: int, t: int) -> NDArray[np.bool_]:
+        """`[H, W]` where the body cannot be seen: pixels as they were at first, away from where it was then."""
+        footage = self._footage
+        key = (c, t)
+        if key not in self._bare:
+            if len(self._bare) > 64:
+                self._bare.clear()
+            camera = footage.cameras[c]
+            pixels, depth = camera.project(self._own[0])
+            x, y = pixels[camera.contains(pixels, depth)].astype(np.int64).T
+            own = np.zeros((camera.height, camera.width), bool)
+            own[y, x] = True
+            changed = footage.changed(footage.frames[key], int(footage.first[c]))
+            self._bare[key] = ~ndimage.binary_dilation(own, iterations=3) & ~ndimage.binary_dilation(
+                changed, iterations=2
+            )
+        return self._bare[key]
 
     def _picture(self, frame: int, blur: float) -> F32:
         if (frame, blur) not in self._blurred:
