@@ -139,6 +139,7 @@ def test_an_unknown_light_is_left_out_with_a_note() -> None:
     assert any("disco" in note and "evening" in note for note in built.notes)
 
 
+@pytest.mark.slow
 def test_the_same_sentence_gives_the_same_bytes() -> None:
     text = "a small study with a desk, a chair and a table lamp, warm evening light"
     one, two = (compose(text).layout.graph for _ in range(2))

@@ -203,6 +203,7 @@ assert "widdershins_of" in [name for _, name, _ in made.relations] and check(mad
 """
 
 
+@pytest.mark.slow
 def test_an_entry_is_all_that_a_relation_takes(tmp_path: Path) -> None:
     """In a copy of the packages: the grammar, queries, placements, compose, its solver and the checker know it."""
     home = Path(scenewright.__file__).parent

@@ -75,6 +75,7 @@ def test_an_instruction_is_settled_by_sight_and_undone(boxes: Scene, encoder: An
     assert session.scene.cloud.digest() == before
 
 
+@pytest.mark.slow
 def test_none_of_them_leaves_the_verdict_and_says_who_looked(boxes: Scene, encoder: Any) -> None:
     session, _ = seeing(boxes, encoder, [], LEFT, RIGHT)
     found = session.select("the red thing")

@@ -312,6 +312,7 @@ def test_pairs_are_all_of_few_and_the_most_alike_of_many() -> None:
 
 
 @needs_pycolmap
+@pytest.mark.slow
 def test_a_failure_of_the_other_process_is_a_backend_error(tmp_path: Path) -> None:
     with pytest.raises(BackendError, match=r"pycolmap failed to estimate poses: KeyError: 'focal'"):
         pose_estimation.run([{"photos": {}}], tmp_path, lambda stage, share: None)

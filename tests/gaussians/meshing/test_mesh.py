@@ -47,6 +47,7 @@ def _loaded(made: Mesh) -> Any:
     return trimesh.load(io.BytesIO(made.encode()), file_type="glb", force="mesh", process=False)
 
 
+@pytest.mark.slow
 def test_a_watertight_mesh_has_two_faces_at_every_edge_and_faces_out(made: Mesh) -> None:
     loaded = _loaded(made)
     assert loaded.is_watertight and loaded.is_winding_consistent

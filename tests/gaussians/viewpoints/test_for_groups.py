@@ -115,6 +115,7 @@ def test_uniform_and_random_choices_do_not_look_at_the_question(sights: Sights) 
     assert [v.view.name for v in other] != [v.view.name for v in choose_random(sights, [RED], 4, SIZE, seed=3)]
 
 
+@pytest.mark.slow
 def test_ours_shows_more_than_uniform_and_random(sights: Sights) -> None:
     def shown(views: tuple[for_groups.ChosenView, ...], groups: list[int]) -> float:
         return float(np.mean([max(v.readable[g] for v in views) for g in groups]))

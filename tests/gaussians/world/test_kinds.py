@@ -110,6 +110,7 @@ assert Vocabulary.everyday().covered("a blue shisha") == {"hookah"}
 """
 
 
+@pytest.mark.slow
 def test_adding_a_kind_is_one_entry(tmp_path: Path) -> None:
     """In a copy of the packages with a "hookah" in the table, all that reads kinds knows it."""
     # With what is compiled: it is valid for copies, which keep the times of their files.

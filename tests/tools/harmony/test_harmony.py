@@ -304,6 +304,7 @@ def test_a_thing_is_given_a_shadow_once() -> None:
     assert any("casts a shadow already" in note for note in twice.receipt.notes)
 
 
+@pytest.mark.slow
 def test_moving_back_and_forth_does_not_darken_the_floor() -> None:
     """Each move divides out where the thing stood what it multiplied in there before."""
     plain = _scene(_floor(), _box((0.4, 0.0), light=np.array([0, 0, 1.0])))

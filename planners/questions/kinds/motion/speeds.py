@@ -10,6 +10,7 @@ import numpy as np
 
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
+from .....gaussians.world.lengths import METRES
 from ...answer import Answer
 from ...reading.time.deeds import Deed
 from ...reading.time.moments import When
@@ -32,9 +33,9 @@ _LENGTHS = {
     "milli": ("mm", 1000.0),
     "cm": ("cm", 100.0),
     "centi": ("cm", 100.0),
-    "f": ("ft", 1 / 0.3048),
-    "inch": ("in", 1 / 0.0254),
-    "y": ("yd", 1 / 0.9144),
+    "f": ("ft", 1 / METRES["ft"]),
+    "inch": ("in", 1 / METRES["in"]),
+    "y": ("yd", 1 / (3 * METRES["ft"])),
     "k": ("km", 1e-3),
     "m": ("m", 1.0),
 }

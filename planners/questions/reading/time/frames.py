@@ -209,6 +209,7 @@ _A_TURN = re.compile(
     r"every) "
     r"(?:turn|rotation|revolution|spin|round)\b"
 )
+_HERE = re.compile(r" (?:(?:right )?(?:in|up|over|around|out|down) )?(?:here|there)$")  # says nothing of what moves
 _ASKING = re.compile(
     r"(?:and )?(?:how|what|which|when|where|who|why|in what|in which|at what|at which|list|name|count|tell|give|"
     r"show)\b"
@@ -298,7 +299,7 @@ _TAKES = ("reach", "enter", "leave", "cross", "pass", "approach", "recede")
 @lru_cache(maxsize=4096)
 def frames(words: tuple[str, ...]) -> tuple[Frame, ...]:
     """Every way of reading the words of a question as one about a scene with time, the likeliest first."""
-    said = " ".join(words)
+    said = _HERE.sub("", " ".join(words))
     found = list[Frame]()
     for frame in _frames(said):
         if frame not in found:
