@@ -135,3 +135,23 @@ def test_questions_in_many_words(text: str, told: tuple[str, str, str]) -> None:
 )
 def test_words_that_belong_to_nothing_are_not_passed_over(text: str) -> None:
     assert not any(f.what.deed is not None for f in frames(plain_words(text)))
+
+
+@pytest.mark.parametrize(
+    ("said", "plain"),
+    [
+        ("what moves in here?", "what moves?"),
+        ("what is moving up there?", "what is moving?"),
+        ("anything moving?", "is anything moving?"),
+        ("anything moving besides the door?", "does anything besides the door move?"),
+        ("the lower drawer does it move?", "does the lower drawer move?"),
+        ("at 4.5 the robot is still walking?", "is the robot still walking at 4.5?"),
+        ("is the door open on the last frame?", "is the door open in the last frame?"),
+        ("total time the drawer is in motion", "how long does the drawer move"),
+        ("total path length of the robot?", "how far does the robot move?"),
+        ("when does red land?", "when does the red thing land?"),
+    ],
+)
+def test_what_people_say_is_read_as_what_is_asked_plainly(said: str, plain: str) -> None:
+    found, wanted = (frames(tuple(plain_words(text))) for text in (said, plain))
+    assert wanted and found[0] == wanted[0]

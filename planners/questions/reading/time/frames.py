@@ -210,6 +210,21 @@ _A_TURN = re.compile(
     r"(?:turn|rotation|revolution|spin|round)\b"
 )
 _HERE = re.compile(r" (?:(?:right )?(?:in|up|over|around|out|down) )?(?:here|there)$")  # says nothing of what moves
+_SAID = r"(?P<x>the [\w ]+?)"
+_SAME = tuple(  # what people say, and the same as it is asked plainly
+    (re.compile(pattern), plain)
+    for pattern, plain in (
+        (r"^(?:is )?anything moving (?:besides|except|apart from|other than|but) (?P<x>.+)$",
+         r"does anything besides \g<x> move"),
+        (r"^(?:is )?(?:there )?anything (?P<v>moving|turning|spinning|falling)\b", r"is anything \g<v>"),
+        (rf"^{_SAID} (?P<v>does|did|is|was|will) (?:it|he|she|they) (?P<rest>.+)$", r"\g<v> \g<x> \g<rest>"),
+        (rf"^(?P<t>at [\d.]+(?: s| seconds?)?) ,? ?{_SAID} (?:is|was) (?P<rest>(?:still )?\w+(?:ing|en))$",
+         r"is \g<x> \g<rest> \g<t>"),
+        (r"\bon the (?P<w>last|final|first) frame\b", r"in the \g<w> frame"),
+        (rf"^(?:the )?(?:total |whole )?time {_SAID} is in motion$", r"how long does \g<x> move"),
+        (r"^(?:the )?(?:total |whole )?(?:path|travel|way) length of (?P<x>.+)$", r"how far does \g<x> move"),
+    )
+)  # fmt: skip
 _ASKING = re.compile(
     r"(?:and )?(?:how|what|which|when|where|who|why|in what|in which|at what|at which|list|name|count|tell|give|"
     r"show)\b"
@@ -300,6 +315,8 @@ _TAKES = ("reach", "enter", "leave", "cross", "pass", "approach", "recede")
 def frames(words: tuple[str, ...]) -> tuple[Frame, ...]:
     """Every way of reading the words of a question as one about a scene with time, the likeliest first."""
     said = _HERE.sub("", " ".join(words))
+    for pattern, plain in _SAME:
+        said = pattern.sub(plain, said)
     found = list[Frame]()
     for frame in _frames(said):
         if frame not in found:
@@ -609,6 +626,8 @@ def _thing(said: str) -> Query | None:
         return None
     if said in _PRONOUN:
         return Query(last=True)
+    if is_color_word(said.removeprefix("the ")):
+        said = f"{said} thing"  # "when does red land?"
     if said.split()[-1] in verb_words() and kinds.find(said.removeprefix("the ")) is None:
         return None
     one = re.sub(r" one(s?)$", r" thing\1", said)
