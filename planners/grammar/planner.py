@@ -162,7 +162,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     if (timed := TimeReader(_operations, _thing).read(cleaned)) is not None:
         return _of_time(timed)
     outcome = _timeless(cleaned, previous)
-    if is_misread(outcome.ops):
+    if is_misread([op for op in outcome.ops if op["op"] != "select"]):
         raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
     return outcome
 
