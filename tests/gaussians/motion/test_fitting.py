@@ -130,7 +130,7 @@ def test_a_rolling_ball_is_found_and_followed():
     none = colmap.Points(np.zeros((0, 3)), np.zeros((0, 3)))
     held = tuple(Shot(f.camera, f.photo, f.time) for f in film.held_out[::4])
     done = fit_film(Photos(shots, held, none, 3.6), Settings(steps=900, degree=0))
-    assert done.quality.psnr > 28  # dB; 33 when this was written
+    assert done.quality.psnr > 28  # dB
     (track,) = done.scene.motion.tracks
     middle = films.middles(film.scene, film.times)[0]
     turns, shifts = poses(track, film.times)
