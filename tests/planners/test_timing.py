@@ -37,6 +37,11 @@ WITHOUT_TIME: list[tuple[str, dict[str, Any]]] = [
     ("fan rpm 120", {"op": "spin", "turns_per_second": 2.0}),
     ("have the fan spin the other way round", {"op": "spin", "other_way": True}),
     ("let nothing move", {"op": "pace", "change": "stop"}),
+    ("start the fan a second later", {"op": "pace", "change": "later", "seconds": 1.0}),
+    ("delay the fan by half a second", {"op": "pace", "change": "later", "seconds": 0.5}),
+    ("double the fan speed", {"op": "pace", "change": "speed", "factor": 2.0}),
+    ("fan speed x3", {"op": "pace", "change": "speed", "factor": 3.0}),
+    ("slow motion on the book, quarter speed", {"op": "pace", "change": "speed", "factor": 0.25}),
     ("remove whatever moves", {"op": "delete"}),
 ]
 REFUSED = (

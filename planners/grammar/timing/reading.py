@@ -134,6 +134,32 @@ _REMARK = re.compile(
 )
 
 
+_T = r"(?:an?|one|two|three|four|half an?|[\d.,]+)(?: and a half)? (?:seconds?|secs?|s)"
+_NAMED = r"(?P<x>(?:the )?[\w ]+?)"
+_SAME = tuple(  # what people say, and the same as a plain command
+    (re.compile(pattern), plain)
+    for pattern, plain in (
+        (rf"^(?:start|begin|launch|kick off) {_NAMED} (?P<t>{_T}) (?P<w>later|earlier|sooner)$",
+         r"\g<x> starts \g<t> \g<w>"),
+        (rf"^{_NAMED} (?:sets? (?:off|out)|gets? going|kicks? off|takes? off) (?P<t>{_T}) (?P<w>later|earlier|sooner)$",
+         r"\g<x> starts \g<t> \g<w>"),
+        (rf"^(?:delay|postpone) {_NAMED} (?:by )?(?P<t>{_T})$", r"\g<x> starts \g<t> later"),
+        (rf"^double (?:the )?(?:speed of )?{_NAMED}(?: 's)?(?: speed)?$", r"make \g<x> twice as fast"),
+        (rf"^halve (?:the )?(?:speed of )?{_NAMED}(?: 's)?(?: speed)?$", r"make \g<x> half as fast"),
+        (rf"^{_NAMED}(?: 's)? speed (?:x|times|by) ?(?P<n>[\d.]+)$", r"make \g<x> \g<n> times as fast"),
+        (rf"^slow ?motion (?:on|for) {_NAMED}(?: ,? (?P<f>half|quarter|third) speed)?$", r"play \g<x> at \g<f> speed"),
+        (r"^(?P<a>(?:stop|start|freeze|pause|open|close) .+?) (?:earlier|sooner|later) ,? ?(?P<b>at .+)$",
+         r"\g<a> \g<b>"),
+        (r"\bsince (?P<a>[\d.]+)(?: (?:seconds?|secs?|s))? until\b", r"from \g<a> until"),
+        (r"\bbetween seconds? (?P<a>[\d.]+) and (?P<b>[\d.]+)\b", r"from \g<a> to \g<b> seconds"),
+        (r"\b(?:one|1) time in (?P<t>[\d.]+ seconds?)\b", r"once in \g<t>"),
+        (r"\bin (?:the )?direction of\b", "toward the"),
+        (r"^relocate\b", "move"),
+        (r"^reverse (?P<x>.+?) (?:anim|animation|motion|movement)$", r"reverse \g<x>"),
+    )
+)  # fmt: skip
+
+
 def may_be_timed(cleaned: str) -> bool:
     """Whether any word could be about time or motion."""
     return _HINTS.search(cleaned) is not None
@@ -162,6 +188,8 @@ class TimeReader:
         if _ASKS.match(said) and cleaned.rstrip().endswith("?"):
             return None
         said = _tidy(said)
+        for pattern, plain in _SAME:
+            said = pattern.sub(plain, said)
         if not said:
             return None
         if _CONTRARY.search(said):
