@@ -120,8 +120,9 @@ class Spin(TargetedOp):
         if timed:
             axis, pivot = old.axis, old.pivot
             return self._new(old.ids, axis, pivot, begin, stop)
-        span = max(float(old.times[-1] - old.times[0]), 1e-9)
-        rate = float(old.angles[-1] - old.angles[0]) / (2 * math.pi * span)
+        lasting, turned = np.diff(old.times), np.diff(old.angles)
+        span = max(float(lasting[turned != 0].sum()), 1e-9)  # it may rest before and after
+        rate = float(turned.sum()) / (2 * math.pi * span)
         wanted = (
             rate
             if self.turns_per_second is None

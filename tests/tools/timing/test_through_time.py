@@ -142,6 +142,16 @@ def test_the_whole_scene_at_half_speed_lasts_twice_as_long(moving: Scene, contex
     assert np.allclose(middle(made.scene, 4.0), middle(moving, 2.0), atol=1e-6)
 
 
+def test_what_turns_and_then_rests_turns_at_the_rate_that_is_said(corner: Scene, context: Context) -> None:
+    ids = corner.cloud.ids[corner.cloud.group == CHAIR].numpy()
+    angles = (0.0, 8 * math.pi, 8 * math.pi)
+    track = Track.hinge(ids, (0.0, 4.0, 5.0), angles, (0, 0, 1), middle(corner, 0.0), smooth=False)
+    scene = corner.replace(motion=Motion((track,), (), (), 0.0, 5.0))
+    made = done(scene, {"op": "spin", "target": A_CHAIR, "turns_per_second": 2}, context).scene.motion
+    assert made is not None and made.tracks[0].angles is not None
+    np.testing.assert_allclose(made.tracks[0].angles / (2 * math.pi), [0, 8, 8], atol=1e-6)
+
+
 def test_what_spins_turns_about_itself_as_often_as_was_said(corner: Scene, context: Context) -> None:
     made = done(corner, {"op": "spin", "target": A_CHAIR, "turns": 2, "when": {"start": 1, "stop": 3}}, context)
     motion = made.scene.motion
