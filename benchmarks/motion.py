@@ -19,7 +19,7 @@ from ._motion.fitted import Figures, fitted, small, wanted
 from .harness import Metric, Point, Result
 
 PARTS = ("fit", "frame", "questions", "instructions")
-SETS = ("", "held_")  # of written questions and instructions: what the readers were developed with, and the other half
+SETS = ("", "held_")  # of written questions and instructions: what the readers were developed with, and others
 STEPS, QUICK_STEPS = 2500, 500
 WHOLE, INSIDE, PATH, OVERLAP = 28.0, 24.0, 0.02, 0.95  # goals with twelve cameras: dB, dB, metres, share
 RIGS: tuple[Rig, ...] = ("12", "4")

@@ -25,6 +25,8 @@ _SAME = {  # one of the first unit in the second
     ("m", "cm"): 100.0, ("cm", "m"): 0.01, ("turns/s", "rpm"): 60.0, ("turns/s", "deg/s"): 360.0,
     ("m/s", "cm/s"): 100.0, ("rpm", "turns/s"): 1 / 60, ("deg/s", "turns/s"): 1 / 360,
 }  # fmt: skip
+_COUNTED = ("turns", "times", "things")  # units of answers that are plain numbers
+_PLACING = {"at", "on", "in", "by", "the", "near", "next", "to", "beside", "of"}
 _ALIKE = 0.6  # of the words of an event in an order that must be told
 
 
@@ -74,7 +76,7 @@ def judged(expect: dict[str, Any], answer: Answer) -> Outcome:
     if kind == "yesno":
         return "right" if given == ("yes" if value else "no") else "wrong"
     if kind == "place":
-        return "right" if value in f"{given} {answer.text}" else "wrong"
+        return "right" if _words(value) - _PLACING <= _words(f"{given} {answer.text}") else "wrong"
     told = [given] if isinstance(given, str) else list(given) if isinstance(given, tuple) else []
     if kind == "names":
         fits = len(told) == len(value) and all(any(_names(v, t) for t in told) for v in value)
@@ -88,7 +90,7 @@ def _number(expect: dict[str, Any], answer: Answer) -> Outcome:
     value = answer.answer
     if not isinstance(value, float):
         return "wrong"
-    if unit and answer.unit != unit:
+    if unit and answer.unit != unit and not (unit in _COUNTED and not answer.unit):
         if (answer.unit, unit) not in _SAME:
             return "wrong"
         value *= _SAME[answer.unit, unit]
@@ -96,7 +98,7 @@ def _number(expect: dict[str, Any], answer: Answer) -> Outcome:
 
 
 def _words(said: str) -> set[str]:
-    return {singular(w) for w in said.lower().split()}
+    return {singular(w.strip(".,;:()")) for w in said.lower().split()}
 
 
 def _names(wanted: str, told: str) -> bool:

@@ -116,6 +116,9 @@ def instructed(which: Sequence[dict[str, Any]]) -> list[Instructed]:
 
 def _wrong(expect: dict[str, Any], effect: _Effect) -> str:
     """What an effect lacks of what is expected; "" if nothing."""
+    if expect.get("frozen") is True:  # from `start` to `stop`, or at all times
+        still = [expect.get("start") or 0.0, expect.get("stop") or _LAST]
+        expect = {k: v for k, v in expect.items() if k not in ("start", "stop")} | {"frozen": still}
     kind = expect["kind"]
     named = expect["thing"] if isinstance(expect["thing"], list) else [expect["thing"]]
     if kind == "refuse":
@@ -191,7 +194,7 @@ def _moves(expect: dict[str, Any], name: str, effect: _Effect) -> str:
     if expect.get("factor") == 0:
         return f"it moves from {spans[0][0]:.2f} s" if spans else ""
     if not spans:
-        return "it does not move"
+        return "" if expect.get("frozen", [1])[0] == 0 else "it does not move"
     tests = (_timing, _pacing, _turning, _reaching)
     return next((told for test in tests if (told := test(expect, course, earlier, spans, effect))), "")
 
@@ -271,8 +274,11 @@ def _reaching(expect: dict[str, Any], course: Course, earlier: Course, spans: li
         if expect.get(key) in (None, "up"):
             continue
         pair = events.Encounter.of(effect.after, course.group, [effect.group(expect[key])])
-        gap = float(pair.gaps(np.array([_LAST]))[0])
-        if gap > BESIDE:
+        first, gap = (float(g) for g in pair.gaps(np.array([0.0, _LAST])))
+        if "distance_m" in expect:  # only so far
+            if gap >= first:
+                return f"it does not come nearer to the {expect[key]}"
+        elif gap > BESIDE:
             return f"at the end it is {gap:.2f} m from the {expect[key]}"
     return ""
 

@@ -53,6 +53,7 @@ def test_the_halves_are_apart() -> None:
     assert sorted([*pairs.half(odd=True), *pairs.half(odd=False)]) == list(range(200))
 
 
+@pytest.mark.slow
 def test_names_are_no_worse_than_the_vectors_allow(real: _clip.Pairs) -> None:
     room = _clip.top1(real, _clip.room_rows(real))
     assert room["named.ours"] == room["named.vectors"] >= 0.9

@@ -87,6 +87,7 @@ def place() -> Place:
     return Place(Setting("room", "room"), room, (view(), view(96)))
 
 
+@pytest.mark.slow
 def test_an_edit_a_refusal_and_a_question(place: Place, tmp_path: object) -> None:
     assert place.scene.language is not None
     done, shown = carrying.carry_out(instruction("make everything red"), place, {})

@@ -95,7 +95,17 @@ def test_hidden_things_are_gone_for_that_time_only() -> None:
     assert _wrong({"kind": "refuse", "thing": "cat"}, _Effect(scene, hidden)) == "something was done"
 
 
-def test_the_half_that_was_seen_is_there() -> None:
+def test_what_was_seen_and_what_is_held_back_are_others() -> None:
     for name in ("questions", "instructions"):
-        found = cases(name)
-        assert len(found) == 60 and {c["room"] for c in found} == {"ball", "door", "drawer", "fan", "books", "toy"}
+        seen, held = cases(name), cases(f"held_{name}")
+        assert len(seen) == 120 and len(held) > 50
+        for found in (seen, held):
+            assert {c["room"] for c in found} == {"ball", "door", "drawer", "fan", "books", "toy"}
+        assert not {c["text"].lower() for c in seen} & {c["text"].lower() for c in held}
+
+
+def test_what_must_stand_still_may_stand_still_for_a_while() -> None:
+    before, after = driving(0, 4, 1.0), driving(0, 2, 1.0)
+    still = {"kind": "pace", "thing": "cart", "start": 2.0, "stop": None, "frozen": True}
+    assert _wrong(still, _Effect(before, after)) == ""
+    assert "it moves between" in _wrong(still | {"start": 1.0}, _Effect(before, after))

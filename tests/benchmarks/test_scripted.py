@@ -55,6 +55,7 @@ def test_what_it_has_no_script_for_is_read_as_the_grammar_does() -> None:
 UNFIT = ("not_understood", "absent", "ambiguous")  # what a guessed reading may come to
 
 
+@pytest.mark.slow
 def test_the_cascade_asks_it_only_where_the_grammar_abstains_or_its_reading_does_not_fit_the_room() -> None:
     grammar = GrammarPlanner()
     cascade = Cascade(grammar, None, _scripted.Scripted(0.0, 1))
@@ -74,6 +75,7 @@ def test_a_model_that_fails_counts_as_an_abstention() -> None:
     assert (plan.verdict, plan.planner, plan.reason) == ("not_understood", "down", "the server is down")
 
 
+@pytest.mark.slow
 def test_a_real_model_is_measured_where_one_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(_cascade.VARIABLE, "openai:some-model")
     monkeypatch.setattr(_cascade, "QUICK_STRIDE", 60)

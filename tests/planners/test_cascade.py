@@ -286,6 +286,7 @@ def test_passing_phrases_cost_nothing() -> None:
     assert without_model(Cascade(GRAMMAR, None, model)) is GRAMMAR
 
 
+@pytest.mark.slow
 def test_loading_auto_with_a_model_imports_no_model_library() -> None:
     code = (
         "import sys; from scenewright.planners import load; load('auto:openai:m@http://localhost:9/v1');"

@@ -1,8 +1,8 @@
 """Questions and instructions about the six moving rooms by somebody who knew the rooms from a description and no code.
 
-`questions.jsonl` and `instructions.jsonl` are the half that the readers were developed with. The other half, beside
-them as `held_questions.jsonl` and `held_instructions.jsonl`, is asked for afterwards only. A line holds room, text,
-expect and a note on who speaks.
+`questions.jsonl` and `instructions.jsonl` are what the readers were developed with; `held_questions.jsonl` and
+`held_instructions.jsonl`, by another writer, are asked for afterwards only. A line holds room, text, expect and a note
+on who speaks.
 """
 
 from __future__ import annotations

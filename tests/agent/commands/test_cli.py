@@ -341,6 +341,7 @@ def test_a_given_frame_is_used_and_a_field_for_another_is_not(
 
 
 @pytest.mark.usefixtures("torchvision_examined")
+@pytest.mark.slow
 def test_doctor(call: Any) -> None:
     answer = call("doctor", "--json")
     assert answer.code == 0 and answer.data["machine"]["python"]

@@ -54,6 +54,7 @@ def test_a_saved_field_leaves_nothing_to_choose(call: Any, room: Path) -> None:
     assert told["effort"] == "fast" and told["points"] == [] and told["seconds"] > 0
 
 
+@pytest.mark.slow
 def test_filling_is_chosen_by_an_edit_that_reveals_something(call: Any, room: Path, tmp_path: Path) -> None:
     told: dict[str, Any] = {}
     for k, more in enumerate(

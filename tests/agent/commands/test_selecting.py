@@ -64,6 +64,7 @@ def test_there_must_be_a_selection_and_something_left_of_it(boxes: Scene, encode
         session.adjust(grow=float("nan"))
 
 
+@pytest.mark.slow
 def test_a_changed_selection_is_logged_and_replayed(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
     session = Session(boxes, encoder=encoder, log=tmp_path / "a.jsonl")
     session.do("select the green thing")

@@ -43,6 +43,7 @@ def test_the_file_its_field_and_the_map_of_ids(call: Any, room: Path, tmp_path: 
     assert after.frame == before.frame
 
 
+@pytest.mark.slow
 def test_the_text_tells_size_and_loss(call: Any, room: Path, tmp_path: Path) -> None:
     code, out, _ = call("slim", room, "-o", tmp_path / "small", "--format", "spz", "--psnr", 28, *SMALL)
     assert code == 0 and (tmp_path / "small.spz").exists()

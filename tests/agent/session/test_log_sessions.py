@@ -71,6 +71,7 @@ def test_a_log_that_cannot_be_read_is_not_kept_locked(tmp_path: Path) -> None:
     assert os.listdir(tmp_path) == ["s.jsonl"]
 
 
+@pytest.mark.slow
 def test_each_session_has_an_id_by_which_it_is_replayed(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
     path = tmp_path / "s.jsonl"
     for text in ("delete the green thing", "make the green thing blue"):

@@ -87,10 +87,10 @@ def test_a_failed_check_rolls_everything_back(session: Session, boxes: Scene, mo
 
     real = execute.carry_out
 
-    def failing(scene: Scene, op: Any, context: Any) -> Any:
+    def failing(scene: Scene, op: Any, context: Any, selection: Any) -> Any:
         if op.op == "delete":
             raise CheckFailedError("nothing was deleted")
-        return real(scene, op, context)
+        return real(scene, op, context, selection)
 
     monkeypatch.setattr(execute, "carry_out", failing)
     with pytest.raises(CheckFailedError):

@@ -125,6 +125,7 @@ def test_all_things_are_named_and_sure_names_stay(boxes: Scene, encoder: Any) ->
     assert {g.named_by for g in session.scene.language.objects()} == {"caption"}
 
 
+@pytest.mark.slow
 def test_what_was_pointed_at_is_forgotten_when_the_scene_changes(boxes: Scene, encoder: Any) -> None:
     session, model = seeing(boxes, encoder, [RIGHT], LEFT, RIGHT)
     session.select("the red thing")

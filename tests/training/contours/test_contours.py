@@ -174,6 +174,7 @@ def test_photographs_of_a_world_repeat_by_seed_and_show_several_things(name: str
     assert ((one.inverse > 0) == (one.things > 0)).mean() > 0.999  # half precision rounds no depth to 0
 
 
+@pytest.mark.slow
 def test_textures_repeat_and_stay_in_range() -> None:
     uv = np.random.default_rng(0).uniform(-2, 2, (500, 2)).astype(np.float32)
     prints = textures.random_prints(np.random.default_rng(1), count=2, side=16)
