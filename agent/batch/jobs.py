@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from ...gaussians.errors import FileError, UserError
 
+TAKEN = frozenset({"receipts", "receipts.jsonl"})  # in the batch's folder
 OUT = "{out}"  # in an argument: the folder of the job
 VERBS = frozenset(
     {
@@ -72,6 +73,8 @@ def read_jobs(path: Path) -> list[Job]:
             raise UserError(f"{where}: the id {job.id!r} is no name of a folder; use letters, digits, . _ and -")
         if job.id in seen:
             raise UserError(f"{where}: the id {job.id!r} is that of line {seen[job.id]}; give each job its own")
+        if job.id.lower() in TAKEN:
+            raise UserError(f"{where}: the id {job.id!r} is the name of what the batch itself writes; use another")
         if not job.run or job.run[0] not in VERBS:
             said = job.run[0] if job.run else ""
             raise UserError(f"{where}: {said!r} is no verb for batches; use {', '.join(sorted(VERBS))}")
@@ -109,7 +112,8 @@ def _exists(path: Path) -> bool:
 
 
 def _content(path: Path, field: bool) -> bytes:
-    """Digest of a file, with the language field beside it if that counts; of a folder: names, sizes and times."""
+    """Digest of a file, with the motion and, if it counts, the field beside it; of a folder: names, sizes, times."""
+    from ...gaussians.files.motion_file import motion_path
     from ...gaussians.language.field.store import field_path
 
     found = hashlib.blake2b(digest_size=16)
@@ -119,7 +123,7 @@ def _content(path: Path, field: bool) -> bytes:
             told = file.stat()
             found.update(f"{file.relative_to(path)} {told.st_size} {told.st_mtime_ns}\n".encode())
         return found.digest()
-    for file in (path, field_path(path)) if field else (path,):
+    for file in (path, motion_path(path), *((field_path(path),) if field else ())):
         if file.is_file():
             with open(file, "rb") as opened:
                 while block := opened.read(_BLOCK):

@@ -29,6 +29,8 @@ from .jobs import Job, arguments
 from .working import Outcome, Task
 
 Receipt = dict[str, Any]
+MARK = ".job"  # in a folder of results: the key of the job
+_STRANGE = "{place} is there and no batch wrote it; give the batch another folder, or the job another id"
 INTERRUPTED = 130  # exit code of a command line that Ctrl-C ended
 
 
@@ -77,6 +79,9 @@ def run_batch(
         shutil.rmtree(work, ignore_errors=True)
         keys = {job.id: job.key() for job in jobs}
         known = {key: receipt for key in set(keys.values()) if (receipt := _read(out, key)) is not None}
+        strange = [out / job.id for job in jobs if (out / job.id).exists() and _of(out / job.id) is None]
+        if strange:
+            raise UserError(_STRANGE.format(place=strange[0]))
         if again:
             known = {key: receipt for key, receipt in known.items() if receipt["code"] == 0}
         first = dict[str, Job]()
@@ -116,9 +121,12 @@ def _same(receipt: Receipt, job: Job) -> Receipt:
 def _settled(out: Path, job: Job, key: str, folder: Path, outcome: Outcome) -> Receipt:
     """Move the results of a job into place, then write its receipt."""
     place = out / job.id
+    if place.exists() and not (place / MARK).is_file():  # another program wrote it since the batch began
+        raise UserError(_STRANGE.format(place=place))
     empty = not folder.is_dir() or not any(folder.iterdir())
     shutil.rmtree(place, ignore_errors=True)  # of an earlier run that was stopped before its receipt, or of other words
     if not empty and outcome["code"] == 0:
+        (folder / MARK).write_text(key, encoding="utf-8")
         os.replace(folder, place)
         outcome = _renamed(outcome, str(folder), str(place))
     receipt: Receipt = {
@@ -149,7 +157,15 @@ def _read(out: Path, key: str) -> Receipt | None:
         whole = isinstance(receipt["code"], int) and receipt["key"] == key
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    return receipt if whole and (folder is None or (out / str(folder)).is_dir()) else None
+    return receipt if whole and (folder is None or _of(out / str(folder)) == key) else None
+
+
+def _of(folder: Path) -> str | None:
+    """The key of the job whose results a folder holds; None if it holds those of none."""
+    try:
+        return (folder / MARK).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
 
 
 @contextmanager

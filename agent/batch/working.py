@@ -7,6 +7,7 @@ import io
 import json
 import shutil
 import time
+import traceback
 from pathlib import Path
 from typing import Any, NamedTuple, TypedDict
 
@@ -48,6 +49,9 @@ def work(task: Task) -> Outcome:
             main(task.command)
         except SystemExit as end:
             code = end.code if isinstance(end.code, int) else 0 if end.code is None else 4
+        except Exception as error:  # --debug lets errors through, with their traceback
+            code = getattr(error, "exit_code", 4)
+            err.write(traceback.format_exc())
         finally:
             terminal.as_json, terminal.debug = asked
     return Outcome(

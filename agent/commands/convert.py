@@ -82,6 +82,7 @@ def command(
 
     A scene in tiles is written to a .ply as a stream, without loss, if nothing else is asked for.
     """
+    from ...gaussians.errors import UserError
     from ...gaussians.files import writer
     from ...gaussians.tiles.store import is_tiles
     from ..output_files import refuse_existing
@@ -89,6 +90,10 @@ def command(
     from ..streaming import HELD_OUT, is_streamed, write_levels
 
     if is_pattern(output):
+        said = {"--sh-degree": sh_degree, "--max-gaussians": max_gaussians, "--crop": crop,
+                "--crop-sphere": crop_sphere, "--levels": levels, "--views": views}  # fmt: skip
+        if given := [name for name, value in said.items() if value is not None]:
+            raise UserError(f"{given[0]} does not go with a file for each time; convert the scene with it first")
         _sequence(scene, output, at_time, fps, force)
         return
     refuse_existing([output], force)

@@ -12,6 +12,7 @@ from ..terminal.output import terminal
 
 if TYPE_CHECKING:
     from ...gaussians.scene import Scene
+    from ...gaussians.tiles.store import Tiles
 
 
 def command(
@@ -43,10 +44,12 @@ def command(
     from ...gaussians.language.field.embed import embed
     from ...gaussians.language.field.group_table import renamed
     from ...gaussians.language.field.store import load_field, mismatch
+    from ...gaussians.tiles.store import Tiles, is_tiles
     from ..pictures.named_cameras import with_frame
     from ..terminal.thing_names import describe_things
 
     dial = dialled(effort, started)
+    tiles = Tiles.open(scene) if is_tiles(scene) else None
     loaded, chosen = load(scene), encoders.load(encoder)
     loaded = with_frame(loaded, up, metres_per_unit)
     again = force or any(said is not None for said in (up, metres_per_unit, masks, capture, effort))
@@ -71,7 +74,7 @@ def command(
         embedded = renamed(embedded, chosen)
         language = embedded.language
         assert language is not None
-    path = None if known and not other else _saved(embedded, scene)
+    path = None if known and not other else _saved(embedded, scene, tiles)
     things = [
         {"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "gaussians": g.count}
         for g in language.objects()
@@ -96,13 +99,16 @@ def command(
     tell(dial)
 
 
-def _saved(embedded: Scene, path: Path) -> Path:
-    """Save the field of a scene beside its file, or in its folder if that holds tiles; returns where it is."""
+def _saved(embedded: Scene, path: Path, tiles: Tiles | None) -> Path:
+    """Save the field of a scene beside its file, or in its folder if that holds tiles; returns where it is.
+
+    Args:
+        tiles: as they were when the scene was read: what another program changed since then is not overwritten.
+    """
     from ...gaussians.language.field.store import save_field
     from ...gaussians.tiles import changing
-    from ...gaussians.tiles.store import Tiles, is_tiles
 
-    if not is_tiles(path):
+    if tiles is None:
         return save_field(embedded, path)
-    changing.embed(Tiles.open(path), embedded, "embed")
+    changing.embed(tiles, embedded, "embed")
     return path

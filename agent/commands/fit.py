@@ -92,6 +92,7 @@ def command(
     from ...gaussians.files import save
     from ...gaussians.files.captures.capture import unposed_photos
     from ...gaussians.fit import Settings, fit, load_photos
+    from ...gaussians.fit import blocks as blocks_kept
     from ...gaussians.fit.blocks import fit_by_blocks
     from ...gaussians.fit.checkpoint import delete
     from ...gaussians.fit.engine import resolve_device
@@ -108,7 +109,7 @@ def command(
     settings = Settings(
         seconds, steps, max_gaussians, "auto" if degree == "auto" else int(degree), gain, growth, coarse, seed, where
     )
-    parts = _blocks(blocks, settings)
+    parts = _blocks(blocks, settings, dial is not None)
     if parts > 1 and dial is not None:
         dial.overrule("--blocks")
     poses = output.with_name(output.name + ".poses")
@@ -137,7 +138,7 @@ def command(
         save(done.scene, output, force=force)
     except FileError as error:
         raise FileError(f"{error}; {_resume_hint(kept)}") from error
-    delete(kept)
+    delete(kept) if parts == 1 else blocks_kept.delete(kept)
     data = _data(done, photos, settings, output)
     if report is not None:
         _write_report(done, photos, data, report, force)
@@ -145,13 +146,13 @@ def command(
     tell(dial)
 
 
-def _blocks(said: str, settings: Settings) -> int:
-    """The number of blocks."""
+def _blocks(said: str, settings: Settings, dialled: bool) -> int:
+    """The number of blocks; what is dialled is measured for one."""
     from ...gaussians.errors import UserError
     from ...gaussians.fit.blocks import blocks_for
 
     if said == "auto":
-        return blocks_for(settings.max_gaussians)
+        return 1 if settings.growth == "classic" or dialled else blocks_for(settings.max_gaussians)
     if not said.isdecimal() or int(said) < 1:
         raise UserError(f"--blocks must be a number from 1 or auto, got {said!r}")
     if int(said) > 1 and settings.growth == "classic":

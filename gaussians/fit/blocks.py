@@ -11,7 +11,9 @@ What a step optimises is one block; what it draws besides are the other Gaussian
 
 from __future__ import annotations
 
+import contextlib
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -48,6 +50,7 @@ SMALLEST = 24  # pixels; photographs that show less of a block are not its busin
 SEEN = 0.01  # of a photograph that must show a block
 TRIM = 0.01  # of the pixels that show a block, on each side, that its part may leave out
 F32 = NDArray[np.float32]
+_PART = re.compile(r"(?:coarse|round-\d+-block-\d+)(?:\.checkpoint)?")  # files of a training
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +120,8 @@ def fit_by_blocks(
     """
     if not 2 <= blocks <= MOST_BLOCKS:
         raise UserError(f"--blocks must be from 2 to {MOST_BLOCKS}, 1 for a whole, or auto, got {blocks}")
-    kept = _Kept(folder, f"{fitting.training_id(photos, settings)} in {blocks} blocks")
+    wanted = f"{settings.seconds} s" if settings.steps is None else f"{settings.steps} steps"  # finished parts keep it
+    kept = _Kept(folder, f"{fitting.training_id(photos, settings)} in {blocks} blocks, {wanted}")
     begun = kept.part("coarse", partial(_coarse, photos, settings, _share_of(on_status, 0, COARSE)))
     parameters, steps, seconds, choices = begun.parameters, begun.steps, begun.seconds, list[Choice]()
     division = cells(parameters.means, blocks)
@@ -286,6 +290,14 @@ def _share_of(on_status: Callable[[Status], None], first: float, length: float) 
     return report
 
 
+def delete(folder: Path) -> None:
+    """Delete what a training by blocks kept in its folder; the folder itself if nothing else is in it."""
+    for path in [p for p in folder.glob("*") if _PART.fullmatch(p.name)]:
+        checkpoint.delete(path)
+    with contextlib.suppress(OSError):
+        folder.rmdir()
+
+
 class _Kept:
     """Finished parts in a folder, one file each, beside the checkpoint of the part under way."""
 
@@ -313,7 +325,9 @@ class _Kept:
 
     def _read(self, path: Path, arrays: Mapping[str, Any], values: Mapping[str, Any]) -> _Trained:
         if values.get("name") != self._name:
-            raise FileError(f"{path} is of another training (other photographs or settings); delete it to start over")
+            raise FileError(
+                f"{path} is of another training (other photographs, settings or length); delete it to start over"
+            )
         try:
             return _Trained(Parameters.load(arrays), int(values["steps"]), float(values["seconds"]))
         except (KeyError, ValueError, TypeError) as error:

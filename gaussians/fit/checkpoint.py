@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-import shutil
 from collections.abc import Mapping
 from glob import escape
 from pathlib import Path
@@ -49,10 +48,7 @@ def _digest(arrays: Mapping[str, Any], state: str) -> str:
 
 
 def delete(path: Path) -> None:
-    """Delete a checkpoint, or a folder of some, and partial files that a crash during writing left behind."""
-    if path.is_dir():
-        shutil.rmtree(path, ignore_errors=True)
-        return
+    """Delete a checkpoint, and partial files that a crash during writing left behind."""
     for part in (path, *path.parent.glob(f".{escape(path.name)}.*.part")):
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)

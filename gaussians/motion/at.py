@@ -82,7 +82,10 @@ def _moved(cloud: GaussianCloud, motion: Motion, time: float) -> tuple[GaussianC
     """The cloud at a time, and the looks that hold then. Raises UserError if the time is not finite."""
     whole, gone = rows_at(cloud, motion, time)
     seen = tuple(look for look in motion.looks if look.lasts_at(time))
-    return (whole if gone is None else whole[~gone]), seen
+    if gone is None:
+        return whole, seen
+    free = max(whole.first_free, int(whole.ids.max()) + 1)  # what is hidden keeps its ids
+    return whole[~gone].replace(first_free=free), seen
 
 
 def rows_at(cloud: GaussianCloud, motion: Motion, time: float) -> tuple[GaussianCloud, Tensor | None]:

@@ -56,7 +56,7 @@ def joined(found: list[Span], pause: float) -> list[Span]:
     kept: list[Span] = []
     for start, stop in found:
         if kept and start - kept[-1][1] < pause:
-            kept[-1] = (kept[-1][0], stop)
+            kept[-1] = (kept[-1][0], max(kept[-1][1], stop))
         else:
             kept.append((start, stop))
     return kept

@@ -61,6 +61,8 @@ def change(window: Window, after: Scene, text: str) -> Tiles:
     tiles = window.tiles
     if after.cloud.degree != tiles.state.degree:
         raise UserError(f"a scene in tiles keeps harmonics of degree {tiles.state.degree}; convert it to a .ply first")
+    if after.motion is not None:
+        raise UserError("a scene in tiles stands still: it keeps no motion; convert it to a .ply first")
     with locked(tiles.folder):
         head = read_head(tiles.folder)
         if head.present != tiles.head.present:
@@ -133,10 +135,12 @@ def _switch(folder: Path, head: Head) -> None:
 def _swept(folder: Path, head: Head) -> None:
     """Remove files that no state of the head names: of an edit that was stopped, or of states out of reach."""
     named = {(STATES, step.state.file) for step in head.steps}
-    for step in head.steps:
-        path = folder / STATES / step.state.file
-        state = State.model_validate_json(files.content(path.parent, step.state, 1 << 30))
-        named |= {(part, stored.file) for part, stored in stored_files(state)}
+    try:
+        for step in head.steps:
+            state = State.model_validate_json(files.content(folder / STATES, step.state, 1 << 30))
+            named |= {(part, stored.file) for part, stored in stored_files(state)}
+    except (FileError, ValueError):
+        return  # a damaged state of the history tells no longer which files are its own: all stay
     for part in (STATES, TILES, TABLES):
         for path in (folder / part).iterdir():
             if (part, path.name) not in named:

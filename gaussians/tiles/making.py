@@ -6,6 +6,7 @@ holds one block of a file and the rows that wait to be appended to their tiles.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import shutil
 from collections.abc import Callable, Iterator, Sequence
@@ -24,9 +25,10 @@ from ..files.atomic import writing_folder
 from ..files.formats import comments
 from . import files, tables
 from .locking import NAME as LOCK
+from .locking import locked
 from .records import MOST_ROWS, TILE_COLUMNS, Head, State, Step, Stored, Table, Tile, column_type, row_bytes
 from .sources import BLOCK_ROWS, Source, common_table, open_source
-from .store import HEAD, STATES, TABLES, TILES, Tiles, corner, described, write_owners
+from .store import HEAD, STATES, TABLES, TILES, Tiles, corner, described, is_tiles, write_owners
 
 AIM = 800_000  # rows of a tile: edits may add some, and a sample does not divide exactly
 _SAMPLE = 1_000_000  # rows of it
@@ -96,7 +98,8 @@ def make(
     degree = max(source.degree for source in sources)
     _require_room(output, sum(source.rows for source in sources) * (row_bytes(degree) + 8))
     starts, untold = common_table(sources)
-    with writing_folder(output, force, _ours) as folder:
+    earlier = locked(output) if force and is_tiles(output) else contextlib.nullcontext()
+    with earlier, writing_folder(output, force, _ours) as folder:
         for part in (STATES, TILES, TABLES):
             (folder / part).mkdir()
         progress("dividing space", 0.0)

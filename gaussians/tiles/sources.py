@@ -96,7 +96,8 @@ def _whole(path: Path) -> Source:
     def blocks(every: int) -> Iterator[GaussianCloud]:
         size = BLOCK_ROWS if every == 1 else _SAMPLE_ROWS
         for start in range(0, len(loaded.cloud), size * every):
-            yield loaded.cloud[start : start + size]
+            block = loaded.cloud[start : start + size]  # tiles that were edited have ids with gaps
+            yield block.replace(ids=torch.arange(start, start + len(block)), first_free=0)
 
     empty = loaded.replace(cloud=GaussianCloud.empty(loaded.cloud.degree))
     notes = [f"{path.name}: {note}" for note in report.notes]

@@ -121,6 +121,7 @@ class Articulate(TargetedOp):
             goal = self._goal(most, slides, scene)
             before = [t for t in own.times if t < start - _SAME]
             dense = np.unique(np.round([*before, *np.arange(before[-1], start, 1 / 30)], 9)) if before else np.zeros(0)
+            dense = dense[dense < start - _SAME]
             times = np.array([*dense, start, end])
             angles = np.array([*angles_at(own, dense), now, goal])
             made = replace(own, times=times, angles=angles)
@@ -140,7 +141,11 @@ class Articulate(TargetedOp):
         assert self.when is not None
         whole = length_of(scene)
         start, end = self._time(spans_of(self.when, scene, selection, context)[0], whole.start, context)
-        found = self._opening(at(scene, start), body)
+        then = at(scene, start)  # other rows, if something is hidden then
+        there = [b for b in bodies_of(then, selection) if bool(torch.isin(then.cloud.ids[b.rows], ids).any())]
+        if not there:
+            raise InstructionError(f"{self.target.describe()} is not there at {start:.3g} s")
+        found = self._opening(then, there[0])
         if self.change == "close":
             raise InstructionError(f"nothing tells how far {self.target.describe()} is open: open it first")
         goal = self._goal(found.most, found.how == "drawer", scene)

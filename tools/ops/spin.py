@@ -9,12 +9,12 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 from torch import Tensor
 
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.motion.at import at
-from ...gaussians.motion.motion import Track, poses
+from ...gaussians.motion.motion import Kind, Track, poses
 from ...gaussians.rows import rows_of_ids
 from ...gaussians.scene import Scene
 from ..carried_objects import with_carried
@@ -22,12 +22,13 @@ from ..checks import count_matches
 from ..operation import Context, Outcome, TargetedOp
 from ..placement.bodies import bodies_of, heading
 from ..receipt import Check, at_most
-from ..timing.retiming import divided, with_tracks
+from ..timing.retiming import angles_at, divided, with_tracks
 from ..timing.spans import length_of, spans_of
 
 F64 = NDArray[np.float64]
 
 _LASTS = 5.0  # seconds of a scene that stood still before something turns in it without an end
+_STEP = 1 / 30  # seconds between the keys of what a thing did before it is told to turn otherwise
 _ONE = 1.0  # turns a second, where nothing is said
 
 
@@ -49,6 +50,12 @@ class Spin(TargetedOp):
     turns: Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)] | None = None
     other_way: bool = False
     axis: Literal["up", "right", "forward"] = "up"
+
+    @model_validator(mode="after")
+    def _turns(self) -> Self:
+        if self.turns_per_second == 0 or self.turns == 0:
+            raise ValueError("spin turns the target; to stop it, use pace with the change stop")
+        return self
 
     def stronger(self, times: float) -> Self | None:
         rate = self.turns_per_second if self.turns_per_second is not None else _ONE
@@ -76,15 +83,20 @@ class Spin(TargetedOp):
                 if inside[i] and t.kind in ("spin", "hinge") and np.isin(t.ids, names).any()
             ]
             if turning:
-                old = tracks[turning[0]]
+                place, old = turning[0], tracks[turning[0]]
                 tracks = [t for i, t in enumerate(tracks) if i not in turning]
                 inside = [f for i, f in enumerate(inside) if i not in turning]
                 made = self._again(old, begin, stop, bool(spans))
-            else:
+            else:  # it turns first, and then goes where its other tracks take it
+                holding = [i for i, t in enumerate(tracks) if np.isin(t.ids, names).any()]
+                place = holding[0] if holding else len(tracks)
                 axis, pivot = heading(context.viewer, scene.frame, self.axis), np.asarray(body.center)
+                for i in reversed(holding):
+                    turns, shifts = poses(tracks[i], (begin,))
+                    axis, pivot = turns[0].T @ axis, turns[0].T @ (pivot - shifts[0])
                 made = self._new(names, axis, pivot, begin, stop)
-            tracks.append(made)
-            inside.append(True)
+            tracks.insert(place, made)
+            inside.insert(place, True)
             end = max(
                 end, float(made.times[-1]) if made.kind == "hinge" else begin + (_LASTS if not whole.known else 0.0)
             )
@@ -118,8 +130,7 @@ class Spin(TargetedOp):
         """A track that turns already, at another rate, or the other way."""
         assert old.axis is not None and old.angles is not None
         if timed:
-            axis, pivot = old.axis, old.pivot
-            return self._new(old.ids, axis, pivot, begin, stop)
+            return self._meanwhile(old, begin, stop)
         lasting, turned = np.diff(old.times), np.diff(old.angles)
         span = max(float(lasting[turned != 0].sum()), 1e-9)  # it may rest before and after
         rate = float(turned.sum()) / (2 * math.pi * span)
@@ -132,6 +143,24 @@ class Spin(TargetedOp):
             wanted = math.copysign(self.turns / span, rate)
         factor = (-1.0 if self.other_way else 1.0) * wanted / (rate or 1.0)
         return replace(old, angles=old.angles * factor)
+
+    def _meanwhile(self, old: Track, begin: float, stop: float) -> Track:
+        """What turns already, at another rate from `begin` to `stop`, and before and after that as ever."""
+        new = self._new(old.ids, old.axis, old.pivot, begin, stop)  # type: ignore[arg-type]
+        assert new.angles is not None
+        rate = float(new.angles[-1] - new.angles[0]) / float(new.times[-1] - new.times[0])
+        until = float(new.times[-1]) if math.isinf(stop) and new.kind == "spin" else min(stop, float(new.times[-1]))
+        before = np.array([*np.arange(float(old.times[0]), begin, _STEP)])
+        before = before[before < begin - _STEP / 2]
+        after = np.zeros(0)
+        if math.isfinite(stop):
+            after = np.array([t for t in old.times if t > until + _STEP / 2] or [until + 1.0])
+        first, ends = angles_at(old, np.array([begin, until]))
+        turned = rate * (until - begin)
+        angles = [*angles_at(old, before), first, first + turned, *(angles_at(old, after) - ends + first + turned)]
+        kind: Kind = "spin" if math.isinf(stop) or old.kind == "spin" else "hinge"
+        times = np.array([*before, begin, until, *after])
+        return replace(old, kind=kind, times=times, angles=np.array(angles), smooth=False)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after, motion = outcome.scene, outcome.scene.motion

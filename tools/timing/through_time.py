@@ -137,7 +137,7 @@ def _as_stored(scene: Scene, after: Scene, changes: Changes, motion: Motion | No
     touched = changes.before.ids[changes.any & ~changes.gone]
     draft = Draft(stored)
     rows = rows_of_ids(stored.ids, touched)
-    new = rows_of_ids(after.cloud.ids, touched)
+    new, old = rows_of_ids(after.cloud.ids, touched), rows_of_ids(changes.before.ids, touched)
     values = {
         name: getattr(after.cloud, name)[new] for name in ("means", "quats", "scales", "opacities", "sh", "group")
     }
@@ -147,8 +147,10 @@ def _as_stored(scene: Scene, after: Scene, changes: Changes, motion: Motion | No
     for name in values:
         if name in ("means", "quats", "sh"):
             values[name] = getattr(back, name)
-        if not torch.equal(values[name], getattr(stored, name)[rows]):
-            draft.write(name, rows, values[name])
+        was = getattr(changes.before, name)[old]
+        kept = (was == getattr(after.cloud, name)[new]).reshape(len(rows), -1).all(dim=1)
+        if not bool(kept.all()):  # what looks otherwise at that time only is not written for all times
+            draft.write(name, rows[~kept], values[name][~kept])
     added = after.cloud[changes.added] if len(changes.added) else None
     cloud = draft.done()
     if bool(gone.any()) or added is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from ...errors import FileError
@@ -32,7 +33,7 @@ def read(path: Path) -> tuple[Scene, Report]:
     if size > memory():
         raise FileError(
             f"{path} holds {len(tiles):,} Gaussians, which take about {size / 1e9:.1f} GB in memory, and this needs "
-            f"all of them; allow more with {VARIABLE}={size / 1e9:.0f}GB, or use select, edit and render"
+            f"all of them; allow more with {VARIABLE}={math.ceil(size / 1e9)}GB, or use select, edit and render"
         )
     scene = tiles.scene(tiles.every_row())
     return scene, Report(NAME, len(scene.cloud), len(scene.cloud), tiles.state.notes)

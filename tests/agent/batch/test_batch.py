@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -91,11 +92,30 @@ def test_the_same_job_is_done_once_and_another_content_is_another_job(tmp_path: 
     assert len(engine.done) == 2
 
 
+def test_folders_of_others_stay_and_results_of_other_words_do_not_count(tmp_path: Path) -> None:
+    out, engine = tmp_path / "out", Counting()
+    (out / "a").mkdir(parents=True)
+    (out / "a" / "photo.jpg").write_bytes(b"mine")
+    with pytest.raises(UserError, match="no batch wrote it"):
+        run_batch([_job("a", "x")], out, engine)
+    assert (out / "a" / "photo.jpg").read_bytes() == b"mine" and not engine.done
+    for word in ("red", "teal", "red"):
+        run_batch([_job("b", word)], out, engine)
+    assert engine.done == ["red", "teal", "red"] and (out / "b" / "a.txt").read_text() == "red"
+    (tmp_path / "jobs.jsonl").write_text('{"id": "receipts", "run": ["info", "x.ply"]}')
+    with pytest.raises(UserError, match="what the batch itself writes"):
+        read_jobs(tmp_path / "jobs.jsonl")
+
+
+def test_a_job_with_debug_fails_with_its_own_error(tmp_path: Path) -> None:
+    outcome = work(Task(["info", "nowhere.ply", "--debug"], str(tmp_path / "w")))
+    assert outcome["code"] == 4 and "no such file" in outcome["messages"]
+
+
 def test_results_that_are_gone_or_receipts_that_are_torn_are_made_again(tmp_path: Path) -> None:
     jobs, out = [_job("a", "x"), _job("b", "y")], tmp_path / "out"
     run_batch(jobs, out, Counting())
-    (out / "a" / "a.txt").unlink()
-    (out / "a").rmdir()
+    shutil.rmtree(out / "a")
     (out / "receipts" / f"{jobs[1].key()}.json").write_text('{"code": 0, "ke')
     engine = Counting()
     run_batch(jobs, out, engine)

@@ -152,9 +152,14 @@ def test_blocks_learn_what_they_are_shown_to_the_same_bytes_and_go_on_after_a_st
     assert statuses == sorted(statuses) and statuses[0] > 0.4 and statuses[-1] == pytest.approx(1)
     with pytest.raises(FileError, match=r"of another training.*delete it"):
         fit_by_blocks(shown, replace(SETTINGS, seed=1), 3, folder=folder)
+    with pytest.raises(FileError, match="or length"):
+        fit_by_blocks(shown, replace(SETTINGS, steps=600), 3, folder=folder)
     (folder / "round-1-block-2").write_bytes(b"torn")
     with pytest.raises(FileError, match=r"cannot resume from .*block-2"):
         fit_by_blocks(shown, SETTINGS, 3, folder=folder)
+    (folder / "mine.txt").write_text("x")
+    by_blocks.delete(folder)
+    assert [p.name for p in folder.iterdir()] == ["mine.txt"]
 
 
 def test_numbers_of_blocks() -> None:

@@ -45,6 +45,7 @@ def test_sets_of_spans() -> None:
     assert common(a, b) == [(0.5, 1.0), (2.0, 2.5)]
     assert rest(a, 0.0, 4.0) == [(1.0, 2.0), (3.0, 4.0)]
     assert joined([(0.0, 1.0), (1.05, 2.0), (2.5, 3.0)], 0.1) == [(0.0, 2.0), (2.5, 3.0)]
+    assert joined([(0.0, 5.0), (1.0, 2.0)], 0.1) == [(0.0, 5.0)]
     assert spans(lambda t: t, grid(0.0, 1.0), 2.0) == []
     assert spans(lambda t: np.ones_like(t), grid(3.0, 3.0), 0.5) == [(3.0, 3.0)]
 

@@ -14,6 +14,7 @@ from scenewright.gaussians.cloud import NO_GROUP, GaussianCloud, concat
 from scenewright.gaussians.errors import FileError, UserError
 from scenewright.gaussians.files import save
 from scenewright.gaussians.language.field.loading import load
+from scenewright.gaussians.motion.motion import Motion, Track
 from scenewright.gaussians.scene import Scene
 from scenewright.gaussians.tiles import changing, files, window
 from scenewright.gaussians.tiles.changing import change, redo, undo
@@ -219,3 +220,25 @@ def test_a_scene_that_is_embedded_in_its_folder_has_its_table_there(tmp_path: Pa
     assert load(bare.folder).language is not None
     assert {name.split(".")[1] for name in names(after) - names(bare)} == {"group"}
     assert undo(bare.folder)[0].field is None
+
+
+def test_motion_is_refused_and_a_damaged_history_stops_no_edit(tiles: Tiles) -> None:
+    whole = window.everything(tiles, 1 << 40)
+    track = Track.along(whole.scene.cloud.ids[:10].numpy(), [0, 1], [[0, 0, 0], [1, 0, 0]])
+    with pytest.raises(UserError, match="keeps no motion"):
+        change(whole, whole.scene.replace(motion=Motion((track,), stop=1.0)), "let it roll")
+    once = change(whole, whole.scene.replace(cloud=edited(whole.scene.cloud)), "first")
+    (tiles.folder / "states" / tiles.head.present.state.file).write_bytes(b"torn")
+    again = window.everything(once, 1 << 40)
+    cloud = again.scene.cloud
+    change(again, again.scene.replace(cloud=cloud.replace(opacities=cloud.opacities * 0.5)), "second")
+    assert len(Tiles.open(tiles.folder)) == len(cloud)
+
+
+def test_an_edited_scene_is_divided_again(tiles: Tiles, tmp_path: Path) -> None:
+    whole = window.everything(tiles, 1 << 40)
+    changed = change(whole, whole.scene.replace(cloud=edited(whole.scene.cloud)), "first")
+    made = make([tiles.folder, tiles.folder], tmp_path / "twice.tiles")
+    assert len(made) == 2 * len(changed)
+    ids = made.scene(made.every_row()).cloud.ids
+    assert len(torch.unique(ids)) == len(made)

@@ -19,7 +19,7 @@ from scenewright.tools.execute import Done, carry_out
 from scenewright.tools.judging.changes import changes_between
 from scenewright.tools.operation import Context
 from scenewright.tools.registry import OPS, parse
-from scenewright.tools.timing.retiming import Warp
+from scenewright.tools.timing.retiming import Warp, angles_at
 from scenewright.tools.timing.through_time import carry_through_time
 
 TABLE, CHAIR, ARMCHAIR, VASE, FLOOR = range(5)
@@ -140,6 +140,39 @@ def test_the_whole_scene_at_half_speed_lasts_twice_as_long(moving: Scene, contex
     )
     assert made.scene.motion is not None and made.scene.motion.stop == 8.0
     assert np.allclose(middle(made.scene, 4.0), middle(moving, 2.0), atol=1e-6)
+
+
+def test_what_turns_while_it_goes_somewhere_keeps_its_path(moving: Scene, context: Context) -> None:
+    made = done(moving, {"op": "spin", "target": A_CHAIR, "turns_per_second": 1}, context).scene
+    assert made.motion is not None and moving.motion is not None
+    assert [t.kind for t in made.motion.tracks] == ["spin", *(t.kind for t in moving.motion.tracks)]
+    for t in (0.5, 1.3, 2.6):
+        # The mean of its Gaussians circles the middle of its box, at up to 7 cm; the path is metres long.
+        assert np.linalg.norm(middle(made, t) - middle(moving, t)) < 0.15
+
+
+def test_another_rate_for_a_while_leaves_what_was_before(corner: Scene, context: Context) -> None:
+    ids = corner.cloud.ids[corner.cloud.group == CHAIR].numpy()
+    always = Track.spin(ids, 1.0, (0, 0, 1), middle(corner, 0.0))
+    scene = corner.replace(motion=Motion((always,), (), (), 0.0, 6.0))
+    fast = {"op": "spin", "target": A_CHAIR, "turns_per_second": 3, "when": {"start": 2, "stop": 4}}
+    made = done(scene, fast, context).scene.motion
+    assert made is not None
+    turned = angles_at(made.tracks[0], np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])) / (2 * math.pi)
+    np.testing.assert_allclose(turned, [1, 2, 5, 8, 9, 10], atol=1e-6)
+
+
+def test_what_is_moved_while_it_is_painted_is_not_painted_for_good(corner: Scene, context: Context) -> None:
+    red = {"op": "recolor", "target": A_CHAIR, "color": "red", "when": {"start": 1, "stop": 3}}
+    painted = done(corner, red, context).scene
+    moved = done(
+        painted, {"op": "move", "target": A_CHAIR, "direction": "left", "distance": {"value": 0.2, "unit": "m"}},
+        replace(context, time=2.0),
+    ).scene  # fmt: skip
+    rows = corner.cloud.group == CHAIR
+    assert not torch.equal(moved.cloud.means[rows], corner.cloud.means[rows])
+    assert torch.equal(moved.cloud.sh[rows], corner.cloud.sh[rows])
+    assert not torch.equal(at(moved, 2.0).cloud.sh[rows], corner.cloud.sh[rows])
 
 
 def test_what_turns_and_then_rests_turns_at_the_rate_that_is_said(corner: Scene, context: Context) -> None:
