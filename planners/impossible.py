@@ -12,6 +12,7 @@ from ..gaussians.world import kinds
 from ..gaussians.world.lengths import in_metres
 from ..tools.operation import EditOp, Length
 from ..tools.ops.scale import Scale
+from ..tools.timing.hinges import opens_as, owner_of_part
 from .plan import Verdict
 from .rooms.graph_scene import Id, Stage
 
@@ -76,6 +77,8 @@ def refuse_impossible(stage: Stage, step: Step, chosen: Selection, anchors: Sequ
         _refuse_size(stage, step, chosen)
     if step.op.op == "exchange":
         _refuse_exchange(stage, chosen.groups)
+    if step.op.op == "articulate":
+        _refuse_opening(stage, chosen.groups)
     relation = getattr(getattr(step.op, "place", None), "relation", "")
     check = {"inside": _too_large_inside, "on": _too_large_on}.get(relation)
     for anchor in (g for a in anchors for g in a.groups):
@@ -109,6 +112,36 @@ def _refuse_exchange(stage: Stage, groups: Sequence[int]) -> None:
         if _stands_on(stage, one, other):
             told = f"{stage.group(one).label} stands on {stage.group(other).label}"
             raise StepRefused("impossible", f"{told}: they cannot change places")
+
+
+def refuse_part(stage: Stage, step: Step, last: Selection | None) -> None:
+    """Raise if what is to open is a part of a thing that is whole in this scene: the door of a refrigerator.
+
+    Args:
+        step: a step whose target was not found.
+        last: what "it" means.
+    """
+    query = step.op.query()
+    if step.op.op != "articulate" or query is None:
+        return
+    wholes = [anchor for r in query.relations if r.name == "part_of" for anchor in r.anchors]
+    if whole := owner_of_part(query.text):
+        wholes.append(query.model_copy(update={"text": whole}))
+    for whole_query in wholes:
+        found = stage.find(whole_query, last)
+        if found.verdict == "found":
+            raise _one_piece(stage.group(found.groups[0]).label, stage.names(found.groups))
+
+
+def _refuse_opening(stage: Stage, groups: Sequence[int]) -> None:
+    """Raise if a thing is neither called nor shaped like something that opens."""
+    for group in map(stage.group, groups):
+        if opens_as(group.label, group.box.size) is None:
+            raise _one_piece(group.label, stage.names([group.id]))
+
+
+def _one_piece(label: str, candidates: Sequence[Id]) -> StepRefused:
+    return StepRefused("impossible", f"the {label} is in one piece here: no part of it can be opened", candidates)
 
 
 def _refuse_size(stage: Stage, step: Step, chosen: Selection) -> None:

@@ -14,7 +14,7 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...tools.binding import bound_targets, exchanged_likes
 from ...tools.operation import EditOp
-from ..impossible import Step, StepRefused, metres, refuse_above, refuse_impossible
+from ..impossible import Step, StepRefused, metres, refuse_above, refuse_impossible, refuse_part
 from ..plan import EditPlan, Observation, Planner, Verdict
 from .graph import SceneGraph
 from .graph_scene import Id, Stage
@@ -185,7 +185,7 @@ class _Play:
         if bound is not None and there:
             chosen: Selection | None = replace(bound, groups=there)
         else:
-            chosen = None if query is None or about_fresh else self._found(query)
+            chosen = None if query is None or about_fresh else self._target(op, query)
         anchors = self._anchors(op)
         targets = self.fresh if about_fresh else self.stage.names(chosen.groups) if chosen is not None else ()
         step = Step(op, targets, self.stage.names(g for a in anchors for g in a.groups), metres(op))
@@ -217,6 +217,15 @@ class _Play:
         raise StepRefused(
             "ambiguous" if found.verdict == "ambiguous" else "absent", self.stage.told(found.reason), near
         )
+
+    def _target(self, op: EditOp, query: Query) -> Selection:
+        """What an operation changes."""
+        try:
+            return self._found(query)
+        except StepRefused as error:
+            if error.verdict == "absent":
+                refuse_part(self.stage, Step(op), self.last)
+            raise
 
     def _anchors(self, op: EditOp) -> list[Selection]:
         """What its place or direction refers to; things added by this plan have no place of their own yet."""

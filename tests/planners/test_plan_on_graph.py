@@ -17,6 +17,7 @@ from scenewright.planners.rooms.plan_on_graph import Resolved, resolve_text
 PLANNER = load("grammar")
 WRITTEN = Path(__file__).parent / "written"
 LIVING = Stage.of(SceneGraph.read(WRITTEN / "living_room.json"))
+KITCHEN = Stage.of(SceneGraph.read(WRITTEN / "kitchen.json"))
 KINDS = {"simple", "compound", "relation", "attribute", "negation", "quantity", "colloquial", "absent", "ambiguous",
          "not_an_edit", "unsafe", "impossible", "multi_turn"}  # fmt: skip
 
@@ -260,3 +261,18 @@ def test_a_length_no_room_holds_is_impossible() -> None:
     assert ask("make the sofa 30 m wide").verdict == "impossible"
     found = ask("make the sofa 2 m wide")
     assert found.verdict == "ok" and found.steps[0].metres == 2
+
+
+@pytest.mark.parametrize("text", ["open the refrigerator door", "open the refrigerator", "close the stove's lid"])
+def test_what_is_in_one_piece_does_not_open(text: str) -> None:
+    found = ask(text, stage=KITCHEN)
+    assert found.verdict == "impossible" and "in one piece" in found.reason
+
+
+def test_what_opens_by_its_name_or_shape_is_opened() -> None:
+    assert ask("open the window", stage=KITCHEN).verdict == "ok"
+
+
+def test_a_part_of_nothing_that_is_there_is_absent() -> None:
+    found = ask("open the wardrobe door", stage=KITCHEN)
+    assert found.verdict == "absent" and "one piece" not in found.reason

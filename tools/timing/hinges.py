@@ -14,7 +14,7 @@ from ...gaussians.errors import InstructionError
 from ...gaussians.language.field.measure import solid_points
 from ...gaussians.rows import rows_where
 from ...gaussians.scene import Scene
-from ...gaussians.world.words import head
+from ...gaussians.world.words import head, singular
 from ..placement.bodies import Body, centimetre, front_of
 
 F64 = NDArray[np.float64]
@@ -66,7 +66,7 @@ def opening_of(scene: Scene, body: Body, name: str) -> Opening:
     up = scene.frame.up_vector
     points = solid_points(scene.cloud, body.rows)
     points = points[:: max(1, len(points) // _SAMPLE)]
-    how = _NAMED.get(head(name)) or _by_shape(body)
+    how = opens_as(name, body.box.size)
     if how is None:
         raise InstructionError(
             f"nothing tells how {name or 'it'} opens: it is no flat door or lid, nor a drawer: name its part"
@@ -79,9 +79,26 @@ def opening_of(scene: Scene, body: Body, name: str) -> Opening:
     return _door(scene, body, points, up, name)
 
 
-def _by_shape(body: Body) -> How | None:
-    """What a body opens like that has another name: an upright leaf like a door, a lying one like a lid."""
-    a, b, h = body.box.size
+def opens_as(name: str, size: tuple[float, float, float]) -> How | None:
+    """How a thing of this name opens, or else of this shape: an upright leaf like a door, a lying one like a lid.
+
+    Args:
+        size: across, deep and high, in any unit.
+
+    Returns:
+        None: nothing tells.
+    """
+    return _NAMED.get(head(name)) or _by_shape(size)
+
+
+def owner_of_part(name: str) -> str:
+    """What the name of a part that opens says of its whole: "refrigerator" of "refrigerator door"; else ""."""
+    *whole, part = name.split() or [""]
+    return " ".join(whole) if singular(part) in _NAMED else ""
+
+
+def _by_shape(size: tuple[float, float, float]) -> How | None:
+    a, b, h = size
     if min(a, b) < _THIN * max(a, b) and h > 0.5 * max(a, b):
         return "door"
     return "lid" if h < _THIN * min(a, b) else None

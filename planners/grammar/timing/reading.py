@@ -252,7 +252,7 @@ class TimeReader:
             phrase,
         ):
             phrase = f"the {phrase}"
-        found = self._thing(phrase)
+        found = self._thing(phrase.replace(" 's ", "'s "))
         if found is None or (not found.text and not found.last and not found.colors):
             return None
         if found.invert or found.grow:
