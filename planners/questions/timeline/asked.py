@@ -11,7 +11,8 @@ from ..answer import Answer, AnswerType, Evidence
 from ..kind import Asked, Kind, Undecided
 from ..reading.phrase_templates import templates
 from ..reading.time.deeds import Deed
-from ..reading.time.frames import Asks, Frame, Happening, frames, happenings
+from ..reading.time.frames import Asks, Frame, frames
+from ..reading.time.happenings import Happening, happenings
 from ..reading.time.moments import When
 from ..survey import Found, NotResolved, Survey, Thing, listed
 from .bodies import Body, Timeline
@@ -128,20 +129,8 @@ def kind(name: str, asks: Asks, answer: Answering) -> Kind:
 
 
 _MOTION = (
-    "move",
-    "turn",
-    "fall",
-    "land",
-    "start",
-    "stop",
-    "reach",
-    "leave",
-    "cross",
-    "pass",
-    "bob",
-    "approach",
-    "recede",
-)
+    "move", "turn", "fall", "rise", "land", "reach", "leave", "cross", "pass", "bob", "approach", "recede", "return"
+)  # fmt: skip
 
 
 def is_of_motion(words: tuple[str, ...]) -> bool:
@@ -303,16 +292,15 @@ def _clause(when: When, told: Told) -> Span:
 
 def _about(conj: str, deed: Deed, span: Span, line: Timeline) -> Span:
     a, b = span
-    if deed.kind == "stop" or deed.phase == "stop":
+    if deed.stops:
         a = b
     if conj == "before":
         return line.start, a
     if conj == "until":
-        return line.start, a if deed.kind in ("stop", "reach", "land") or deed.phase else b
+        return line.start, a if deed.at_once else b
     if conj == "after":
-        momentary = deed.kind in ("reach", "land", "leave", "pass", "start", "enter")
-        return (a if momentary else b), line.stop
-    if deed.kind in ("start", "stop", "reach", "land", "leave", "pass", "enter") or deed.phase:
+        return (a if deed.at_once else b), line.stop
+    if deed.at_once:
         return a, a
     return a, b
 
@@ -358,13 +346,14 @@ def verb(told: Told, what: Happening | None = None) -> str:
     plain = {
         None: "moves",
         "move": "moves",
-        "start": "starts",
-        "stop": "stops",
         "turn": "turns",
         "open": "opens",
         "close": "closes",
         "fall": "falls",
         "land": "lands",
+        "rise": "rises",
+        "return": "comes back",
+        "is_back": "is back",
         "still": "stands still",
         "bob": "bobs",
         "is_open": "is open",
@@ -379,9 +368,9 @@ def verb(told: Told, what: Happening | None = None) -> str:
     if deed is None or deed.kind in plain:
         said = plain[deed.kind if deed is not None else None]
         if deed is not None and deed.phase in ("start", "stop"):
-            said = f"{deed.phase}s {_DOING.get(deed.kind, 'moving')}"
+            said = f"{deed.phase}s" + (f" {_DOING[deed.kind]}" if deed.kind in _DOING else "")
         elif deed is not None and deed.phase:
-            said = said.replace("is ", "is half " if deed.phase == "half" else "is fully ")
+            said = said.replace("is ", {"half": "is half ", "quarter": "is a quarter "}.get(deed.phase, "is fully "))
         return said
     named = {
         "reach": "reaches",

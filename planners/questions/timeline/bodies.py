@@ -161,6 +161,10 @@ class Timeline:
             return tuple(b for b in movers if b.group.id not in gone)
         if query is None or (query.last and not survey.last) or is_anything(query):
             return movers
+        if any(q.last for q in query.exclude) and not survey.last:  # "the other drawers": those that do not move
+            rest = survey.find(query.model_copy(update={"exclude": (), "pick": "all"})).things
+            going = {b.group.id for b in movers}
+            return tuple(b for b in (self.body(t, survey) for t in rest) if b.group.id not in going)
         if query.last:
             found = survey.find(query)
             ids = {t.id for t in found.things}

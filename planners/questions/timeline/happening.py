@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 from ....gaussians.motion import events
 from ....gaussians.motion.events import Encounter
 from ....gaussians.motion.holding import Span, joined, lowest, rest, spans
-from ..reading.time.deeds import Deed
+from ..reading.time.deeds import Deed, Kind
 from ..survey import Survey, Thing
 from .bodies import Body, Timeline
 
 F64 = NDArray[np.float64]
 TURNS = np.radians(20.0)  # a body that turns by less about the vertical while it goes makes no turn
 _TURNING = np.radians(15.0)  # radians a second from which it turns
+_SHARES = {"quarter": 0.25, "half": 0.5}  # of how far it opens
+_HOME = 0.02  # metres, and of a turn radians times the farthest corner: so near to where it started it is back
 AJAR, WIDE = 0.02, 0.985  # of how far it opens: open from the one, wide open from the other
 BESIDE = 0.3  # metres: a thing that stops so near to another has reached it
 _CLOSER = 0.1  # metres by which it must have come nearer
@@ -34,19 +36,24 @@ def spans_of(deed: Deed, body: Body, others: Sequence[Thing], timeline: Timeline
         others: what it does it to; of several, any.
     """
     kind, moving = deed.kind, list(body.moving)
-    if kind in ("move", "start", "stop"):
-        return _going(deed.way, body, timeline) if kind == "move" and deed.way else moving
+    if kind == "move":
+        return _going(deed.way, body, timeline) if deed.way else moving
     if kind == "still":
         return rest(moving, timeline.start, timeline.stop) if moving else [(timeline.start, timeline.stop)]
     if kind == "turn":
         sign = {"left": 1, "right": -1}.get(deed.way, 0)
         return [s for s in turning(body) if not sign or sign * events.yawed(body.course, s) > 0]
     if kind == "fall":
-        return events.falls(body.course, timeline.unit)
+        falls = events.falls(body.course, timeline.unit)
+        return [s for s in falls if _is_near(body, others, timeline, s[0])] if others else falls
+    if kind == "rise":
+        return _going("up", body, timeline)
     if kind in ("slows", "speeds_up"):
         return [s for s in moving if _changes_pace(body, s) * (1 if kind == "speeds_up" else -1) > 0]
     if kind == "bob":
         return moving if bobs(body) > 0.005 * timeline.unit else []
+    if kind in ("return", "is_back"):
+        return _back(deed, body, timeline)
     if kind in ("open", "close", "is_open", "is_closed"):
         return _opening(deed, body, timeline)
     if kind in ("appear", "vanish", "recolor"):
@@ -195,9 +202,30 @@ def _opening(deed: Deed, body: Body, timeline: Timeline) -> list[Span] | None:
         return [(a, b) for a, b in body.moving if sign * float(np.diff(value(np.array([a, b])))[0]) > 0.2]
     if deed.kind == "is_closed":
         return spans(lambda t: -value(t), times, -AJAR)
-    if deed.phase == "half":
-        return [(t, t) for s in spans(value, times, 0.5) for t in s if timeline.start < t < timeline.stop]
+    if deed.phase in _SHARES:
+        crossed = [t for s in spans(value, times, _SHARES[deed.phase]) for t in s]
+        return [(t, t) for t in crossed if timeline.start < t < timeline.stop]
     return spans(value, times, WIDE if deed.phase == "full" else AJAR)
+
+
+def _back(deed: Deed, body: Body, timeline: Timeline) -> list[Span] | None:
+    """The spans in which it goes back to where it started, or is there again after it was away."""
+    if not body.moving:
+        return []
+    kinds = {t.kind for t in body.course.moving.tracks} if body.course.moving is not None else set()
+    if kinds & {"hinge", "slide"}:
+        kind: Kind = "close" if deed.kind == "return" else "is_closed"
+        found = _opening(Deed(kind), body, timeline) or []
+        return [s for s in found if s[0] > timeline.start + _ABOUT]
+    first = body.course.centers(np.array([timeline.start]))[0]
+
+    def near(times: F64) -> F64:
+        return np.asarray(-np.linalg.norm(body.course.centers(times) - first, axis=1))
+
+    there = [s for s in spans(near, body.course.grid(), -_HOME * timeline.unit) if s[0] > timeline.start + _ABOUT]
+    if deed.kind == "is_back" or events.path_length(body.course) < _HOME * timeline.unit:
+        return there if deed.kind == "is_back" else []
+    return [m for m in body.moving if any(m[0] < s[0] <= m[1] + _ABOUT for s in there)]
 
 
 # -- other things ----------------------------------------------------------------------------------------------------
@@ -221,6 +249,12 @@ def _reached(body: Body, others: Sequence[Thing], timeline: Timeline) -> list[Sp
             if after <= BESIDE * timeline.unit and before - after > _CLOSER * timeline.unit:
                 beside.append((b, timeline.stop))
     return sorted(beside)
+
+
+def _is_near(body: Body, others: Sequence[Thing], timeline: Timeline, time: float) -> bool:
+    """Whether it is at one of the others at a time."""
+    gaps = [float(p.gaps(np.array([time]))[0]) for p in _encounters(body, others, timeline)]
+    return bool(gaps) and min(gaps) < BESIDE * timeline.unit
 
 
 def _merged(found: list[Span]) -> list[Span]:

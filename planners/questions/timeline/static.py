@@ -6,9 +6,11 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ...grammar.tagging.words import bag
 from ..kind import Asked
-from ..reading.time.deeds import said_in
-from ..reading.time.frames import Frame, Happening, frames
+from ..reading.time.deeds import Deed, said_in
+from ..reading.time.frames import Frame, frames
+from ..reading.time.happenings import Happening
 from ..reading.time.moments import When, clauses, without_time
 from ..survey import NotResolved, Survey
 from .asked import Told, Untold, window, within
@@ -61,7 +63,9 @@ _ASKS = re.compile(
     r"^(?:how|what|which|when|where|who|why|is|are|was|were|does|do|did|has|have|can|in|on|at|to|list|name|count)\b"
 )
 _ADVERB = re.compile(r"\b(?:still|already|yet) (?=(?:on|in|at|next|near|under|beside|behind|by|above|against)\b)")
-_RELATIVE = re.compile(r"\b(?P<np>the (?:\w+ ){0,2}?(?P<noun>\w+)) (?:that|which|who) (?P<clause>.+)$")
+_RELATIVE = re.compile(
+    r"\b(?P<np>the (?:\w+ ){0,2}?(?P<noun>(?!at\b|in\b|on\b|from\b|by\b)\w+)) (?:that|which|who) (?P<clause>.+)$"
+)
 _PARTICIPLE = re.compile(r"\bthe (moving|rolling|falling|spinning|turning|walking|rotating|sliding) (?!of\b)(\w+)")
 _WHAT_IS = re.compile(r"^(?:and )?(?:what|which|who)(?: one| thing)? (?:is|was|are|were) $")
 
@@ -104,9 +108,8 @@ def moments(words: tuple[str, ...], survey: Survey, timeline: Timeline, asked: A
     """
     said = _named(" ".join(words), survey, timeline)
     for when, rest in _readings(said):
-        found = next(said_in(rest), None)
-        if found is not None and found[2].kind not in ("related", "still", "close", "appear"):
-            continue  # it asks of motion
+        if any(_is_of_motion(deed) for _, _, deed in said_in(rest)):
+            continue
         rest = _ADVERB.sub("", rest)
         if when is None:
             yield AtMoment(rest, (timeline.now,), said=False)
@@ -136,6 +139,15 @@ def _readings(said: str) -> Iterator[tuple[When | None, str]]:
             yield when, f"is {rest}"  # "ball on the rug at 2 s?"
         yield when, rest
     yield None, said
+
+
+_NO_MOTION = ("related", "still", "is_open", "is_closed", "is_back", "appear", "nearest", "farthest")
+_NO_VERBS = bag("close on off in out open up down back wide working running active")
+
+
+def _is_of_motion(deed: Deed) -> bool:
+    """Whether a question with it asks of motion, so that one moment does not tell its answer."""
+    return deed.kind not in _NO_MOTION and deed.verb not in _NO_VERBS
 
 
 def _time(when: When, survey: Survey, timeline: Timeline, asked: Asked) -> float:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
-from scenewright.planners.questions.reading.time.deeds import as_noun, forms, said_in
+from scenewright.planners.questions.reading.time.deeds import as_noun, said_in
 from scenewright.planners.questions.reading.time.frames import frames
 from scenewright.planners.questions.reading.time.moments import When, clauses, without_time
+from scenewright.planners.questions.reading.time.notation import forms, pattern
 from scenewright.planners.questions.reading.words import plain_words
 
 
@@ -44,9 +47,9 @@ def test_clauses_are_divided_but_not_plain_times() -> None:
     ("said", "kind", "phase"),
     [
         ("rolls", "move", ""),
-        ("start rolling", "start", ""),
-        ("come to rest", "stop", ""),
-        ("is half open", "is_open", "half"),
+        ("start rolling", "move", "start"),
+        ("come to rest", "move", "stop"),
+        ("half open", "is_open", "half"),
         ("falls off", "fall", ""),
         ("hits the floor", "land", ""),
         ("bumps into", "reach", ""),
@@ -54,15 +57,25 @@ def test_clauses_are_divided_but_not_plain_times() -> None:
         ("begins to open", "open", "start"),
         ("goes back in", "close", ""),
         ("stays where it is", "still", ""),
-        ("does not move", "still", ""),
+        ("stops turning", "turn", "stop"),
+        ("keeps on rolling", "move", ""),
+        ("has a fall", "fall", ""),
+        ("a quarter open", "is_open", "quarter"),
+        ("come back", "return", ""),
         ("goes past", "pass", ""),
         ("gets closer to", "approach", ""),
         ("slides out", "open", ""),
     ],
 )
 def test_deeds_by_their_verbs(said: str, kind: str, phase: str) -> None:
-    ((start, stop, deed),) = said_in(said)
+    start, stop, deed = next(said_in(said))
     assert (start, stop) == (0, len(said)) and (deed.kind, deed.phase) == (kind, phase)
+
+
+def test_the_notation_stands_for_all_forms_optional_words_and_alternatives() -> None:
+    row = re.compile(pattern("~come to [a|an] (rest|halt) | TURN away"))
+    assert all(row.fullmatch(f"{said} ") for said in ("came to rest", "coming to a halt", "spun away"))
+    assert not any(row.fullmatch(f"{said} ") for said in ("came to", "come to a a rest", "rolled away"))
 
 
 def test_forms_and_nouns_of_deeds() -> None:
@@ -96,8 +109,8 @@ def first(text: str) -> tuple[str, str, str]:
     ("text", "told"),
     [
         ("When does the ball reach the wall?", ("when", "reach", "ball")),
-        ("When the ball is stopping?", ("when", "stop", "ball")),
-        ("when stops the fan", ("when", "stop", "fan")),
+        ("When the ball is stopping?", ("when", "move", "ball")),
+        ("when stops the fan", ("when", "move", "fan")),
         ("At what second does the red book begin to fall?", ("when", "fall", "red book")),
         ("How much time need the door for opening?", ("how_long", "open", "door")),
         ("how long does it take for the door to open", ("how_long", "open", "door")),
@@ -109,7 +122,7 @@ def first(text: str) -> tuple[str, str, str]:
         ("whats moving at 1.4", ("which", "move", "")),
         ("Which one is the last to fall?", ("which", "fall", "")),
         ("how many things they move?", ("how_many", "move", "")),
-        ("The fan is starting immediately?", ("yesno", "start", "fan")),
+        ("The fan is starting immediately?", ("yesno", "move", "fan")),
         ("Is the fan still turning at 3?", ("yesno", "turn", "fan")),
         ("which way does the blue book go, up or down?", ("which_way", "move", "blue book")),
         ("What does the robot do at 2 seconds?", ("does", "", "robot")),
@@ -127,7 +140,7 @@ def test_questions_in_many_words(text: str, told: tuple[str, str, str]) -> None:
     "text",
     [
         "What time does the radio play jazz?",
-        "The waiter comes before second 3?",
+        "The waiter sings before second 3?",
         "when does the ball dream of the wall",
         "why does the ball roll",
         "who opens the door?",

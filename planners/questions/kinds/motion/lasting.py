@@ -10,14 +10,18 @@ from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...kind import Asked, Kind
 from ...reading.phrase_templates import templates
+from ...reading.time.deeds import AT_ONCE
+from ...reading.time.moments import seconds as seconds_of
 from ...survey import Survey
 from ...timeline.asked import Told, Untold, agreed, at, cap, kind, number, spoken, verb, within
 from ...timeline.bodies import Body
 from .when import moment
 
-_ONE_TURN = re.compile(r"\b(?:one|a|each|every|a full|a single|one full) (?:turn|rotation|revolution|spin|round)\b")
-_WAITS = ("wait", "waits", "waiting", "rest", "rests", "pause", "pauses")
-_AT_ONCE = ("reach", "land", "enter", "leave", "pass", "start", "stop")
+_TURNS = re.compile(
+    r"\b(?P<n>one|a|each|every|two|three|four|five|ten|\d+) (?:(?:full|single|whole|complete) )?(?:turn|rotation|"
+    r"revolution|spin|round)s?\b"
+)
+_WAITS = ("wait", "waits", "waiting", "waited", "rest", "rests", "pause", "pauses", "paused", "idle", "idles")
 
 
 def _long(told: Told) -> Answer | None:
@@ -30,15 +34,17 @@ def _of_one(told: Told, body: Body) -> Answer:
     deed, when = told.frame.what.deed, told.frame.when
     assert deed is not None
     found = told.spans(body)
-    if deed.kind == "turn" and _ONE_TURN.search(told.asked.said) and events.turned(body.course) > 2 * math.pi:
-        seconds = sum(b - a for a, b in found) * 2 * math.pi / events.turned(body.course)
-        return number(seconds, "s", f"{at(seconds)}: {body.name} turns once in that time.", [body])
+    counted = _TURNS.search(told.asked.said)
+    if deed.kind == "turn" and counted is not None and events.turned(body.course) > 2 * math.pi:
+        turns = seconds_of(counted["n"]) if counted["n"] not in ("each", "every") else 1.0
+        seconds = turns * sum(b - a for a, b in found) * 2 * math.pi / events.turned(body.course)
+        return number(seconds, "s", f"{at(seconds)}: {body.name} turns {turns:g} times in that time.", [body])
     if when is not None:
         found = within(found, told.window())
         found = found[-1:] if deed.kind == "still" and when.conj == "before" else found
     if not found:
         raise Untold(cap(f"{body.name} never {verb(told)}."))
-    if deed.kind in _AT_ONCE:
+    if deed.kind in AT_ONCE or (deed.kind == "move" and deed.phase):
         return _way_to(told, body, found)
     if deed.kind == "still" and deed.verb in _WAITS and when is None and len(inner := _inner(found, told)) >= 1:
         found = inner
@@ -57,11 +63,11 @@ def _way_to(told: Told, body: Body, found: list[Span]) -> Answer:
     """From when it begins to move to what happens at once: reaching, landing, stopping."""
     deed = told.frame.what.deed
     assert deed is not None
-    time = moment(deed, found[-1] if deed.kind == "stop" else found[0])
+    time = moment(deed, found[-1] if deed.stops else found[0])
     begun = [a for a, _ in body.moving if a < time]
     if not begun:
         raise Untold(f"{cap(body.name)} does not move before that.")
-    start = begun[-1] if deed.kind != "stop" else begun[0]
+    start = begun[-1] if not deed.stops else begun[0]
     text = f"{at(time - start)}: {body.name} starts to move at {at(start)} and {verb(told)} at {at(time)}."
     return number(time - start, "s", text, [body], time, others=told.others())
 
@@ -78,7 +84,7 @@ def _between(told: Told) -> Answer | None:
             raise Untold(cap(f"{body.name} never {verb(told, what)}."))
         deed = what.deed or (first.deed or second.deed)
         assert deed is not None
-        times.append(moment(deed, found[-1] if deed.kind == "stop" else found[0]))
+        times.append(moment(deed, found[-1] if deed.stops else found[0]))
         bodies.append(body)
     apart = abs(times[1] - times[0])
     said = [f"{b.name} {verb(told, w)} at {at(t)}" for b, w, t in zip(bodies, (first, second), times, strict=True)]

@@ -7,6 +7,8 @@ import re
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
+from ...reading.noun_phrase import is_anything
+from ...reading.time.happenings import TRANSITIVE
 from ...survey import NotResolved, listed
 from ...telling import evidence as evidence_of
 from ...timeline.asked import PLACES, Told, Untold, at, cap, kind, names, number, spoken, verb, within
@@ -14,7 +16,6 @@ from ...timeline.bodies import Body
 from .when import moment
 
 _MOMENTS = ("at", "in", "start", "end", "middle")
-_TAKES = ("reach", "enter", "leave", "cross", "pass", "approach", "recede", "related")
 
 
 def doing(told: Told) -> list[tuple[Body, list[Span]]]:
@@ -26,9 +27,9 @@ def doing(told: Told) -> list[tuple[Body, list[Span]]]:
         except Untold:
             continue
         deed = told.frame.what.deed
-        if deed is not None and deed.kind in ("start", "stop") and window is not None:
+        if deed is not None and deed.kind == "move" and deed.phase and window is not None:
             spans = [s for s in spans if window[0] - 0.1 <= moment(deed, s) <= window[1] + 0.1]
-        elif deed is not None and deed.kind == "stop":
+        elif deed is not None and deed.stops:
             spans = [s for s in spans if s[1] < told.timeline.stop - 1e-3]
         elif window is not None and window[0] < window[1]:
             spans = [s for s in spans if _overlaps(s, window)]
@@ -53,10 +54,12 @@ def _which(told: Told) -> Answer | None:
     if deed is not None and deed.kind == "related" and (told.frame.when is None or told.frame.when.kind in _MOMENTS):
         return None  # the scene at that time tells it
     said = told.asked.said
-    asks_object = re.match(r"(?:what|which)(?: things?| objects?| furniture)? (?:does|do|did|will|is|has)\b", said)
-    if deed is not None and deed.kind in _TAKES and what.object is None:
+    asks_object = re.match(
+        r"(?:what|which)(?: things?| objects?| furniture)? (?:does|do|did|will|is|has|the|it)\b", said
+    )
+    if deed is not None and deed.kind in TRANSITIVE and what.object is None:
         return _objects(told) if asks_object and what.subject is not None else None
-    if deed is not None and deed.kind == "still" and what.subject is None:
+    if deed is not None and deed.kind == "still":
         return _still(told)
     transitive = re.match(r"(?:what|which) (?:does|do|did|will|has)\b", said)
     if deed is not None and transitive and what.subject is not None and what.object is None and not told.frame.rank:
@@ -78,7 +81,7 @@ def _which(told: Told) -> Answer | None:
 def _when(told: Told, spans: list[Span]) -> str:
     """The times of a deed in words; of what starts or stops, each moment."""
     deed = told.frame.what.deed
-    if deed is not None and (deed.kind in ("start", "stop", "reach", "leave") or deed.phase in ("start", "stop")):
+    if deed is not None and deed.at_once:
         return f"at {listed([at(moment(deed, s)) for s in spans])}"
     return spoken(spans)
 
@@ -95,7 +98,7 @@ def _ranked(told: Told, found: list[tuple[Body, list[Span]]]) -> Answer:
     if rank in PLACES:
         ordered = sorted(
             found,
-            key=lambda f: moment(deed, f[1][-1 if deed.kind == "stop" else 0]) if deed is not None else f[1][0][0],
+            key=lambda f: moment(deed, f[1][-1 if deed.stops else 0]) if deed is not None else f[1][0][0],
         )
         if PLACES[rank] >= len(ordered):
             raise Untold(f"Only {listed([b.name for b, _ in ordered])} {verb(told)}.")
@@ -158,14 +161,19 @@ def _still(told: Told) -> Answer:
         for b in told.timeline.movers(told.survey)
         if b.thing is not None and b.course.group == b.thing.id and within(list(b.moving), window)
     }
-    things = [t for t in told.survey.things if t.id not in moving]
+    subject = told.frame.what.subject
+    named = subject is not None and not is_anything(subject)
+    every = told.survey.things
+    if named and subject is not None:
+        every = told.survey.find(subject.model_copy(update={"pick": "all"})).things
+    things = [t for t in every if t.id not in moving]
     text = (
         f"{cap(listed([told.survey.named(t) for t in things]))} {'stands' if len(things) == 1 else 'stand'} "
         f"still{_then(told)}."
     )
     return Answer(
-        answer=tuple(t.name for t in things),
-        answer_type="list",
+        answer=things[0].name if named and len(things) == 1 else tuple(t.name for t in things),
+        answer_type="label" if named and len(things) == 1 else "list",
         text=text,
         confidence=0.9,
         evidence=evidence_of(things),

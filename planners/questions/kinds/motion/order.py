@@ -19,8 +19,9 @@ Event = tuple[float, str, Body]
 
 
 def _order(told: Told) -> Answer | None:
-    deed = told.frame.what.deed
-    if deed is not None:
+    if told.frame.other is not None:
+        return _of_two(told)
+    if told.frame.what.deed is not None:
         return _of_deed(told)
     found = sorted((e for b in told.bodies() for e in story(b, told)), key=lambda e: e[0])
     window = told.window()
@@ -45,6 +46,26 @@ def _order(told: Told) -> Answer | None:
         answer=tuple(said.removeprefix("the ") for _, said, _ in found),
         answer_type="list",
         text=f"{cap(text)}.",
+        confidence=0.85,
+        evidence=evidence([b for _, _, b in found], found[0][0]),
+    )
+
+
+def _of_two(told: Told) -> Answer | None:
+    """ "What comes first, the ball leaving the rug or reaching the wall?"."""
+    found = []
+    for what in (told.frame.what, told.frame.other):
+        if what is None or what.deed is None:
+            return None
+        body = told.one(what)
+        if not (spans := told.spans(body, what)):
+            raise Untold(cap(f"{body.name} never {verb(told, what)}."))
+        found.append((moment(what.deed, spans[0]), f"{body.name} {verb(told, what)}", body))
+    found.sort(key=lambda e: e[0])
+    return Answer(
+        answer=tuple(said.removeprefix("the ") for _, said, _ in found),
+        answer_type="list",
+        text=f"{cap('; '.join(f'at {at(t)} {said}' for t, said, _ in found))}.",
         confidence=0.85,
         evidence=evidence([b for _, _, b in found], found[0][0]),
     )

@@ -17,6 +17,7 @@ from ...timeline.happening import turning
 from .speeds import is_turning
 from .when import changes, moment
 
+_LEG = 0.5  # seconds that tell which way something goes at first or in the end
 _OBLIQUE = 0.45  # of the larger part of a way: from here on the smaller part is told too
 _ORIGIN = re.compile(r"\bfrom where\b|\bwhere\b.*\b(?:from|start|starts|begin|begins|set off|starting)\b")
 
@@ -43,13 +44,18 @@ def _way(told: Told) -> Answer | Undecided | None:
     if not body.moving:
         raise Untold(cap(f"{body.name} does not move."))
     turns = deed.kind == "turn" and told.frame.options not in (("up", "down"), ("down", "up"))
-    spans = within(turning(body) if turns else list(body.moving), window)
-    if window is not None and window[0] == window[1]:
+    every = turning(body) if turns else list(body.moving)
+    spans = within(every, window) if told.frame.when is None or told.frame.when.kind not in ("start", "end") else every
+    kind = told.frame.when.kind if told.frame.when is not None else ""
+    if kind in ("start", "end") and spans:  # "at first", "at the end": how it begins, or how it ends
+        a, b = body.moving[0 if kind == "start" else -1]
+        spans = [(a, min(a + _LEG, b)) if kind == "start" else (max(b - _LEG, a), b)]
+    elif window is not None and window[0] == window[1]:
         near = [(max(a, window[0] - 0.1), min(b, window[0] + 0.1)) for a, b in body.moving]
         spans = [s for s in near if s[0] < s[1]]
     if not spans:
         raise Untold(cap(f"{body.name} does not {'turn' if turns else 'move'}{' then' if window is not None else ''}."))
-    span = (spans[0][0], spans[-1][1]) if deed.kind not in ("open", "close", "start") else spans[0]
+    span = (spans[0][0], spans[-1][1]) if deed.kind not in ("open", "close") and not deed.starts else spans[0]
     if turns:
         left = events.yawed(body.course, span) > 0
         if is_turning(body):
@@ -113,25 +119,32 @@ def _fits(option: str, body: Body, span: Span, told: Told) -> bool:
 
 def _where(told: Told) -> Answer | Undecided | None:
     deed = told.frame.what.deed
-    if deed is None:
+    if deed is None and (told.frame.when is None or told.frame.what.subject is None):
         return None
     body, said = told.one(), told.asked.said
-    if body.thing is None:
-        return None
-    if _ORIGIN.search(said) and deed.kind not in ("stop", "land"):
+    if body.thing is None or (deed is None and not body.moving):
+        return None  # the scene at that time tells it
+    if deed is None:
+        span = told.window()
+        if span is None or told.frame.when.kind in ("ever", "always"):  # type: ignore[union-attr]
+            return None
+        time = (span[0] + span[1]) / 2
+    elif _ORIGIN.search(said) and not deed.stops and deed.kind != "land":
         time = told.timeline.start
-    elif deed.kind in ("move", "fall", "start", "turn"):
+    elif deed.kind in ("move", "fall", "turn") and not deed.stops:
         window = told.window()
         time = window[1] if window is not None else told.timeline.stop
     else:
         found = changes(told, body)
         if not found:
             raise Untold(cap(f"{body.name} does not do that."))
-        time = moment(deed, found[-1] if deed.kind == "stop" else found[0])
+        time = moment(deed, found[-1] if deed.stops else found[0])
     survey = told.timeline.survey_at(time)
     thing = survey.thing(body.thing.id)
     place, rest = place_of(thing, survey)
-    text = f"At {at(time)} {body.name} is {place}{', ' + rest if rest else ''}."
+    if not place.startswith("on ") and _is_on_floor(body, time, told):
+        place, rest = "on the floor", f"{place}{', ' + rest if rest else ''}"
+    text = f"At {at(time)}: {cap(body.name)} is {place}{', ' + rest if rest else ''}."
     near = [i for i in (thing.node.support if thing.node is not None else "",) if isinstance(i, int)]
     answer = f"{place}, {rest}" if rest else place
     return Answer(
@@ -142,6 +155,14 @@ def _where(told: Told) -> Answer | Undecided | None:
         frame="viewer",
         evidence=Evidence(ids=(body.thing.id, *near), time=time),
     )
+
+
+def _is_on_floor(body: Body, time: float, told: Told) -> bool:
+    """Whether it lies on the floor at a time."""
+    floors = [g.id for g in told.timeline.scene.language.groups if g.level == "structure" and g.label == "floor"]  # type: ignore[union-attr]
+    at_time = np.array([time])
+    gaps = [float(events.Encounter.of(told.timeline.scene, body.group.id, [f]).gaps(at_time)[0]) for f in floors]
+    return bool(gaps) and min(gaps) < events.TOUCHES * told.timeline.unit
 
 
 WAY = kind("which_way_it_moves", "which_way", _way)

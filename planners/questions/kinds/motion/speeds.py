@@ -12,7 +12,7 @@ from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from .....gaussians.world.lengths import METRES
 from ...answer import Answer
-from ...reading.time.deeds import Deed
+from ...reading.time.deeds import AT_ONCE, Deed
 from ...reading.time.moments import When
 from ...timeline.asked import Told, Untold, agreed, at, cap, during, kind, number, spoken, within
 from ...timeline.bodies import Body
@@ -44,7 +44,8 @@ _TURNS = re.compile(
     r"radians?"
 )
 _TOTAL = re.compile(r"\b(?:total|altogether|all together|overall)\b", re.IGNORECASE)
-_BEFORE = 0.02  # seconds
+_MOMENT = 0.1  # seconds: a speed at a moment is the mean over them, since keys of a motion are as far apart
+_STEP = _MOMENT / 10
 _SPINS = math.radians(340)  # what turns by more in its place is told in turns, what turns by less in degrees
 
 
@@ -64,7 +65,7 @@ def _spans(told: Told, body: Body) -> list[Span]:
     deed = told.frame.what.deed
     found = (
         list(body.moving)
-        if deed is None or deed.kind in ("reach", "leave", "start", "stop", "enter", "pass", "land")
+        if deed is None or deed.kind in AT_ONCE or (deed.kind == "move" and deed.phase)
         else told.spans(body)
     )
     when = told.frame.when
@@ -101,8 +102,17 @@ def _fast_one(told: Told, body: Body) -> Answer:
     window = told.window()
     now = window[0] if window is not None and window[0] == window[1] else None
     if now is not None and told.frame.when is not None and told.frame.when.kind == "clause":
-        now -= _BEFORE  # "when it hits the floor": it still moves
+        now -= _MOMENT / 4  # "when it hits the floor": it still moves
     return _turning(told, body, now) if turning else _going(told, body, now)
+
+
+def _peak(body: Body, span: Span) -> tuple[float, float]:
+    """The greatest speed in a span, scene units a second, as a mean over `_MOMENT`; and when that is."""
+    times = body.course.grid(span, _STEP)
+    count = min(round(_MOMENT / _STEP), len(times))
+    means = np.convolve(events.speeds(body.course, times), np.full(count, 1 / count), "valid")
+    at_most = int(np.argmax(means))
+    return float(means[at_most]), float(times[at_most + count // 2])
 
 
 def _going(told: Told, body: Body, now: float | None) -> Answer:
@@ -111,15 +121,15 @@ def _going(told: Told, body: Body, now: float | None) -> Answer:
     sign, factor = _PER_SECOND[key]
     per = factor / told.timeline.unit
     if now is not None:
-        speed = float(events.speeds(body.course, np.array([now]))[0]) * per
+        around = (max(now - _MOMENT / 4, told.timeline.start), min(now + _MOMENT / 4, told.timeline.stop))
+        speed = float(events.speeds(body.course, body.course.grid(around, _STEP)).mean()) * per
         return number(speed, sign, f"At {at(now)} {body.name} moves at {_short(speed)} {sign}.", [body], now)
     found = _spans(told, body)
     way, seconds = sum(events.path_length(body.course, s) for s in found), sum(b - a for a, b in found)
-    times = np.concatenate([body.course.grid(s) for s in found])
-    top = float(events.speeds(body.course, times).max()) * per
+    top, fastest = max(_peak(body, s) for s in found)
+    top *= per
     mean = way * per / max(seconds, 1e-9)
     if told.frame.measure == "top":
-        fastest = float(times[int(np.argmax(events.speeds(body.course, times)))])
         return number(
             top, sign, f"{cap(body.name)} moves at {_short(top)} {sign} at most, at {at(fastest)}.", [body], fastest
         )
@@ -286,6 +296,13 @@ def hinged_track(body: Body) -> bool:
     return body.course.moving is not None and any(t.kind == "hinge" for t in body.course.moving.tracks)
 
 
+def _rounds(told: Told, body: Body) -> bool:
+    """Whether a count is one of full turns: of what spins, and of what is said to turn as it rolls."""
+    deed = told.frame.what.deed
+    says_turn = deed is not None and deed.kind == "turn"
+    return events.turned(body.course) > _SPINS and (says_turn or is_turning(body))
+
+
 def _often(told: Told) -> Answer | None:
     told = _so_far(told)
     deed = told.frame.what.deed
@@ -294,7 +311,7 @@ def _often(told: Told) -> Answer | None:
     counts_turns = re.search(
         r"\b(?:turns?|rotations?|revolutions?|spins?|rounds?|circles?|laps|loops|cycles|revs|twists)\b", said
     )
-    if (deed is None or deed.kind in ("turn", "move")) and is_turning(body) and events.turned(body.course) > _SPINS:
+    if (deed is None or deed.kind in ("turn", "move")) and _rounds(told, body):
         found = within(list(body.moving), told.window())
         turns = sum(events.turned(body.course, s) for s in found) / (2 * math.pi)
         return number(turns, "", f"{cap(body.name)} makes {_short(turns)} turns {spoken(found)}.", [body], None)
@@ -306,7 +323,7 @@ def _often(told: Told) -> Answer | None:
         found = turning(body)
     else:
         found = told.spans(body)
-        if deed is not None and deed.kind == "stop":
+        if deed is not None and deed.stops:
             found = [s for s in found if s[1] < told.timeline.stop - 1e-3]
     found = within(found, told.window())
     times = f"{len(found)} time{'s' if len(found) != 1 else ''}"

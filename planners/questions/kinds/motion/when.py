@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...candidates import is_plural
-from ...reading.time.deeds import Deed
+from ...reading.time.deeds import AT_ONCE, STATES, Deed
 from ...survey import listed
 from ...timeline.asked import PLACES, Told, Untold, at, cap, during, kind, number, verb, within
 from ...timeline.bodies import Body
 
-_ENDS = ("stop",)
+_ALL = re.compile(r"\b(?:all|both|every|everything|each)\b")
 
 
 def moment(deed: Deed, span: Span) -> float:
     """The time that "when" asks of: the end of what stops, the start of everything else."""
-    return span[1] if deed.kind in _ENDS or deed.phase == "stop" else span[0]
+    return span[1] if deed.stops else span[0]
 
 
 def changes(told: Told, body: Body) -> list[Span]:
@@ -25,10 +27,10 @@ def changes(told: Told, body: Body) -> list[Span]:
     deed, line = told.frame.what.deed, told.timeline
     assert deed is not None
     found = within(told.spans(body), told.window())
-    if deed.kind in ("is_open", "is_closed", "related", "still"):
-        return [s for s in found if s[0] > line.start + 1e-3] or found
-    if deed.kind in _ENDS:
+    if deed.stops:
         return [s for s in found if s[1] < line.stop - 1e-3]
+    if deed.kind in STATES:
+        return [s for s in found if s[0] > line.start + 1e-3] or found
     return found
 
 
@@ -36,16 +38,24 @@ def _when(told: Told) -> Answer | None:
     deed = told.frame.what.deed
     if deed is None:
         return None
+    if told.frame.measure == "end" and not deed.phase and deed.kind not in AT_ONCE:  # "until when does it turn"
+        deed = replace(deed, phase="stop")
+        told = replace(told, frame=replace(told.frame, what=replace(told.frame.what, deed=deed)))
     subject = told.frame.what.subject
     bodies = told.bodies()
     each = [(b, changes(told, b)) for b in bodies]
     doing = [(b, s) for b, s in each if s]
     if not doing:
         raise Untold(_never(told, bodies))
+    if len(doing) > 1 and _ALL.search(told.asked.said) and (deed.kind in STATES or deed.at_once):
+        time = max(_events(deed, [each])[0][0] for each in doing)
+        return number(time, "s", cap(f"{_told(told, doing)}."), [b for b, _ in doing], time, others=told.others())
     if len(doing) > 1 and subject is not None and not is_plural(subject) and not told.frame.rank:
         return _several(told, doing)
     events = _events(deed, doing)
-    place = PLACES.get(told.frame.rank, -1 if deed.kind in _ENDS else 0)
+    place = PLACES.get(told.frame.rank, -1 if deed == replace(deed, kind="move", phase="stop") else 0)
+    if told.frame.rank == "again":
+        place = min(1, len(events) - 1)
     if told.frame.rank in ("last", "second", "third") and deed.kind == "turn" and len(events) == 1:
         raise Untold(f"Its turns follow one another without a rest: {_told(told, doing)}.")
     if place >= len(events):
@@ -64,18 +74,7 @@ def _told(told: Told, doing: Sequence[tuple[Body, list[Span]]]) -> str:
     """When each of them does it: "the ball stops at 3.5 s"."""
     deed = told.frame.what.deed
     assert deed is not None
-    long = deed.kind in (
-        "move",
-        "turn",
-        "open",
-        "close",
-        "fall",
-        "still",
-        "is_open",
-        "is_closed",
-        "related",
-        "cross",
-    ) and deed.phase not in ("start", "stop")
+    long = not deed.at_once
     parts = []
     for body, spans in doing:
         times = listed([during(s) if long else f"at {at(moment(deed, s))}" for s in spans])

@@ -7,13 +7,13 @@ from dataclasses import replace
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...candidates import is_plural
+from ...reading.time.deeds import STATES, Deed
 from ...survey import listed
 from ...timeline.asked import Told, Untold, at, cap, during, kind, spoken, verb, within, yes_no
 from ...timeline.bodies import Body
 from .when import moment
 
 _ROUND = 0.15  # seconds: what starts so soon after the start of the scene starts with it
-_CHANGES = ("recolor", "start", "stop", "reach", "enter", "leave", "land", "pass", "vanish", "appear")
 
 
 def _whether(told: Told) -> Answer | None:
@@ -27,7 +27,7 @@ def _whether(told: Told) -> Answer | None:
         return _before(told)
     if deed.kind == "related" and (when is None or when.kind in ("at", "in", "start", "end", "middle")):
         return None  # the scene at that time tells it
-    if deed.kind in ("stop", "start") and what.at:
+    if deed.kind == "move" and deed.phase and what.at:
         return None  # "does it stop at the wall?" is asked of where it is then
     window = told.window()
     bodies = told.bodies()
@@ -46,14 +46,17 @@ def _whether(told: Told) -> Answer | None:
 
 def _holds(told: Told, body: Body, window: Span | None, always: bool) -> tuple[bool, list[Span]]:
     """Whether a body does it in a window, and the spans in which it does at all."""
-    deed, line = told.frame.what.deed, told.timeline
+    deed, line, when = told.frame.what.deed, told.timeline, told.frame.when
     assert deed is not None
-    if not body.moving and deed.kind in ("open", "close"):
+    if not body.moving and (deed.kind in ("open", "close") or deed.verb == "opened"):
         return False, []
     found = told.spans(body)
-    if deed.kind == "stop" or deed.phase == "stop":
+    if told.frame.rank == "again":
+        later = [s for s in found if s[0] > line.start + 1e-3]
+        found = later if deed.kind in STATES else found[1:] if _repeats(deed) else found
+    if deed.stops:
         found = [(b, b) for _, b in found if b < line.stop - 1e-3]
-    elif deed.kind == "start" or deed.phase == "start":
+    elif deed.starts:
         found = [(a, a) for a, _ in found]
     if always:
         return sum(b - a for a, b in found) >= line.stop - line.start - _ROUND, found
@@ -61,12 +64,10 @@ def _holds(told: Told, body: Body, window: Span | None, always: bool) -> tuple[b
         if deed.kind in ("still",):
             return not body.moving, found
         return bool(found), found
-    if deed.kind in _CHANGES or deed.phase in ("start", "stop"):
-        a, b = window
-        return any(
-            a - _ROUND <= moment(replace(deed, kind="start"), s) <= b + (_ROUND if a == b else 0) for s in found
-        ), found
-    if deed.phase == "half":
+    if deed.at_once and deed.phase not in ("quarter", "half", "full"):
+        a, b = window if when is None or when.kind != "end" else (line.start, line.stop)  # "has it stopped by the end"
+        return any(a - _ROUND <= s[0] <= b + (_ROUND if a == b else 0) for s in found), found
+    if deed.phase in ("quarter", "half"):
         return any(abs(s[0] - t) < _ROUND for s in found for t in window), found
     inside = within(found, window)
     if deed.kind in ("still", "is_open", "is_closed") and window[0] < window[1]:
@@ -74,6 +75,11 @@ def _holds(told: Told, body: Body, window: Span | None, always: bool) -> tuple[b
     if window[0] < window[1]:
         inside = [s for s in inside if s[1] - s[0] > 0.02 or s[0] == s[1]]
     return bool(inside), found
+
+
+def _repeats(deed: Deed) -> bool:
+    """Whether doing it again is to do it twice; closing again is only to be closed as before."""
+    return not deed.stops and deed.kind not in ("close", "return", "fall")
 
 
 def _sentence(told: Told, each: list[tuple[Body, tuple[bool, list[Span]]]], window: Span | None) -> str:

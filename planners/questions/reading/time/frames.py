@@ -1,8 +1,7 @@
 """Reads a question about a scene with time: what is asked, of which happening, and of what time.
 
-People ask such questions in any order of words, so they are read by their parts: a cue ("how long"), a deed ("to
-open"), the things before and behind it, the time. Every word belongs to one of them or says nothing; else
-it is not read.
+A question has a cue that says what is asked ("how long", at its start or its end), a time, a rank ("first"), a unit,
+and a happening. Each is taken out in turn; what is left must be read as a happening to the last word.
 """
 
 from __future__ import annotations
@@ -10,40 +9,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Literal
 
-from .....gaussians.language.query.query import Query
-from .....gaussians.world import kinds
-from ....grammar.tagging.words import bag
-from .. import noun_phrase, relation_phrases
 from ..noun_phrase import is_color_word
-from .deeds import Deed, Kind, Phase, as_noun, said_in, verb_words
-from .moments import When, clauses, without_time
+from .happenings import Happening, happenings, thing
+from .moments import When, clauses, time_first, without_time
+from .notation import pattern
 
 Asks = Literal[
     "when", "how_long", "between", "how_fast", "how_far", "how_often", "how_many", "where", "which_way", "order",
     "does", "which", "yesno", "faster", "either",
 ]  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Happening:
-    """Something that something does.
-
-    Attributes:
-        deed: None where only a thing is named.
-        subject: who does it, None if nobody is named.
-        object: what it is done to or where; None if nothing is named.
-        at: the preposition before the object, "" if there is none.
-        nth: of several such happenings "first", "second", "third" or "last"; "" if not said.
-    """
-
-    deed: Deed | None
-    subject: Query | None = None
-    object: Query | None = None
-    at: str = ""
-    nth: str = ""
 
 
 @dataclass(frozen=True)
@@ -55,9 +32,9 @@ class Frame:
         what: of which happening.
         other: of "between", "before" and comparisons the second happening.
         when: of which time, None if nothing is said.
-        rank: "first", "last", "second", ..., "fastest", "slowest", "farthest", "longest"; "" if none is said.
+        rank: "first", "last", "second", ..., "again", "fastest", "slowest", "farthest", "longest"; "" if none is said.
         unit: in which unit, as said; "" if none is.
-        measure: "average", "top" or "angular" of a speed; of a distance "nearest"; "" if not said.
+        measure: "average", "top" or "angular" of a speed; of a distance "nearest"; of a time "end"; "" if not said.
         options: answers to choose from: ("left", "right").
     """
 
@@ -71,316 +48,319 @@ class Frame:
     options: tuple[str, ...] = ()
 
 
-_UNIT = (
-    r"(?:m / s|meters? (?:per|a|/) (?:second|sec|s)|mps|km / h|kmh|kph|km per hour|kilometers? (?:per|an) hour|mph|"
-    r"miles (?:per|an) hour|cm / s|(?:cm|centimeters?) (?:per|a|/) (?:second|sec|s)|"
-    r"(?:deg|degs|degrees?) (?:per|a|/) (?:second|sec|s)|"
-    r"(?:turns?|rotations?|revolutions?|revs?|rounds?|spins?|cycles?|rot) (?:per|a|/|every|each|in one|in a) "
-    r"(?:second|sec|s|minute|"
-    r"min)|rpm|rps|r p m|hz|hertz|(?:rad|radians?) (?:per|a|/) (?:second|sec|s))"
+# -- what is asked ---------------------------------------------------------------------------------------------------
+
+_POINT = "([exact|precise|very] (time|second|seconds|moment|point|timestamp|instant|sec|frame|stage) [in time|of time|\
+mark|exactly])"
+_SPAN = "(duration|time span|timespan|period [of time]|length of time|amount of time|stretch of time)"
+_TOLD = "[~be|tell|give|name|state] [me]"
+_TAKES = "[(do|does|did|will|would|has|is|was) (it|that|this) [all] (~take|~need|~last|~require|be) [time|for]]"
+_ROUNDS = "([full|complete|whole|total|single] (turn|turns|rotation|rotations|revolution|revolutions|spins|rounds|\
+circles|laps|loops|cycles|revs|times|twists))"
+_MEASURES = (
+    "avg|average|mean|top|maximum|maximal|max|peak|highest|greatest|angular|rotational|rotation|turning|spinning|\
+spin|walking|rolling|sliding|falling|opening|linear|overall|typical|ground|travel|moving|movement|current|usual"
 )
-_LENGTH = r"(?:meters?|m|centimeters?|cm|millimeters?|mm|feet|foot|ft|inch|inches|yards?|kilometers?|km)"
-_TIME_UNIT = r"(?:seconds?|secs?|s|milliseconds?|ms|minutes?)"
+_SPEED = f"[{_MEASURES}] [{_MEASURES}] (speed|speeds|velocity|velocities|pace|tempo|rate of (rotation|turn)|rate|rpm)"
+_THINGS = "[thing|things|object|objects|item|items|stuff|one|ones|else|all]"
+_CUES = f"""
+when end: (until|till|up to|up until) (when|(what|which) {_POINT})
+when: when [exactly] | since when | [by|at|on|in|after|around|about|from|since|through] (what|which) {_POINT} [is \
+    it] [that|when]
+when: how (soon|early|late) | how (long|many seconds|much time|many secs) [into it|in] {_TAKES} [is it|will it \
+    be|passes|pass|elapses|goes by|go by|do i wait|must i wait] (until|till|before) | (after|by) how (many \
+    seconds|long|much time|many secs) [in|into it]
+when: how many (seconds|secs) (in|into it|after the start|from the start) | [what] {_TOLD} the {_POINT} (when|at \
+    which|that|of|where|in which|for|on which)
+how_fast: [and] how (fast|quick|quickly|rapidly|slow|slowly|speedy|swiftly) | [at|with|by] (what|which|how much) \
+    {_SPEED} [does|is|has]
+how_fast: [what] {_TOLD} [the|its] {_SPEED} [of|for]
+how_long: [for|over|within|in|during] how (long|much time|many (seconds|secs|sec|s)) {_TAKES} [of|for]
+how_long: [what] {_TOLD} [the] {_SPAN} [of|for|that] | [in|for|over|during|within] (what|which) ({_SPAN}|time) \
+    {_TAKES}
+how_often: how (often|many times|frequently) | (how many|[what ~be] the [total] number of|what number of|[the] \
+    total) {_ROUNDS} [of]
+which_way: [in|to|into|toward|towards|on|from] (which|what) (way|direction|directions|side) | [what] {_TOLD} the \
+    direction (of|in which)
+how_far nearest: how (close|near) (does|do|did|will)
+how_far: [by|to|through|about|over|from] how (far [out|down|up|in|along|across|away]|much \
+    [distance|way|farther]|long a (way|path|distance)|large a distance|wide|high [up]|deep|low) | [by|through] \
+    (what|which) [total] (distance|height|path|travel distance|path length) [that]
+how_far: [what] {_TOLD} [the] [total|overall|whole] (distance|path length|length of the (path|way|route)|travel) \
+    [of|that|which]
+how_far degrees: [by|through] (what|which) [the] angle [of|that] | [what] {_TOLD} [the] [opening|turn|turning] \
+    angle [of|that]
+how_many: how many [different|of] | count | [what ~be] the number of | what number of
+where: [and] [to|from] (where|whereabouts|where exactly|where to) | (at|in|on|to) (what|which) \
+    (place|spot|location|position)
+order: [give|tell|list|name|say] [me] [in] (the|what|which) [is the] (order|sequence) [of|in which|that|do|does]
+order: [tell|list|describe|explain] [me] what [all] (happens|happened|is happening|goes on|is going on|takes \
+    place|will happen|events are there|occurs) [here|there|in here] [in] [what|which|the] [order|sequence]
+order: (list|name|give|tell|show) [me] [all] [the] (events|movements|motions|happenings) [here] [in order]
+faster faster: [and] (which|what|who) [one|thing] [is|goes|moves|turns|travels] [the] (faster|quicker) [one]
+faster slower: [and] (which|what|who) [one|thing] [is|goes|moves|turns|travels] [the] slower [one]
+which: [name|list|show|tell] [me] (which|what|who|everything|all|the things|the thing|the objects|the \
+    object|things|something) [one|ones|thing|things|object|objects|item|items|stuff|else|all] [of (these|them|the \
+    things|the objects|all|the three|the two)] [is it] [here] [that|which|who]
+which: (name|list|show|tell) [me]
+"""
+_DOES = re.compile(
+    r"^what (?:does|do|did|will) (?P<a>.+?) do(?:es)?$|^what (?:is|are|was) (?P<b>.+?) (?:doing|up to)$|"
+    r"^what (?:happens|happened|is happening) (?:to|with) (?P<c>.+)$|^what (?P<d>(?:the|a) .+?) (?:do|does|is doing)$|"
+    r"^(?:describe|explain) (?:the )?(?:motion|movement|path|way|route) of (?P<e>.+)$|^how (?:does|do) (?P<f>.+?) move$"
+)
+_TIMES_ONLY = re.compile(
+    r"^what (?:is|was) the (?P<r>first|last|second|third)(?: thing| event)?(?: that happens| to happen| that takes "
+    r"place)?$"
+)
+_FIRST_OF = re.compile(
+    r"^(?:what|which)(?: one| event)? (?:comes|happens|is|occurs) (?:first|earlier)(?: ,| :)? (?P<a>.+?)(?: ,)? or "
+    r"(?P<b>.+)$"
+)
+_RANKED_THING = re.compile(r"^(?:(?:name|list|show|tell)(?: me)? )?(?P<x>the (?:first|last|fastest|slowest) .+)$")
+_ASKING = re.compile(
+    r"(?:and )?(?:how|what|which|when|where|who|why|in what|in which|at what|at which|by what|by how|list|name|count|"
+    r"tell|give|show)\b"
+)
+_COMPARED = ("fall", "turn", "open", "close", "rise")
+_TWO_QUESTIONS = re.compile(r"\b(?:and|,) (?:when|how|where|what|which|why|does|is|are|do)\b")
+
+
+@cache
+def _cues() -> tuple[tuple[Asks, str, str], ...]:
+    rows = []
+    for line in _CUES.replace("\\\n    ", "").replace("\\\n", "").strip().splitlines():
+        key, _, notation = line.partition(":")
+        asks, _, more = key.partition(" ")
+        rows.append((asks, more, pattern(notation)))
+    return tuple(rows)  # type: ignore[arg-type]
+
+
+@cache
+def _first() -> tuple[tuple[Asks, str, re.Pattern[str]], ...]:
+    return tuple((asks, more, re.compile(rf"(?:and |so )?(?:{row})")) for asks, more, row in _cues())
+
+
+@cache
+def _last() -> tuple[tuple[Asks, str, re.Pattern[str]], ...]:
+    asked_last = ("when", "how_long", "how_fast", "how_far", "how_often", "where", "which_way")
+    return tuple((a, more, re.compile(rf"(?<= )(?:{row})$")) for a, more, row in _cues() if a in asked_last)
+
+
+def _cued(said: str) -> Iterator[tuple[Frame, str]]:
+    """What a question asks, and its words without the cue; cues at the start first, the longest first."""
+    text, found = f"{said} ", []
+    for asks, more, row in _first():
+        if (m := row.match(text)) is not None:
+            found.append((-m.end(), asks, more, m.group(), text[m.end() :].strip(" ,")))
+    if not found and not _ASKING.match(said):
+        for asks, more, row in _last():
+            if (m := row.search(text)) is not None:
+                found.append((m.start() - m.end(), asks, more, m.group(), text[: m.start()].strip(" ,")))
+    for _, asks, more, cue, rest in sorted(found, key=lambda f: f[0]):
+        start = Frame(asks, Happening(None))
+        if asks == "how_fast":
+            start = replace(start, measure=_measure(cue), unit="rpm" if "rpm" in cue.split() else "")
+        elif asks == "faster":
+            start = replace(start, rank=more)
+        else:
+            start = replace(start, measure=more if more != "degrees" else "", unit=more if more == "degrees" else "")
+        yield start, rest
+
+
+def _measure(said: str) -> str:
+    words = set(said.split())
+    if words & {"top", "maximum", "maximal", "max", "peak", "highest", "greatest"}:
+        return "top"
+    if words & {"angular", "rotational", "rotation", "turning", "spinning", "spin", "turn"}:
+        return "angular"
+    return "average" if words & {"avg", "average", "mean", "overall", "typical"} else ""
+
+
+# -- units -----------------------------------------------------------------------------------------------------------
+
+_EACH = r"(?:per|a|an|/|every|each|in one|in a)"
+_SECOND = r"(?:second|sec|s|minute|min|hour|h)"
+_LENGTH = r"(?:meters?|m|centimeters?|cm|millimeters?|mm|feet|foot|ft|inch|inches|yards?|kilometers?|km|miles?)"
 _ANGLE = r"(?:degrees?|deg|degs|radians?|rad)"
-_UNIT_TAIL = re.compile(
-    rf"(?: ,)? (?:(?:measured |expressed |given )?in )?(?P<u>{_UNIT})$|(?: ,)? (?:measured |expressed |given )?in "
-    rf"(?P<v>{_UNIT}|"
-    rf"{_LENGTH}|{_TIME_UNIT}|{_ANGLE})(?= |$)| , (?P<w>{_LENGTH}|{_ANGLE}|seconds|secs)$"
+_COUNTED = rf"(?:{_LENGTH}|{_ANGLE}|turns?|rotations?|revolutions?|revs?|rounds?|spins?|cycles?|rot)"
+_RATE = rf"(?:{_COUNTED} {_EACH} {_SECOND}|mps|kmh|kph|mph|rpm|rps|r p m|hz|hertz)"
+_IN_UNIT = re.compile(
+    rf"(?: ,)? (?:(?:measured |expressed |given )?in )?(?P<u>{_RATE})$|(?: ,)? (?:measured |expressed |given )?in "
+    rf"(?P<v>{_RATE}|{_LENGTH}|(?:milli)?seconds?|secs?|minutes?|{_ANGLE})(?= |$)|"
+    rf" , (?P<w>{_LENGTH}|{_ANGLE}|seconds|secs)$"
 )
-_KIND = (
-    r"(?:(?:avg|average|mean|top|maximum|maximal|max|peak|highest|greatest|angular|rotational|rotation|turning|"
-    r"spinning|spin|"
-    r"walking|rolling|sliding|falling|opening|linear|overall|typical|ground|travel|moving|movement|current|usual) )*"
-)
-_SPEED = (
-    rf"(?P<kind>{_KIND})(?:speeds?|velocity|velocities|pace|rotation rate|turn rate|turning rate|rate of "
-    rf"rotation|rate of turn|tempo)"
-)
-_IT_TAKES = (
-    r"(?: (?:do|does|did|will|would|has|is|was) (?:it|that|this)(?: all)? (?:takes?|needs?|lasts?|requires?|"
-    r"taking|take time))?"
-)
-_CUES: tuple[tuple[Asks, re.Pattern[str]], ...] = tuple(
-    (asks, re.compile(pattern))  # type: ignore[misc]
-    for asks, pattern in (
-        ("between", r"^(?:and )?(?:how (?:much time|long|many seconds|many secs)(?: \w+){0,3}?|what is the (?:time|"
-                    r"delay|gap|interval|"
-         r"pause)(?: difference)?|(?:the )?(?:time|delay|gap|interval|pause)(?: in seconds)?) between (?P<rest>.+)$"),
-        ("between", r"^how (?:much|many seconds|long) (?P<later>later|earlier|after) (?P<rest>.+)$"),
-        ("order", r"^(?:(?:give|tell|list|name|say)(?: me)? )?(?:in )?(?:the |(?:what|which) (?:is the )?)(?:order|"
-                  r"sequence)"
-         r"(?: (?:of|in which|that|do))?(?P<rest>.*)$"),
-        ("order", r"^(?:tell me |list |describe |explain )?what (?:all )?(?:happens|happened|is happening|goes on|is "
-                  r"going on|"
-         r"takes place|will happen|events are there|occurs)(?! (?:to|with))(?: (?:here|there|in here|first and then "
-         r"what))?"
-         r"(?: ,)?(?: in (?:what |which |the )?(?:order|sequence))?(?P<rest>.*)$"),
-        ("order", r"^(?:list|name|give|tell|show)(?: me)? (?:all )?(?:the )?(?:events|movements|motions|happenings)"
-         r"(?: (?:here|in order))*(?P<rest>.*)$"),
-        ("does", r"^what (?:does|do|did|will) (?P<rest>.+?) do(?:es)?$|^what (?:is|are|was) (?P<doing>.+?) (?:doing|"
-                 r"up to)$|"
-         r"^what (?:happens|happened|is happening) (?:to|with) (?P<to>.+)$|^what (?P<odd>(?:the|a) .+?) (?:do|does|is "
-         r"doing)$|"
-         r"^(?:describe|explain) (?:the )?(?:motion|movement|path|way|route) of (?P<of>.+)$|^how (?:does|do) "
-         r"(?P<how>.+?) move$"),
-        ("order", r"^(?:and )?what (?:is|was) (?P<rest>the (?:very )?(?:first|last|second|third))(?: thing| "
-                  r"event)?(?: that happens| to happen| that takes "
-         r"place)$"),
-        ("how_often", r"^(?:and )?(?:how (?:often|many times|frequently)|(?:how many|(?:what is )?the (?:total "
-                      r")?number of|what number of|(?:the )?total(?: number of)?) "
-         r"(?:full |complete |whole |total |single )?(?:turns?|rotations?|revolutions?|spins?|rounds?|circles?|laps|"
-         r"loops|cycles|"
-         r"revs|times|twists))(?! (?:per|a|/|every|each|in one|in a) (?:second|sec|minute|min|s))"
-         r"(?: of)?(?P<rest>.*)$"),
-        ("when", r"^(?:and )?(?:so )?(?:(?:the )?exact(?:ly)? )?(?:when(?: exactly)?|(?:at|on|by|in|after|around|"
-                 r"about|from|since|until)? ?"
-         r"(?:what|which) (?:exact |precise )?(?:time|second|seconds|moment|point(?: in time| of time)?|timestamp|"
-         r"instant|sec|frame|"
-         r"stage)(?: mark| exactly)?(?: is it(?: when| that)?)?|how (?:soon|early|late)|how (?:long|many seconds|much "
-         r"time|many "
-         r"secs)(?: into it| in)?" + _IT_TAKES + r"(?: is it| will it be| passes| pass| elapses| goes by| go by| do i "
-                                                 r"wait| must i wait|"
-         r" do we wait)? (?:until|till|before)|after how (?:many seconds|long|much time|many secs)|how many seconds "
-         r"(?:in|into it|into the \w+|after the start)|(?:what is |what was |tell |give )?(?:me )?(?:the )?(?:exact "
-         r")?(?:time|moment|"
-         r"second|timestamp|instant) (?:when|at which|that|of|where|in which|for))(?= )(?P<rest>.*)$"),
-        ("how_fast", rf"^(?:and )?(?:how (?:fast|quick|quickly|rapidly|slow|slowly|speedy|swiftly)|(?:at|with|by|in)? "
-                     rf"?(?:what|which|how much) "
-         rf"{_SPEED}|(?:what is |what was |what are |give |tell |give me )?(?:the |its "
-         rf")?{_SPEED.replace('kind', 'kind2')}|"
-         rf"(?:how many|(?:what is )?(?:the )?(?:number of )?)? ?(?P<unit>{_UNIT}))(?: of| for| does| is| has)?(?= |"
-         rf"$)(?P<rest>.*)$"),
-        ("how_long", rf"^(?:and )?(?:for |over |within )?(?:how (?:long|much time|many (?:seconds|secs|sec|s))|"
-                     rf"(?:what is |what was )?(?:the )?"
-         rf"(?:duration|time span|timespan)|(?:what|which) (?:duration|amount of time)|(?:in|for|over) (?:what|which) "
-         rf"time){_IT_TAKES}"
-         rf"(?: of| for)?(?= |$)(?P<rest>.*)$"),
-        ("which_way", r"^(?:and )?(?:in|to|into|toward|towards|on|from)? ?(?:which|what) (?:way|directions?|side)(?= |"
-                      r"$)(?P<rest>.*)$|"
-         r"^(?:what is |tell me )?the direction (?:of|in which)(?P<of>.*)$"),
-        ("how_far", r"^(?:and )?how (?P<near>close|near) (?:does|do|did|will) (?P<rest>.+ (?:get|come|go|pass|roll|"
-                    r"walk|move)s? (?:to|by|near|past) "
-         r".+)$"),
-        ("how_far", rf"^(?:and )?(?:(?:by |to |through |about |over )?(?:from )?(?:how (?:far(?: out| down| up| in| "
-                    rf"along| across)?|much distance|much way|much|long a (?:way|path|distance)|"
-         rf"large a distance|wide|high|deep|low)|how many (?P<unit>{_LENGTH}|{_ANGLE})|(?:what|which) (?:is the "
-         rf")?(?:total )?"
-         rf"(?P<angle>distance|height|path|angle|way length|travel distance|path length)(?: of| that| which| in "
-         rf"{_LENGTH})?|"
-         rf"(?:what is |give )?(?:the )?(?:total |overall )?(?:distance|path length|length of the (?:path|way|route)|"
-         rf"travel|opening angle)"
-         rf"(?: of| that| which)?))(?= |$)(?P<rest>.*)$"),
-        ("how_many", r"^(?:and )?(?:how many|count|(?:what is )?the number of|what number of)(?: different| of)?(?= |"
-                     r"$)(?P<rest>.*)$"),
-        ("where", r"^(?:and )?(?:to |from )?(?:where(?:abouts| exactly| to)?|(?:at|in|on|to) (?:what|which) (?:place|"
-                  r"spot|location|"
-         r"position))(?= )(?P<rest>.*)$"),
-        ("faster", r"^(?:and )?(?:which|what|who)(?: one| thing)?(?: is| goes| moves| turns| travels)? (?:the "
-                   r")?(?P<more>faster|quicker|slower)"
-         r"(?: one)?(?: ,| :)? (?P<rest>.+ or .+)$"),
-        ("which", r"^(?:and )?(?:(?:name|list|show|tell)(?: me)? )?(?:which|what|everything|all|the things?|"
-                  r"the objects?|"
-         r"things|all things|all the things|something)(?: one| ones| of (?:these|them|the things|the objects|all)| "
-         r"things?| objects?| items?"
-         r"| stuff| else| all)?(?: is it| here)?(?: that| which| who| , that)?(?= )(?P<rest>.*)$|"
-         r"^(?:(?:name|list|show|tell)(?: me)? )?(?P<ranked>the (?:first|last|fastest|slowest) .+)$"),
-    )
-)  # fmt: skip
-_DOES = next(pattern for asks, pattern in _CUES if asks == "does")
-_SPEED_LAST = re.compile(rf"^(?P<rest>.+?)(?: 's)? (?:(?:its )?{_SPEED}|(?P<unit>{_UNIT}))$")
-_CUE_LAST = re.compile(
-    rf"^(?P<rest>.+?)(?: ,)? (?P<cue>when(?: exactly)?|at what time|what time|at which second|how far|how long|how "
-    rf"fast|"
-    rf"how many (?:{_LENGTH}|{_ANGLE}|turns|times|seconds|rotations|revolutions)|where|which way|how often)$"
-)
-_ANY_MOTION = re.compile(
-    r"^(?:is|are) there (?:still )?(?:any |some )?(?:movements?|motion)(?: here| in the room)?(?= |$)"
-)
-_TWO_QUESTIONS = re.compile(r"\band (?:when|how|where|what|which|why|does|is|are|do)\b")
-_LATER = re.compile(
-    r"^how (?:long|much time|many seconds|many secs|much later)(?: passes| is it)? after (?P<a>.+?) (?:does|do|did|"
-    r"will|is) (?P<b>.+)$"
-)
-_TOPIC = re.compile(
-    r"^(?P<x>the \w+(?: \w+)?) , (?P<rest>(?:when|how|where|what|which|does|is|at)\b.*)\b(?:it|they)\b(?P<end>.*)$"
-)
-_A_TURN = re.compile(
-    r" (?:for|to make|to complete|to do|to finish|makes?|complete|do) (?P<n>one|a|each|a full|a single|one full|"
-    r"every) "
-    r"(?:turn|rotation|revolution|spin|round)\b"
-)
-_HERE = re.compile(r" (?:(?:right )?(?:in|up|over|around|out|down) )?(?:here|there)$")  # says nothing of what moves
+_COUNT = r"(?:and )?(?:(?:by|through|for|with|at) )?(?:how many|what number of|(?:what is )?the number of)"
+_SPREAD = re.compile(rf"^{_COUNT} (?P<n>{_COUNTED}) (?P<rest>.+) (?P<per>{_EACH} {_SECOND})$")
+_HOW_MANY = re.compile(rf"^{_COUNT} (?:(?P<rate>{_RATE})|(?P<far>{_LENGTH}|{_ANGLE}))(?: of)?(?= |$)(?P<rest>.*)$")
+_RATE_FIRST = re.compile(rf"^(?P<u>{_RATE}) (?:of|for)? ?(?P<rest>.+)$")
+_SPEED_LAST = re.compile(rf"^(?P<rest>.+?)(?: 's)? (?:(?:its )?(?P<kind>{pattern(_SPEED)})|(?P<unit>{_RATE}) )$")
+
+
+def _in_unit(said: str) -> tuple[str, str]:
+    """The words without the unit that an answer is wanted in, and that unit."""
+    found = _IN_UNIT.search(said)
+    if found is None or found.start() == 0:
+        return said, ""
+    rest = f"{said[: found.start()]} {said[found.end() :]}"
+    return re.sub(r" +", " ", rest).strip(" ,"), found["u"] or found["v"] or found["w"] or ""
+
+
+def _measured(said: str) -> Iterator[tuple[Frame, str]]:
+    """Questions that name what is measured by its unit: "how many cm", "fan rpm", "the ball 's average speed"."""
+    if (found := _SPREAD.match(said)) is not None:
+        yield Frame("how_fast", Happening(None), unit=f"{found['n']} {found['per']}"), found["rest"]
+    if (found := _HOW_MANY.match(said)) is not None:
+        asks: Asks = "how_fast" if found["rate"] else "how_far"
+        yield Frame(asks, Happening(None), unit=found["rate"] or found["far"]), found["rest"].strip(" ,")
+    if (found := _RATE_FIRST.match(said)) is not None:
+        yield Frame("how_fast", Happening(None), unit=found["u"]), found["rest"]
+
+
+def _speed_last(said: str, unit: str) -> Iterator[Frame]:
+    for when, rest in _timed(said):
+        bare = re.sub(r"^(?:and )?(?:what is|what was|tell me|give me|give) ", "", rest)
+        last = _SPEED_LAST.match(f"{bare} ")
+        if last is not None and not _ASKING.match(bare):
+            for what in happenings(last["rest"]):
+                said_so = last["kind"] or ""
+                own = (last["unit"] or unit or ("rpm" if "rpm" in said_so else "")).strip()
+                if what.deed is None and what.subject is not None:
+                    yield Frame("how_fast", what, when=when, unit=own, measure=_measure(said_so))
+
+
+# -- the whole question ----------------------------------------------------------------------------------------------
+
+_IT = r"(?:it|he|she|they)"
 _SAID = r"(?P<x>the [\w ]+?)"
-_SAME = tuple(  # what people say, and the same as it is asked plainly
-    (re.compile(pattern), plain)
-    for pattern, plain in (
-        (r"^(?:is )?anything moving (?:besides|except|apart from|other than|but) (?P<x>.+)$",
-         r"does anything besides \g<x> move"),
-        (r"^(?:is )?(?:there )?anything (?P<v>moving|turning|spinning|falling)\b", r"is anything \g<v>"),
-        (rf"^{_SAID} (?P<v>does|did|is|was|will) (?:it|he|she|they) (?P<rest>.+)$", r"\g<v> \g<x> \g<rest>"),
-        (rf"^(?P<t>at [\d.]+(?: s| seconds?)?) ,? ?{_SAID} (?:is|was) (?P<rest>(?:still )?\w+(?:ing|en))$",
-         r"is \g<x> \g<rest> \g<t>"),
+_PLAIN = tuple(  # what people say, and the same as it is asked plainly
+    (re.compile(said), plain)
+    for said, plain in (
+        (r"^(?:is )?(?:there )?anything (?P<e>else )?(?P<v>moving|turning|spinning|falling)\b", r"is anything "
+        r"\g<e>\g<v>"),
+        (r"^(?:is|are) there (?:still )?(?:any |some )?(?:movements?|motion)(?: in the room)?(?= |$)",
+         "does anything move"),
+        (r"^(?P<v>does|is|did) anything (?P<m>.*?)(?: (?:besides|except|apart from|other than|but)) (?P<x>.+)$",
+         r"\g<v> anything besides \g<x> \g<m>"),
+        (r"\b(?P<w>anything|something) else (?:than|but|besides|except) ", r"\g<w> besides "),
+        (rf"^{_SAID} (?P<v>does|did|is|was|will|has) {_IT} (?P<rest>.+)$", r"\g<v> \g<x> \g<rest>"),
+        (r"^(?P<x>the \w+(?: \w+)?) , (?P<rest>(?:when|how|where|what|which|does|is|at|until)\b.*)\b(?:it|"
+        r"they)\b(?P<end>.*)$",
+         r"\g<rest>\g<x>\g<end>"),
         (r"\bon the (?P<w>last|final|first) frame\b", r"in the \g<w> frame"),
         (rf"^(?:the )?(?:total |whole )?time {_SAID} is in motion$", r"how long does \g<x> move"),
         (r"^(?:the )?(?:total |whole )?(?:path|travel|way) length of (?P<x>.+)$", r"how far does \g<x> move"),
+        (r"^(?:in )?(?:what|which) state (?:is|are) (?P<x>.+?)(?: in)?(?P<t>(?: at .+)?)$", r"is \g<x> open or "
+        r"closed\g<t>"),
+        (r" (?:for|to make|to complete|to do|to finish|makes?|complete|do) (?:one|a|each|a full|a single|one "
+        r"full|every|two|three|four|"
+         r"five|ten|\d+) (?:full |whole |complete )?(?:turn|rotation|revolution|spin|round)s?\b", " turn"),
+        (r"^whether ", ""), (r"metre", "meter"), (r" , (?=in (?:order|sequence)$)", " "),
+        (r"\bon (?:the|its) (?:last|final|second) (?:stretch|leg|part|straight)\b", "after the turn"),
+        (r"\bon (?:the|its) (?:first|initial) (?:stretch|leg|part|straight)\b", "before the turn"),
+        (r"^(?:to )?where (?:is|does) (?P<x>.+?) (?:heading|head|headed|bound)(?: to| for)?(?= |$)",
+         r"which way does \g<x> move"),
+        (r"^(?P<h>(?:for )?how long .+) lasts?$", r"\g<h>"),
+        (r"^(?P<n>\w+) (?:duration|time) of (?P<x>.+)$", r"how long does the \g<n> of \g<x> take"),
+        (r"^(?P<h>how far) (?P<p>(?:out of|away from|from|off) (?:the|its) (?:\w+ ){1,3}?)(?P<rest>(?:does|do|"
+        r"did|is|has) .+)$",
+         r"\g<h> \g<rest> \g<p>"),
+        (r" (?:at|from|in) the moment (?:when|that|at which|where) ", " when "),
     )
 )  # fmt: skip
-_ASKING = re.compile(
-    r"(?:and )?(?:how|what|which|when|where|who|why|in what|in which|at what|at which|list|name|count|tell|give|"
-    r"show)\b"
+_PLAIN_SIDES = tuple(
+    re.compile(p)
+    for p in (r"^(?:when|the (?:moment|time|point)) (?:when |that |at which )?(?=\w)", r" (?:does|do|did|is|has)$")
 )
 _RANK = re.compile(
-    r"\b(?:(?:is|are|was|be|comes|goes|being) )?(?:as )?(?:the )?(?:very )?(?P<r>first|last|second|third|fourth|"
-    r"fastest|quickest|slowest|"
-    r"farthest|furthest|longest|shortest|least|earliest|latest|soonest|most)(?: (?:one|thing|object|item|of all|of "
-    r"them|time|distance|way|"
-    r"book|of the three))?(?: (?:to|that|who|which|in))?(?= |$)"
+    r"\b(?:(?:is|are|was|were|be|comes|goes|being) )?(?:as |for )?(?:the )?(?:very )?(?P<r>first|last|second|"
+    r"third|fourth|"
+    r"fastest|quickest|slowest|farthest|furthest|longest|shortest|least|earliest|latest|soonest|most)(?: (?:one|thing|"
+    r"object|item|of all|of them|time|distance|way|book|of the three))?(?P<to>(?: (?:to|that|who|which|in))?)(?= |$)"
 )
-_RANKED = {
+_RANKS = {
     "quickest": "fastest", "furthest": "farthest", "earliest": "first", "soonest": "first", "latest": "last",
     "most": "farthest", "least": "nearest", "shortest": "nearest", "longest": "farthest",
 }  # fmt: skip
-_OPTIONS = re.compile(
-    r"(?: ,| :)? ?(?:is it )?(?:to the |on the |to |its )?(?P<a>left|right|up|down|forward|forwards|backward|"
-    r"backwards|in|out|inward|inwards|outward|"
-    r"outwards|clockwise|towards me|away from me|toward me|sideways|straight)(?:wards?)? or (?:to the )?(?P<b>left|"
-    r"right|up|down|forward|"
-    r"forwards|backward|backwards|in|out|inward|inwards|outward|outwards|counter ?clockwise|anti ?clockwise|"
-    r"counterclockwise|"
-    r"anticlockwise|towards me|away from me|toward me|sideways|away|straight)(?:wards?)?$"
+_WAYS = (
+    "left|right|up|down|forwards?|backwards?|in|out|inwards?|outwards?|clockwise|counter ?clockwise|anti ?clockwise|\
+towards? (?:me|us|the viewer)|away from (?:me|us|the viewer)|sideways|straight|away"
 )
+_OPTIONS = re.compile(
+    rf"(?: ,| :)? ?(?:is it )?(?:to the |on the |to |its )?(?P<a>{_WAYS})(?:wards?)? or (?:to the "
+    rf")?(?P<b>{_WAYS})(?:wards?)?$"
+)
+_CLOCK = re.compile(r" (?P<a>counter ?clockwise|anti ?clockwise|clockwise)$")
 _STATE_WORDS = (
     r"(?:opening|closing|falling|sliding|waiting|fall|stay|move|stop|close|start|open|closed|shut|moving|still|"
-    r"standing still|at rest|running|on|off|in|out|stopped|turning|"
-    r"spinning|rolling|walking)"
+    r"standing "
+    r"still|at rest|running|on|off|in|out|stopped|turning|spinning|rolling|walking)"
 )
 _STATES_OR = re.compile(
     rf" (?P<a>{_STATE_WORDS}) or (?:is it |already |still |again |not )?(?P<b>{_STATE_WORDS}|not)(?= |$)"
 )
-_FILL = bag(
-    "do does did is are was were will would can could shall has have had be been being make makes made need needs "
-    "needed take takes taken "
-    "took taking use uses used "
-    "there which that to of for in by with then actually exactly immediately really already even also too whole here "
-    "itself again "
-    "ever just total seconds second i we you and so please , it's its own long way complete completes completed "
-    "perform performs performed happen happens spend "
-    "spends keep keeps "
-    "the a this scene about amount completely fully finally while entire"
+_SIDES_OF = tuple(  # of two happenings that a time lies between
+    re.compile(said)
+    for said in (
+        r"^(?:\w+ ){0,4}?between (?P<a>.+) and (?P<b>.+)$",
+        r"^(?:\w+ ){0,4}?from (?P<a>.+) (?:to|until|till) (?P<b>.+)$",
+        r"^(?:separates?|divides?|lies? between|are between) (?P<a>.+) (?:from|and) (?P<b>.+)$",
+        r"^(?:passe?s? |is it |goes by |go by |elapses? )?after (?P<a>.+?) (?:does|do|did|will|is|until|till|"
+        r"before) (?P<b>.+)$",
+        r"^(?:later|earlier|after|before|sooner) (?:does |do |did |is |will )?(?P<a>.+) than (?P<b>.+)$",
+    )
+)  # fmt: skip
+_GAP = re.compile(
+    r"^(?:and )?(?:what is )?(?:the )?(?:time|delay|gap|interval|pause)(?: difference)?(?: in seconds)? (?=between )"
 )
-_PRONOUN = bag("it they them that this he she itself one")
-_PLACES = re.compile(
-    r"^(?:right |just |directly )?(?P<at>at|on to|onto|on top of|on|in front of|into|inside|in|against|near|next to|"
-    r"beside|by|to|toward|"
-    r"towards|from|off|of|over|across|past|under|underneath|behind|with|through|between|above|close to|along|"
-    r"around)(?= )"
+_SOON = re.compile(r"^how (?:soon|much later) (?:is it )?(?=after )")
+_MUCH_LATER = re.compile(
+    r"^how (?:much|many seconds|many secs|long) (?=(?:later|earlier|sooner|after|before) .+ than )"
 )
-_STATE = re.compile(
-    r"^(?P<a>.+?) (?:(?:is|are|was|be|stay|stays|staying|remain|remains|spend|spends|lie|lies|stand|stands|sit|sits|"
-    r"rest|rests|being) )?"
-    r"(?P<r>on top of|on|inside|in front of|in contact with|touching|touch|under|underneath|next to|beside|near|"
-    r"behind|above|over|against|"
-    r"in|close to|between|left of|right of|to the left of|to the right of) (?P<b>(?:the|a|an|its|my|it) .+|it)$"
-)
-_STATES: dict[str, Kind] = {"open": "is_open", "opened": "is_open", "closed": "is_closed", "shut": "is_closed"}
-_NTH = r"(?:first|second|third|fourth|last)"
-_ORDINAL_PAIR = re.compile(rf"^(?:the )?(?P<a>{_NTH}) and (?:the )?(?P<b>{_NTH}) (?P<rest>.+)$")
-_STILL_AT = re.compile(r"\bstill (?:on|in|at|next|near|under|beside|behind|by|above|against)\b")
-_FROM_TO = re.compile(r"^(?P<x>.*?) ?(?:takes?|needs?|get|to get|to go)? ?from (?P<a>.+) to (?P<b>.+)$")
-# What a movement with a place is: "roll off the rug", "walk to the bed"; with another preposition it is not read.
-_BY = ("at", "in", "on", "next to", "near", "beside", "by", "in front of", "against", "close to")
-_WITH_PLACE: dict[str, Kind] = {
-    "to": "reach",
-    "into": "reach",
-    "against": "reach",
-    "toward": "approach",
-    "towards": "approach",
-    "from": "leave",
-    "off": "leave",
-    "over": "cross",
-    "across": "cross",
-    "through": "cross",
-    "along": "cross",
-    "past": "pass",
-    "by": "pass",
-    "onto": "enter",
-    "on to": "enter",
-    "on": "cross",
-}
-_SIDES = {"under": "under", "underneath": "under", "behind": "behind", "in front of": "in_front_of", "inside": "inside"}
-_TAKES = ("reach", "enter", "leave", "cross", "pass", "approach", "recede")
 
 
 @lru_cache(maxsize=4096)
 def frames(words: tuple[str, ...]) -> tuple[Frame, ...]:
     """Every way of reading the words of a question as one about a scene with time, the likeliest first."""
-    said = _HERE.sub("", " ".join(words))
-    for pattern, plain in _SAME:
-        said = pattern.sub(plain, said)
-    found = list[Frame]()
-    for frame in _frames(said):
-        if frame not in found:
-            found.append(frame)
-    return tuple(found)
+    said = time_first(" ".join(words), _ASKING)
+    for row, plain in _PLAIN:
+        said = row.sub(lambda m, plain=plain: re.sub(" +", " ", m.expand(plain)), said)  # type: ignore[misc]
+    return tuple(dict.fromkeys(_frames(said.strip(" ,"))))
 
 
 def _frames(said: str) -> Iterator[Frame]:
     if _TWO_QUESTIONS.search(said):
         return
-    said = _ANY_MOTION.sub("does anything move", said)
-    if found := _LATER.match(said):
-        for b in happenings(found["b"]):
-            a = _short(found["a"], b)
-            if a is not None and b.deed is not None:
-                yield Frame("between", a, b)
-    if found := _TOPIC.match(said):
-        said = f"{found['rest']}{found['x']}{found['end']}"
-    rest, unit = _without_unit(_A_TURN.sub(" turn", said))
-    yield from _speeds(rest, unit)
+    rest, unit = _in_unit(said)
+    yield from _between(rest, unit)
+    yield from _speed_last(rest, unit)
     if unit:
-        yield from _speeds(said, "")
+        yield from _speed_last(said, "")
     for time, plain in _timed(rest):
-        if time is not None and (found := _DOES.match(plain)) is not None:
-            inner = next(group for group in found.groups() if group)
-            for what in happenings(inner):
+        if (found := _DOES.match(plain)) is not None:
+            for what in happenings(next(group for group in found.groups() if group)):
                 yield Frame("does", what, when=time)
-    for asks, pattern in _CUES:
-        if found := pattern.match(rest):
-            groups = found.groupdict()
-            inner = next(
-                (groups[n] for n in ("rest", "doing", "to", "odd", "of", "how", "ranked") if groups.get(n)), ""
-            ).strip(" ,")
-            kind = groups.get("kind") or groups.get("kind2") or ""
-            named = groups.get("unit") or unit or ("degrees" if groups.get("angle") == "angle" else "")
-            start = Frame(asks, Happening(None), unit=named, measure=_measure(kind))
-            if groups.get("near"):
-                start = replace(start, measure="nearest")
-            if groups.get("later") or groups.get("more"):
-                start = replace(start, rank=groups.get("later") or groups.get("more") or "")
-            yield from _filled(start, inner)
-    if not _ASKING.match(rest) and (found := _CUE_LAST.match(rest)):
-        yield from _frames(f"{found['cue']} {found['rest']}")
+        if (found := _TIMES_ONLY.match(plain)) is not None:
+            yield Frame("order", Happening(None), when=time, rank=found["r"])
+    for start, inner in _measured(said):
+        yield from _filled(start, inner)
+    for start, inner in _cued(re.sub(r" on average$", "", rest)):
+        yield from _filled(replace(start, unit=unit or start.unit), inner)
+    if (found := _FIRST_OF.match(rest)) is not None:
+        for a, b in _pairs(found["a"], found["b"]):
+            yield Frame("order", a, b)
+    if (found := _RANKED_THING.match(rest)) is not None:
+        yield from _filled(Frame("which", Happening(None)), found["x"])
     if not unit and not _ASKING.match(said):
         yield from _filled(Frame("yesno", Happening(None)), rest)
-
-
-def _speeds(said: str, unit: str) -> Iterator[Frame]:
-    """A speed that is named last: "the ball 's average speed", "fan rpm"."""
-    for when, rest in _timed(said):
-        bare = re.sub(r"^(?:and )?(?:what is|what was|tell me|give me|give) ", "", rest)
-        last = _SPEED_LAST.match(bare)
-        if last is not None and not _ASKING.match(bare) and (thing := _thing(_stripped(last["rest"]))) is not None:
-            measure = _measure(last["kind"])
-            yield Frame("how_fast", Happening(None, thing), when=when, unit=last["unit"] or unit, measure=measure)
 
 
 def _filled(start: Frame, said: str) -> Iterator[Frame]:
     """A frame with its time and its happenings, in each way that the words allow."""
     if start.asks in ("which_way", "where", "does", "yesno") and (found := _OPTIONS.search(said)):
         asks: Asks = "which_way" if start.asks == "yesno" else start.asks
-        yield from _filled(
-            replace(start, asks=asks, options=(found["a"], found["b"])), said[: found.start()].strip(" ,")
-        )
+        options = (found["a"], found["b"])
+        yield from _filled(replace(start, asks=asks, options=options), said[: found.start()].strip(" ,"))
         return
     if start.asks == "yesno" and (found := _STATES_OR.search(said)):
         yield from _either(start, said, found)
@@ -405,6 +385,7 @@ def _either(start: Frame, said: str, found: re.Match[str]) -> Iterator[Frame]:
 
 
 def _timed(said: str) -> Iterator[tuple[When | None, str]]:
+    """Each way of dividing words into a time and the rest; the last way leaves them whole."""
     for when, rest in clauses(said):
         if when.clause and rest:
             inner, bare = without_time(rest)
@@ -419,265 +400,91 @@ def _timed(said: str) -> Iterator[tuple[When | None, str]]:
 
 
 def _told(start: Frame, said: str) -> Iterator[Frame]:
-    asks = start.asks
-    if asks == "between" or (asks == "faster"):
-        for a, b in _pairs(
-            said, " or " if asks == "faster" else " than " if start.rank in ("later", "earlier") else " and "
-        ):
+    if start.asks == "faster":
+        for a, b in _pairs(*(said.split(" or ") if said.count(" or ") == 1 else ("", ""))):
             yield replace(start, what=a, other=b)
         return
-    if asks == "yesno" and start.when is not None and start.when.conj in ("before", "after"):
-        yield from _compared(start, said)
-    if asks in ("which", "when", "yesno", "order", "how_fast", "how_far", "how_many", "how_long", "does") and (
-        found := _RANK.search(said)
-    ):
-        word = _RANKED.get(found["r"], found["r"])
-        plain = re.sub(r" +", " ", f"{said[: found.start()]} {said[found.end() :]}").strip(" ,")
+    if start.asks == "yesno" and start.when is not None and start.when.conj in ("before", "after"):
+        for what, other in _pairs(said, start.when.clause):
+            if what.deed is not None and (what.deed.at_once or what.deed.kind in _COMPARED or what.deed == other.deed):
+                yield replace(start, what=what, other=other, when=None, rank=start.when.conj)
+    if start.asks == "yesno" and (found := _CLOCK.search(said)) is not None:
+        for what in happenings(said[: found.start()]):
+            if what.deed is not None and what.deed.kind == "turn":  # as seen from above
+                way = "right" if found["a"] == "clockwise" else "left"
+                yield replace(start, what=replace(what, deed=replace(what.deed, way=way)))
+    lasts = start.asks == "how_long" and re.search(r"(?<!the) last$", said)
+    if start.asks not in ("where", "which_way", "faster") and not lasts and (ranked := _ranked(said)) is not None:
+        rank, plain = ranked
         for what in happenings(plain):
-            yield replace(start, what=what, rank=word)
+            yield replace(start, what=what, rank=rank)
+    again = "again" if start.asks in ("when", "yesno") and "again" in said.split() else ""
     for what in happenings(said):
-        yield replace(start, what=what)
+        if start.asks != "which" or what.deed is None or what.subject is None or not said.startswith(what.deed.verb):
+            yield replace(start, what=what, rank=start.rank or again)  # "who opens the door" is none that the door does
 
 
-def _compared(start: Frame, said: str) -> Iterator[Frame]:
-    """ "Does the red book fall before the green one": two happenings in order."""
-    assert start.when is not None
-    for what in happenings(said):
-        other = _short(start.when.clause, what)
-        if other is not None and what.deed is not None:
-            yield replace(start, what=what, other=other, when=None, rank=start.when.conj)
-
-
-def _pairs(said: str, joint: str) -> Iterator[tuple[Happening, Happening]]:
-    """Two happenings on either side of a word; the first may leave out what both say: "the red and the blue drop"."""
-    if (m := _ORDINAL_PAIR.match(said)) is not None:
-        for what in happenings(m["rest"]):
-            yield replace(what, nth=m["a"]), replace(what, nth=m["b"])
-    parts = said.split(joint)
-    if (
-        len(parts) == 2
-        and (m := re.match(r"^(?:the )?(?P<c>\w+)(?P<rest>(?: \w+)*)$", parts[0])) is not None
-        and not m["rest"]
-    ):
-        for b in happenings(parts[1]):
-            colored = _thing(f"the {m['c']} thing")
-            if b.deed is not None and b.subject is not None and colored is not None and is_color_word(m["c"]):
-                yield replace(b, subject=colored.model_copy(update={"text": b.subject.text})), b
-    for i in range(1, len(parts)):
-        first, second = joint.join(parts[:i]).strip(" ,"), joint.join(parts[i:]).strip(" ,")
-        for b in happenings(second):
-            for a in happenings(first):
-                if a.deed is not None and b.deed is not None:
-                    yield a, b
-                elif a.deed is None and b.deed is not None:
-                    yield replace(a, deed=b.deed), b
-                elif a.deed is not None and b.deed is None:
-                    yield a, replace(b, deed=a.deed)
-                else:
-                    yield a, b
-
-
-def _short(said: str, like: Happening) -> Happening | None:
-    """The second happening of a comparison: in full, or a thing that does the same: "the green one (does)"."""
-    for found in happenings(re.sub(r" (?:does|do|did|is|has)$", "", said)):
-        if found.deed is not None or found.subject is not None:
-            return found if found.deed is not None else replace(found, deed=like.deed)
-    return None
-
-
-def happenings(said: str) -> Iterator[Happening]:
-    """Each way of reading words as a happening; every word must belong to it."""
-    said = re.sub(
-        r"(?<= )(?:do|does|did|will|would) it (?:take|need|require)s?(?: for| to| until| till)?(?= )", " ", f" {said} "
-    )
-    said = re.sub(r"(?: ,)* +", " ", said).strip(" ,")
-    said = re.sub(r" (?:here )?in (?:the |this )?room$", "", said)
-    found = list(said_in(said))
-    if len(found) > 1 or _STILL_AT.search(said):  # "is the fan still turning", "is it still on the desk": an adverb
-        found = [f for f in found if f[2].verb.split()[-1] != "still"]
-        said = re.sub(r"\bstill (?=(?:on|in|at|next|near|under|beside|behind|by|above|against)\b)", "", said)
-    for a, b, deed in found if len(found) == 1 else ():
-        yield from _around(deed, said[:a].strip(" ,"), said[b:].strip(" ,"))
-    if state := _STATE.match(_stripped(said, ends=False)):
-        relation = _relation(state["r"])
-        subject, other = _thing(_stripped(state["a"])), _thing(state["b"])
-        if relation and subject is not None and other is not None:
-            yield Happening(Deed("related", relation=relation, verb=state["r"]), subject, other)
-    yield from _by_noun(said)
-    if said.endswith(
-        (" on", " running", " working", " going", " switched on", " turned on", " off", " turned off", " switched off")
-    ):
-        thing = _thing(
-            _stripped(re.sub(r" (?:still )?(?:switched |turned )?(?:on|off|running|working|going)$", "", said))
-        )
-        if thing is not None:
-            yield Happening(Deed("still" if said.endswith("off") else "move", verb="on"), thing)
-    if not found and (way := _FROM_TO.match(said)) is not None:
-        goal, origin = _thing(way["b"]), _thing(way["a"])
-        if goal is not None and origin is not None:
-            yield Happening(Deed("reach", verb="reach"), _thing(_stripped(way["x"])), goal)
-    bare = _stripped(said)
-    if not bare and not found:
-        yield Happening(None)
-    elif not found and (thing := _thing(bare)) is not None:
-        yield Happening(None, thing)
-
-
-def _by_noun(said: str) -> Iterator[Happening]:
-    """A happening that a noun names: "the fall of the red book", "the blue drop", "the turn"."""
-    plain = _stripped(said)
-    if (deed := as_noun(plain)) is not None:
-        yield Happening(deed)
-        return
-    of = re.match(r"^(?P<d>(?:the |its |a )?(?:first |whole )?\w+)(?: of| by| between) (?P<x>.+)$", plain)
-    if of is not None and (deed := as_noun(of["d"])) is not None and (thing := _thing(of["x"])) is not None:
-        yield Happening(deed, thing)
-    last = re.match(r"^(?P<x>.+?)(?: 's)? (?P<d>\w+)$", plain)
-    if last is not None and (deed := as_noun(last["d"])) is not None:
-        colored = is_color_word(last["x"].split()[-1])
-        thing = _thing(last["x"]) or (_thing(f"{last['x']} thing") if colored else None)
-        if thing is not None:
-            yield Happening(deed, thing)
-
-
-def _around(deed: Deed, before: str, after: str) -> Iterator[Happening]:
-    """A deed with the things before and behind it."""
-    noun = as_noun(_stripped(before))
-    if noun is not None and not after and deed.kind in ("start", "stop"):
-        phase: Phase = "start" if deed.kind == "start" else "stop"
-        yield Happening(Deed(noun.kind, phase, verb=noun.verb))  # "when does the turn end"
-        return
-    subject = _subject(before)
-    if subject is False:
-        return
-    state = _STATES.get(deed.verb.removesuffix(" again"))
-    if state is not None and re.match(r"(?:is|are|was|were|be|stay|stays|remain|remains)\b", before):
-        deed = replace(deed, kind=state, way="")
-    away = re.match(r"^from (?P<a>.+?) (?:to|until|up to) (?P<b>.+)$", after)
-    if away is not None and (goal := _thing(away["b"])) is not None and _thing(away["a"]) is not None:
-        yield Happening(deed, subject, goal, "to")
-        return
-    place = _PLACES.match(after)
-    rest = after[place.end() :].strip() if place is not None else after
-    rest = _ends(rest)
-    at = place["at"] if place is not None and rest else ""
-    if not rest:
-        if subject is not None or not before or _stripped(before) == "":
-            yield Happening(deed, subject)
-        return
-    other = _thing(rest)
-    if other is None and subject is None and not at:
-        yield from _two_behind(deed, rest)
-    if other is None:
-        return
-    if subject is None and deed.kind not in _TAKES and not at:
-        yield Happening(deed, other)  # "when stops the fan"
-        return
-    yield from _placed(deed, subject, other, at)
-
-
-def _two_behind(deed: Deed, rest: str) -> Iterator[Happening]:
-    """ "When reaches the robot the bed?": both things behind the verb."""
-    for m in re.finditer(r" (?=(?:the|a|an|my|its) )", rest):
-        first, second = _thing(rest[: m.start()]), _thing(rest[m.end() :])
-        if first is not None and second is not None and deed.kind in _TAKES:
-            yield Happening(deed, first, second)
-
-
-def _placed(deed: Deed, subject: Query | None, other: Query, at: str) -> Iterator[Happening]:
-    """A deed with a place or a thing: what it means together with the preposition."""
-    if at in ("", "with") or deed.kind in _TAKES or deed.kind in ("land", "nearest", "farthest"):
-        yield Happening(deed, subject, other, at)
-    elif at == "by" and subject is None:
-        yield Happening(deed, other)  # "the way travelled by the drawer"
-    elif deed.kind == "move" and not deed.phase and at in _WITH_PLACE:
-        yield Happening(replace(deed, kind=_WITH_PLACE[at]), subject, other, at)
-    elif deed.kind == "move" and not deed.phase and at in _SIDES:
-        yield Happening(Deed("related", relation=_SIDES[at], verb=at), subject, other)
-    elif deed.kind == "fall" and at in ("on", "onto", "on to", "to", "into"):
-        yield Happening(replace(deed, kind="land"), subject, other, at)
-    elif deed.kind == "fall" and at in ("from", "off", "of"):
-        yield Happening(deed, subject)
-    elif deed.kind == "start" and at in ("from", "at", "next to", "near", "beside"):
-        yield Happening(deed, subject, None, at)
-    elif deed.kind == "stop" and at in _BY:
-        yield Happening(deed, subject, other, at)
-
-
-def _subject(before: str) -> Query | Literal[False] | None:
-    """The thing before a deed, None if there is none; False if the words are no thing."""
-    plain = _stripped(before)
-    if not plain:
+def _ranked(said: str) -> tuple[str, str] | None:
+    """A rank and the words without it: "which book is the first to fall"."""
+    found = _RANK.search(said)
+    if found is None:
         return None
-    thing = _thing(plain)
-    if thing is None:
-        words = plain.split()
-        if words[-1] in _PRONOUN and len(words) > 1 and (thing := _thing(" ".join(words[:-1]))) is not None:
-            return thing  # "how many things they move"
-        return False
-    return thing
-
-
-@lru_cache(maxsize=4096)
-def _thing(said: str) -> Query | None:
-    """A noun phrase; "it" is what was spoken of."""
-    said = said.strip(" ,")
-    if not said:
-        return None
-    if said in _PRONOUN:
-        return Query(last=True)
-    if is_color_word(said.removeprefix("the ")):
-        said = f"{said} thing"  # "when does red land?"
-    if said.split()[-1] in verb_words() and kinds.find(said.removeprefix("the ")) is None:
-        return None
-    one = re.sub(r" one(s?)$", r" thing\1", said)
-    found = noun_phrase.thing(tuple(one.split()))
-    if found is None and not said.startswith(("the ", "a ", "an ", "any ", "all ")):
-        found = noun_phrase.thing(("the", *one.split()))
-    return found
-
-
-def _ends(said: str) -> str:
-    """Words without those at their end that say nothing."""
-    words = said.split()
-    while words and words[-1] in _FILL:
-        words.pop()
-    return " ".join(words)
-
-
-def _stripped(said: str, ends: bool = True) -> str:
-    """Words without those at either end that say nothing; articles stay with what follows them."""
-    words = said.split()
-    while (
-        words
-        and words[0] in _FILL
-        and not (words[0] in ("the", "a", "this", "that", "its", "long", "own") and len(words) > 1)
-    ):
-        words.pop(0)
-    while ends and words and words[-1] in _FILL:
-        words.pop()
-    return " ".join(words)
-
-
-def _relation(said: str) -> str:
-    if said in ("touching", "touch", "in contact with", "against"):
-        return "touches"
-    return relation_phrases.relation(tuple(said.split())) or ""
-
-
-def _without_unit(said: str) -> tuple[str, str]:
-    """The words without the unit that an answer is wanted in, and that unit."""
-    found = _UNIT_TAIL.search(said)
-    if found is None or found.start() == 0:
-        return said, ""
     rest = f"{said[: found.start()]} {said[found.end() :]}"
-    return re.sub(r" +", " ", rest).strip(" ,"), found["u"] or found["v"] or found["w"] or ""
+    return _RANKS.get(found["r"], found["r"]), re.sub(r" +", " ", rest).strip(" ,")
 
 
-def _measure(kind: str | None) -> str:
-    words = set((kind or "").split())
-    if words & {"top", "maximum", "maximal", "max", "peak", "highest", "greatest"}:
-        return "top"
-    if words & {"angular", "rotational", "rotation", "turning", "spinning", "spin"}:
-        return "angular"
-    return "average" if words & {"avg", "average", "mean", "overall", "typical"} else ""
+# -- two happenings --------------------------------------------------------------------------------------------------
+
+
+def _between(said: str, unit: str) -> Iterator[Frame]:
+    """Times between two happenings: "how long after the green one does the blue one fall"."""
+    start = Frame("between", Happening(None), unit=unit)
+    rests = [(start, said[m.end() :]) for m in (_GAP.match(said), _MUCH_LATER.match(said)) if m is not None]
+    rests += [(start, said[m.end() :]) for m in (_SOON.match(said),) if m is not None]
+    rests += [(start, rest) for found, rest in _cued(said) if found.asks == "how_long"]
+    for frame, rest in rests:
+        for row in _SIDES_OF:
+            if (found := row.match(rest)) is not None:
+                for a, b in _pairs(found["a"], found["b"]):
+                    if a.deed is not None and b.deed is not None:
+                        yield replace(frame, what=a, other=b)
+
+
+def _pairs(first: str, second: str) -> Iterator[tuple[Happening, Happening]]:
+    """Two happenings; either may leave out what both say: "the red and the blue drop"."""
+    ordinals = re.match(r"^(?:the )?(first|second|third|fourth|last)$", first)
+    for b in _side(re.sub(r"^that\b", _noun_of(first), second)):
+        if ordinals is not None:
+            yield replace(b, nth=ordinals[1]), b
+            continue
+        colored = re.match(r"^(?:the )?(\w+)$", first)
+        named = thing(f"the {colored[1]} thing") if colored is not None and is_color_word(colored[1]) else None
+        if named is not None and b.subject is not None and b.deed is not None:
+            yield replace(b, subject=named.model_copy(update={"text": b.subject.text})), b
+        for a in _side(first):
+            if a.deed is None and a.subject is None:
+                continue
+            it = b.object is not None and b.object.last and a.object is not None  # "enters the rug" and "leaves it"
+            other = a.object if it else b.object
+            yield (
+                replace(a, deed=a.deed or b.deed, subject=a.subject or b.subject),
+                replace(b, deed=b.deed or a.deed, subject=b.subject or a.subject, object=other),
+            )
+
+
+def _noun_of(said: str) -> str:
+    return re.sub(r" of .*$", "", said)
+
+
+def _side(said: str) -> Iterator[Happening]:
+    """One of two happenings, with its place among several."""
+    for row in _PLAIN_SIDES:
+        said = row.sub("", said)
+    done = re.search(r"\b(?:has|have|had)\b", said)
+    if (ranked := _ranked(said)) is not None and ranked[0] in ("first", "second", "third", "fourth", "last"):
+        for what in happenings(re.sub(r" of$", "", ranked[1])):
+            yield replace(what, nth=ranked[0])
+    for what in happenings(said):
+        if done and what.deed is not None and not what.deed.at_once:
+            what = replace(what, deed=replace(what.deed, phase="stop"))  # "after it has opened"
+        yield what

@@ -118,7 +118,7 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
          rf"for all {NUMBER} {SECONDS}|the (?:whole|entire|full) way through)(?= |$)", _plain("always")),
         (rf"\b(?:at any (?:time|point|moment|stage)|at some (?:time|point|moment|stage)|sometimes?|ever|at one point|"
          rf"over (?:the )?time|(?:during|in|over|within) {_CLIP}|along the way|in total|altogether|overall|"
-         rf"at all|on the way|as time (?:goes (?:by|on)|passes))(?= |$)", _plain("ever")),
+         rf"at all|(?:on|along) (?:the|its|their) way|as time (?:goes (?:by|on)|passes))(?= |$)", _plain("ever")),
     )
 )  # fmt: skip
 _CONJUNCTION = re.compile(rf"(?<= )(?P<conj>{_CONJ})(?= )")
@@ -132,6 +132,24 @@ def without_time(said: str) -> tuple[When | None, str]:
             rest = f"{said[: found.start()]} {said[found.end() :]}"
             return make(found), re.sub(r"(?: ?,)* +", " ", rest.replace(" , ,", " ,")).strip(" ,")
     return None, said
+
+
+_MAIN = re.compile(r"(?:do|does|did|is|are|was|were|has|have|had|will|would|can|the)\b")
+
+
+_AT_FIRST = re.compile(rf"at {NUMBER}(?: {SECONDS})?(?= )")
+
+
+def time_first(said: str, asking: re.Pattern[str]) -> str:
+    """A question that begins with its time ("at 3 s , is it open") with the time behind the rest."""
+    for pattern in (_AT_FIRST, *(row for row, _ in _TIMES)):
+        if (found := pattern.match(said)) is not None:
+            rest = said[found.end() :].strip(" ,")
+            if rest and (asking.match(rest) or _MAIN.match(rest)):
+                return f"{rest} {found.group()}"
+    if (clause := _CLAUSE_FIRST.match(said)) is not None:
+        return f"{clause['main']} {clause['conj']} {clause['clause']}".strip(" ,")
+    return said
 
 
 def clauses(said: str) -> Iterator[tuple[When, str]]:
