@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from ....gaussians.language.query.query import Query
 from ....gaussians.motion.holding import Span, common
+from ...grammar.tagging.words import bag
 from ..answer import Answer, AnswerType, Evidence
 from ..kind import Asked, Kind, Undecided
 from ..reading.phrase_templates import templates
@@ -131,12 +132,14 @@ def kind(name: str, asks: Asks, answer: Answering) -> Kind:
 _MOTION = (
     "move", "turn", "fall", "rise", "land", "reach", "leave", "cross", "pass", "bob", "approach", "recede", "return"
 )  # fmt: skip
+NO_VERBS = bag("close on off in out open up down back wide working running active")  # states, of what stands still too
 
 
 def is_of_motion(words: tuple[str, ...]) -> bool:
     """Whether a question is about motion, whatever the scene."""
     read = frames(words)
-    return bool(read) and read[0].what.deed is not None and read[0].what.deed.kind in _MOTION
+    deed = read[0].what.deed if read else None
+    return deed is not None and deed.kind in _MOTION and deed.verb not in NO_VERBS
 
 
 def first_of(read: Sequence[Frame], asked: Asked, survey: Survey, answer: Answering) -> Answer | Undecided | None:

@@ -6,14 +6,13 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ...grammar.tagging.words import bag
 from ..kind import Asked
 from ..reading.time.deeds import Deed, said_in
 from ..reading.time.frames import Frame, frames
 from ..reading.time.happenings import Happening
 from ..reading.time.moments import When, clauses, without_time
 from ..survey import NotResolved, Survey
-from .asked import Told, Untold, window, within
+from .asked import NO_VERBS, Told, Untold, window, within
 from .bodies import Body, Timeline
 
 SAMPLES = 6  # moments at which "always" and "ever" are asked
@@ -142,12 +141,11 @@ def _readings(said: str) -> Iterator[tuple[When | None, str]]:
 
 
 _NO_MOTION = ("related", "still", "is_open", "is_closed", "is_back", "appear", "nearest", "farthest")
-_NO_VERBS = bag("close on off in out open up down back wide working running active")
 
 
 def _is_of_motion(deed: Deed) -> bool:
     """Whether a question with it asks of motion, so that one moment does not tell its answer."""
-    return deed.kind not in _NO_MOTION and deed.verb not in _NO_VERBS
+    return deed.kind not in _NO_MOTION and deed.verb not in NO_VERBS
 
 
 def _time(when: When, survey: Survey, timeline: Timeline, asked: Asked) -> float:
