@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ..gaussians.files.formats.streamed_sog import Streamed
     from ..gaussians.levels.making import Level
     from ..gaussians.scene import Scene
+    from ..gaussians.tiles.store import Tiles
 
 HELD_OUT = 8  # views that measure
 Sizes = tuple[int | None, int | None]  # levels, and most Gaussians of a chunk; None: as many as usual
@@ -59,6 +60,33 @@ def write_levels(
     total, measuring = sum(level.bytes for level in found), " and measured" if measured else ""
     head = f"{output}: {len(found)} levels, {made.tree.leaves} leaves, {total:,} bytes, written{measuring} in "
     terminal.result("\n".join([f"{head}{seconds:.1f} s", *_lines(found)]), data | {"bytes": total, "seconds": seconds})
+
+
+def write_levels_of_tiles(tiles: Tiles, output: Path, sizes: Sizes, memory: int, force: bool) -> None:
+    """Write a scene that does not fit into memory in levels, part by part, and print them; nothing is measured."""
+    from ..gaussians.files.formats import streamed_sog_writing
+    from ..gaussians.files.formats.streamed_sog import Streamed
+    from ..gaussians.levels.making import LEVELS, described
+    from ..gaussians.tiles import leveling
+
+    start = time.perf_counter()
+    levels, chunk_rows = sizes[0] or LEVELS, sizes[1] or streamed_sog_writing.CHUNK_ROWS
+    with streamed_sog_writing.replacing(output, force) as folder:
+        leaves = leveling.write_levels(tiles, folder, levels, memory, chunk_rows, terminal.progress)
+        found = described(Streamed.open(folder))
+    seconds = time.perf_counter() - start
+    terminal.clear()
+    notes = [
+        "all Gaussians of a level counted alike when they were merged, and no loss was measured: both need views of "
+        "the whole scene in memory",
+        *(["levels of detail hold no names"] if tiles.field is not None else []),
+    ]
+    for note in notes:
+        terminal.say(f"note: {note}")
+    total = sum(level.bytes for level in found)
+    data = {"path": str(output), "levels": _rows(found), "leaves": leaves, "bytes": total, "seconds": seconds}
+    head = f"{output}: {len(found)} levels, {leaves} leaves, {total:,} bytes, written in {seconds:.1f} s"
+    terminal.result("\n".join([head, *_lines(found)]), data | {"notes": notes})
 
 
 def levels_of(path: Path) -> tuple[list[str], list[dict[str, Any]]]:

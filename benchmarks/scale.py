@@ -1,4 +1,5 @@
-"""bench scale: scenes in tiles from one to a hundred million Gaussians: seconds, memory, and what an edit touches.
+"""bench scale: scenes in tiles from one to a hundred million Gaussians: seconds, memory, and what an edit touches; and
+rooms embedded by blocks.
 
 Copies of a composed room stand on a grid; one room is different, and its piano and its bicycle are the only ones. The
 files lie in a temporary folder (TMPDIR chooses the disk: 22 GB for a hundred million) and are removed.
@@ -19,12 +20,14 @@ from ..gaussians.language.field.loading import load
 from ..gaussians.render import render
 from ..gaussians.tiles.drawing import draw
 from ..gaussians.tiles.store import Tiles
+from ._scale import blocks
 from ._scale import grid as grids
 from ._scale.grid import DELETED, RECOLORED, Grid
 from ._scale.measured import Run, command, size_of
 from .harness import Metric, Point, Result
 
-PARTS = ("1M", "2M", "10M", "100M")
+EMBED = "embed"
+PARTS = ("1M", "2M", "10M", "100M", EMBED)
 SIZES = {"1M": 10**6, "2M": 2 * 10**6, "10M": 10**7, "100M": 10**8}
 QUICK = 3 * 10**5
 COMPARED = "2M"  # edited and drawn in memory too
@@ -37,9 +40,13 @@ EDITS = {"recolor": f"make the {RECOLORED} teal", "delete": f"delete the {DELETE
 
 def run(quick: bool, parts: Sequence[str] = ()) -> Result:
     """Measure every size, or some of them."""
-    sizes = {"300k": QUICK} if quick else {name: SIZES[name] for name in parts or PARTS}
+    wanted = parts or PARTS
+    sizes = {"300k": QUICK} if quick else {name: SIZES[name] for name in wanted if name != EMBED}
     metrics: list[Metric] = []
     points: list[Point] = []
+    if EMBED in wanted:
+        with tempfile.TemporaryDirectory(prefix="scenewright-scale-") as place:
+            metrics += blocks.measured(Path(place), blocks.SEEDS[:1] if quick else blocks.SEEDS)
     for name, rows in sizes.items():
         with tempfile.TemporaryDirectory(prefix="scenewright-scale-") as place:
             found, curve = _size(name, rows, Path(place), quick or name == COMPARED)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ...gaussians.camera import Camera
     from ...gaussians.files import Report
     from ...gaussians.scene import Scene
+    from ...gaussians.tiles.store import Tiles
 
 VIEWS = 4  # to measure the loss from
 VIEW_SIZE = 384  # pixels a side of the pictures that are compared
@@ -80,14 +81,17 @@ def command(
     for each time of a range; a sequence of files of the same Gaussians ('frames/*.ply' or frames/%04d.ply) becomes a
     scene with motion.
 
-    A scene in tiles is written to a .ply as a stream, without loss, if nothing else is asked for.
+    A scene in tiles is written to a .ply as a stream, without loss, if nothing else is asked for; the names of its
+    things go into a language field beside it. Where it does not fit into the memory, a .lod is written part by part.
     """
     from ...gaussians.errors import UserError
     from ...gaussians.files import writer
+    from ...gaussians.tiles import exporting
+    from ...gaussians.tiles.budget import memory as budget
     from ...gaussians.tiles.store import is_tiles
     from ..output_files import refuse_existing
     from ..sequences import is_pattern
-    from ..streaming import HELD_OUT, is_streamed, write_levels
+    from ..streaming import HELD_OUT, is_streamed, write_levels, write_levels_of_tiles
 
     if is_pattern(output):
         said = {"--sh-degree": sh_degree, "--max-gaussians": max_gaussians, "--crop": crop,
@@ -102,8 +106,11 @@ def command(
         writer(output)  # raises if the suffix belongs to no format
         _refuse_levels(output, {"--levels": levels, "--chunk": chunk})
     changed = any(value is not None for value in (sh_degree, max_gaussians, crop, crop_sphere, at_time, fps, views))
-    if is_tiles(scene) and output.suffix == ".ply" and ".compressed" not in output.suffixes and not changed:
+    if is_tiles(scene) and exporting.is_streamed(output) and not changed:
         _stream(scene, output, force)
+        return
+    if is_tiles(scene) and streamed and not changed and (tiles := _too_large(scene)) is not None:
+        write_levels_of_tiles(tiles, output, (levels, chunk), budget(), force)
         return
     if views is None:
         views = HELD_OUT if streamed else VIEWS
@@ -131,18 +138,30 @@ def command(
     terminal.result(done.text(), done.data())
 
 
+def _too_large(scene: Path) -> Tiles | None:
+    """A scene in tiles, if work on all of it does not fit into the memory."""
+    from ...gaussians.tiles import window
+    from ...gaussians.tiles.budget import memory as budget
+    from ...gaussians.tiles.store import Tiles
+
+    tiles = Tiles.open(scene)
+    return None if window.fits(tiles, len(tiles), budget()) else tiles
+
+
 def _stream(scene: Path, output: Path, force: bool) -> None:
-    """Write a scene in tiles to a .ply, tile by tile."""
-    from ...gaussians.tiles.exporting import write_ply
+    """Write a scene in tiles to a .ply, tile by tile, and the names of its things beside it."""
+    from ...gaussians.tiles.exporting import write_field, write_ply
     from ...gaussians.tiles.store import Tiles
 
     start = time.perf_counter()
     tiles, size = Tiles.open(scene), _size(scene)
     write_ply(tiles, output, force, terminal.progress)
+    field = write_field(tiles, output)
     terminal.clear()
     counts = (len(tiles), size), (len(tiles), _size(output))
     done = _Report(output, "tiles", *counts, (0.0, time.perf_counter() - start))
-    terminal.result(done.text(), done.data())
+    named = [] if field is None else [f"names: of {len(tiles.field.groups) if tiles.field else 0:,} groups, in {field}"]
+    terminal.result("\n".join([done.text(), *named]), done.data() | {"field": str(field) if field else None})
 
 
 def _load(scene: Path, fps: float | None, at_time: str | None) -> tuple[Scene, Report, int]:

@@ -65,6 +65,7 @@ def command(
     from ...gaussians.slim import Settings, slim
     from ..output_files import refuse_existing, require_folder
 
+    _require_memory(scene)
     dial = dialled(effort, started)
     target = named(output, format)
     settings = Settings(psnr, size, *_length(optimise))
@@ -77,6 +78,29 @@ def command(
     data = _data(done, loaded, scene, target, psnr) | paths | {"seconds": round(time.perf_counter() - started, 2)}
     terminal.result(_text(data), data | reported(dial))
     tell(dial)
+
+
+def _require_memory(scene: Path) -> None:
+    """Check that a scene in tiles fits into the memory: what is promised is measured in views of all of it.
+
+    Raises:
+        UserError: it does not.
+    """
+    from ...gaussians.errors import UserError
+    from ...gaussians.tiles import window
+    from ...gaussians.tiles.budget import VARIABLE, memory
+    from ...gaussians.tiles.store import Tiles, is_tiles
+
+    if not is_tiles(scene):
+        return
+    tiles = Tiles.open(scene)
+    if not window.fits(tiles, len(tiles), memory()):
+        size = window.needed(tiles, len(tiles)) / 1e9
+        raise UserError(
+            f"slim measures its promise in views of the whole scene, which takes about {size:.0f} GB of memory here: "
+            f"allow it with {VARIABLE}={size + 1:.0f}GB, slim the files before they are tiled, or write levels of "
+            f"detail part by part: scenewright convert {scene} {scene.stem}.lod"
+        )
 
 
 def _length(text: str | None) -> tuple[int | None, float | None]:

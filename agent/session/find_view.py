@@ -56,7 +56,7 @@ def _found(
 ) -> FoundView:
     from ...gaussians.viewpoints.for_groups import Sights
 
-    sights = Sights.of(session.embed())
+    sights = Sights.of(session.surroundings((*groups, *stand)))
     if stand:
         return _from_thing(sights, stand, groups, asked, size)
     if groups:

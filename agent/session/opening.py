@@ -45,6 +45,7 @@ class SessionOptions:
         harmony: fit what is put into the scene to its light, and let it cast shadows.
         dial: chooses settings of the session, or None.
         tiled: read a scene in tiles by windows and edit it where it lies; else it is read whole.
+        outline: Gaussians that are seen of a scene in tiles between instructions; None: few.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
 
@@ -72,6 +73,7 @@ class SessionOptions:
     harmony: bool = True
     dial: Dial | None = None
     tiled: bool = False
+    outline: int | None = None
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -146,14 +148,18 @@ def _on_tiles(tiles: Tiles, options: SessionOptions) -> Made:
     """
     from ...gaussians.errors import UserError
     from ...gaussians.tiles.budget import memory
-    from .tiled import TiledSession
+    from .tiled import SAMPLE, TiledSession
 
     given = {"--up": options.up, "--metres-per-unit": options.metres_per_unit, "--capture": options.capture}
     if said := [name for name, value in given.items() if value is not None]:
         raise UserError(
             f"{said[0]} is for scenes that are read whole: give it when the files are embedded, then tile them"
         )
-    return partial(TiledSession, tiles, memory()), options.encoder, tiles.state.table is not None
+    return (
+        partial(TiledSession, tiles, memory(), options.outline or SAMPLE),
+        options.encoder,
+        tiles.state.table is not None,
+    )
 
 
 def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> tuple[Scene, str | Encoder]:

@@ -61,13 +61,14 @@ class Result:
 
     def to_json(self) -> dict[str, Any]:
         """Plain data for `--json`; the plan holds its planner, prompt hash and model usage."""
+        cloud = self.scene.cloud
         return {
             "verdict": "ok",
             "text": self.text,
             "plan": self.plan.model_dump(mode="json") if self.plan is not None else None,
             "receipts": [r.model_dump(mode="json") for r in self.receipts],
             "groups": list(self.selection.groups) if self.selection is not None else [],
-            "gaussians": len(self.scene.cloud),
+            "gaussians": len(cloud) if cloud.rest is None else cloud.rest.count(cloud),
             "seconds": {stage: round(s, 4) for stage, s in self.seconds.items()},
             "dry_run": self.dry_run,
         }

@@ -656,6 +656,10 @@ class Session:
         self.embed()
         return self._asker.survey(self.scene, self.viewer, self.encoder, self.last)
 
+    def surroundings(self, groups: Sequence[int]) -> Scene:
+        """The embedded scene, with all that is around some groups; by it views of them are chosen."""
+        return self.embed()
+
     def replay(self, log: str | Path, *, session: int | str = -1, skip_failed: bool = False) -> list[Replayed]:
         """Carry out the edits of a logged session on this scene.
 

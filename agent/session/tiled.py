@@ -21,6 +21,7 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.tiles import changing, window
 from ...gaussians.tiles.store import Tiles
+from ...gaussians.world.facing import SAMPLE as FACING_ROWS
 from .history import History, State
 from .planner_client import undo_or_redo
 from .result import Result
@@ -29,11 +30,12 @@ from .session import Session
 if TYPE_CHECKING:
     from ...gaussians.language.query.explain import Explanation
     from ...planners.plan import EditPlan
+    from ...planners.questions.answer import Answer
     from ...planners.questions.survey import Survey
 
 OF_THE_TARGET = frozenset({"select", "recolor", "opacity"})  # operations that look at their target alone
 NEARBY = frozenset({"delete"})  # operations that give the same bytes in a window with what is around the target
-_SAMPLE = 1000  # rows that colours are looked up in before the window is taken
+SAMPLE = 1000
 
 
 class TiledSession(Session):
@@ -43,17 +45,23 @@ class TiledSession(Session):
     Args:
         tiles: the scene.
         memory: bytes that a window and the work on it may take.
+        rows: Gaussians that are seen of it between instructions, evenly spaced: by them views are chosen and moved, and
+            colours are looked up before a window is taken.
         options: as `Session` takes them.
 
     Attributes:
         tiles: the scene as it is now.
+        memory: as given.
     """
 
-    def __init__(self, tiles: Tiles, memory: int, **options: Any) -> None:
+    def __init__(self, tiles: Tiles, memory: int, rows: int = SAMPLE, **options: Any) -> None:
         self.tiles = tiles
-        self._memory = memory
-        self._window: window.Window | None = None
-        super().__init__(window.outline(tiles, _SAMPLE), **options)
+        self.memory = memory
+        self._rows = rows
+        self._things: Scene | None = None  # a sample of each thing, for questions
+        self._no_rows: Any = _NoRows()
+        self._outline = window.outline(tiles, rows)
+        super().__init__(self._outline, **options)
 
     def embed(self, then: str | None = None) -> Scene:
         """The scene, which must have a table of the session's encoder already.
@@ -81,34 +89,110 @@ class TiledSession(Session):
     def select(self, phrase: str | Query) -> Selection:
         """See `Session.select`."""
         query = self._planner.query(phrase)
-        self._look(self._taken((query,), ()))
+        self._look(self._taken((query,), ()).scene)
         return super().select(query)
 
     def explain(self, phrase: str | Query) -> Explanation:
         """See `Session.explain`."""
         query = self._planner.query(phrase)
-        self._look(self._taken((query,), ()))
+        self._look(self._taken((query,), ()).scene)
         return super().explain(query)
 
-    def survey(self) -> Survey:
-        """See `Session.survey`; questions may be about anything, so they need the whole scene.
+    def recall(self, text: str | None) -> None:
+        """See `Session.recall`."""
+        if text and (about := self._planner.subject(text)) is not None:
+            self._look(self._taken((about,), ()).scene)
+        super().recall(text)
+
+    def remember(self, groups: tuple[int, ...]) -> None:
+        """See `Session.remember`; groups that do not fit into the memory are not remembered."""
+        try:
+            self._look(self._taken((Query(groups=groups[:256]),), ()).scene)
+        except UserError:
+            return
+        super().remember(groups)
+
+    def regroup(self, scene: Scene) -> None:
+        """See `Session.regroup`. Names that are given to groups last until the next instruction.
 
         Raises:
-            UserError: it does not fit into the memory.
+            UserError: groups of Gaussians differ; they would have to be written.
         """
-        self._look(window.everything(self.tiles, self._memory))
+        if scene.cloud is not self.scene.cloud:
+            raise UserError(
+                "pieces and portions of things cannot be chosen in a scene in tiles; choose a whole thing by its "
+                "number, or describe what is meant by its colour or its place"
+            )
+        super().regroup(scene)
+
+    def surroundings(self, groups: Sequence[int]) -> Scene:
+        """See `Session.surroundings`: a window around the groups."""
+        if not groups:
+            return self._outline
+        return window.around(self.tiles, groups, self.memory).scene
+
+    def look_away(self) -> None:
+        """See all of the scene in outline again, and not the last window."""
+        self._look(self._outline)
+
+    @property
+    def done(self) -> tuple[str, ...]:
+        """See `Session.done`; those of earlier sessions too."""
+        head = self.tiles.head
+        return tuple(step.text for step in (*head.past, head.present) if step.text)
+
+    @property
+    def redoable(self) -> bool:
+        """See `Session.redoable`."""
+        return bool(self.tiles.head.future)
+
+    def ask(self, text: str) -> Answer:
+        """See `Session.ask`. Where the scene does not fit into the memory, what things are, where and how large is told
+        by the table of groups, and how they are turned by a sample of each; no vision model is asked.
+
+        Raises:
+            UserError: as `Session.ask`; or even the samples do not fit into the memory.
+        """
+        if window.fits(self.tiles, len(self.tiles), self.memory):
+            return super().ask(text)
+        from ...planners.questions.asking import route
+        from ...planners.questions.topic import topic
+
+        survey = self.survey()
+        given = route(text, survey, None).answer
+        if groups := tuple(id for id in topic(given, survey) if isinstance(id, int)):
+            self.remember(groups)
+        return given
+
+    def survey(self) -> Survey:
+        """See `Session.survey`: of the whole scene, or of a sample of each thing if it does not fit into the memory.
+
+        Raises:
+            UserError: not even the samples fit.
+        """
+        self.embed()
+        if window.fits(self.tiles, len(self.tiles), self.memory):
+            self._look(window.everything(self.tiles, self.memory).scene)
+            return super().survey()
+        if self._things is None:
+            self._things = window.things(self.tiles, self.memory, FACING_ROWS)
+        self._look(self._things)
         return super().survey()
 
     def save(self, path: str | Path, force: bool = False) -> None:
-        """Write the whole scene to another file.
+        """Write the whole scene to another file: a .ply tile by tile, others if it fits into the memory.
 
         Raises:
-            UserError: it does not fit into the memory, or as `Session.save`.
+            UserError: it does not fit, or as `Session.save`.
             FileError: as `Session.save`.
         """
         from ...gaussians.files import save
+        from ...gaussians.tiles.exporting import is_streamed, write_ply
 
-        save(window.everything(self.tiles, self._memory).scene, path, force=force)
+        if is_streamed(Path(path)):
+            write_ply(self.tiles, Path(path), force)
+        else:
+            save(window.everything(self.tiles, self.memory).scene, path, force=force)
 
     def undo(self) -> Result:
         """Undo the last edit of the folder.
@@ -126,16 +210,22 @@ class TiledSession(Session):
     def apply(self, plan: EditPlan, *, planned_in: float = 0.0, start: State | None = None) -> Result:
         """See `Session.apply`."""
         result = super().apply(plan, planned_in=planned_in)
-        present = self._history.present
-        self._history = History(replace(present, scene=window.outline(self.tiles, _SAMPLE)))
+        self._changed()
+        self._history = History(replace(self._history.present, scene=self._outline))
         return result
 
     def _stepped(self, kind: str, tiles: Tiles, text: str) -> Result:
         before, self.tiles = self.scene, tiles
-        after = window.outline(tiles, _SAMPLE)
-        self._history = History(State(after))
+        self._changed()
+        self._history = History(State(self._outline))
         self.question = None
-        return Result(f"{kind}: {text}", None, (), before, after, self.viewer)
+        cloud = self._outline.cloud
+        seen = cloud.replace(rest=window.Beyond(tiles, cloud.ids, cloud.group.numpy()))
+        return Result(f"{kind}: {text}", None, (), before, self._outline.replace(cloud=seen), self.viewer)
+
+    def _changed(self) -> None:
+        """See the scene as it is now."""
+        self._outline, self._things = window.outline(self.tiles, self._rows), None
 
     def _carry_out(
         self, plan: EditPlan, seconds: dict[str, float], *, dry_run: bool, start: State | None = None
@@ -144,7 +234,7 @@ class TiledSession(Session):
 
         with timed(seconds, "tiles"):
             taken = self._taken_for(plan)
-            self._look(taken)
+            self._look(taken.scene)
         result, state = super()._carry_out(plan, seconds, dry_run=dry_run)
         if not dry_run and result.scene is not taken.scene:
             with timed(seconds, "write"):
@@ -161,18 +251,17 @@ class TiledSession(Session):
         rows = len(taken.scene.cloud)
         return (f"light, shadows and what lies behind were measured in the {rows:,} Gaussians around it",)
 
-    def _look(self, taken: window.Window) -> None:
-        """Let the session see a window."""
-        self._window = taken
-        self._history.amend(replace(self._history.present, scene=taken.scene))
+    def _look(self, scene: Scene) -> None:
+        """Let the session see a part of the scene."""
+        self._history.amend(replace(self._history.present, scene=scene))
 
     def _taken_for(self, plan: EditPlan) -> window.Window:
         """The window that a plan is carried out in."""
         kinds = {op.op for op in plan.ops}
         alone = tuple(query for op in plan.ops if op.op in OF_THE_TARGET for _, query in queries(op))
         near = tuple(query for op in plan.ops if op.op not in OF_THE_TARGET for _, query in queries(op))
-        if not kinds <= OF_THE_TARGET | NEARBY and window.fits(self.tiles, len(self.tiles), self._memory):
-            return window.everything(self.tiles, self._memory)
+        if not kinds <= OF_THE_TARGET | NEARBY and window.fits(self.tiles, len(self.tiles), self.memory):
+            return window.everything(self.tiles, self.memory)
         return self._taken(alone, near)
 
     def _taken(self, alone: Sequence[Query], near: Sequence[Query]) -> window.Window:
@@ -184,12 +273,12 @@ class TiledSession(Session):
         self.embed()
         own, middle = ({g for query in asked for g in self._groups(query)} for asked in (alone, near))
         if not own | middle or any(_is_of_all(query) for query in (*alone, *near)):
-            if not own | middle and not window.fits(self.tiles, len(self.tiles), self._memory):
-                return window.of_groups(self.tiles, (), self._memory)  # the table alone says that nothing is there
-            return window.everything(self.tiles, self._memory)
+            if not own | middle and not window.fits(self.tiles, len(self.tiles), self.memory):
+                return window.of_groups(self.tiles, (), self.memory)  # the table alone says that nothing is there
+            return window.everything(self.tiles, self.memory)
         if not near:
-            return window.of_groups(self.tiles, own, self._memory)
-        return window.around(self.tiles, middle, self._memory, own)
+            return window.of_groups(self.tiles, own, self.memory)
+        return window.around(self.tiles, middle, self.memory, own)
 
     def _groups(self, query: Query) -> set[int]:
         """The groups that a query may mean, by the table and a few Gaussians; perhaps more than it does."""
@@ -202,9 +291,9 @@ class TiledSession(Session):
             }
         )  # fmt: skip
         try:
-            return self._named_by(query, self.scene.replace(cloud=_NoRows()))
+            return self._named_by(query, self._outline.replace(cloud=self._no_rows))
         except _RowsNeeded:  # colours that the table does not confirm are looked up in all things of the name
-            return self._named_by(query, self.scene) | self._named_by(plain, self.scene)
+            return self._named_by(query, self._outline) | self._named_by(plain, self._outline)
 
     def _named_by(self, query: Query, scene: Scene) -> set[int]:
         """The groups that a query means in a scene, and those that it is not sure about."""

@@ -174,8 +174,7 @@ class Chat:
         from ...gaussians.viewpoints.coverage import fit_camera
         from ..pictures.scene_pictures import camera_showing, spotlight
 
-        columns, rows = _extent()
-        width, height = 4 * columns, 4 * round(columns * 2 / 3)
+        columns, rows, width, height = picture_size()
         if doubted is None:
             camera = fit_camera(self.session.viewer, width, height)
             image = render(at(self.session.scene, self.session.time).cloud, camera).to_uint8()
@@ -204,6 +203,12 @@ class Chat:
         language = self.session.scene.language
         labels = {g.label for g in language.groups if g.label and g.count} if language else set()
         return sorted({*OPS, *labels})
+
+
+def picture_size() -> tuple[int, int, int, int]:
+    """Columns and rows of a picture of the scene, and its width and height in pixels before it is drawn."""
+    columns, rows = _extent()
+    return columns, rows, 4 * columns, 4 * round(columns * 2 / 3)
 
 
 def _extent() -> tuple[int, int]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,7 +20,8 @@ from ..cloud import GaussianCloud
 from ..errors import FileError, UserError
 from ..files.atomic import writing
 from ..files.formats import comments
-from ..scene import Scene
+from ..language.field.language_field import LanguageField
+from ..scene import Frame, Scene
 from . import files, tables
 from .locking import locked
 from .making import written
@@ -68,17 +70,53 @@ def change(window: Window, after: Scene, text: str) -> Tiles:
         if head.present != tiles.head.present:
             raise FileError(f"{tiles.folder} was changed by another program meanwhile; give the instruction again")
         _swept(tiles.folder, head)
-        state = _changed(window, after, head.written)
-        stored = files.write(
-            tiles.folder / STATES, f"{head.written}.json", state.model_dump_json(exclude_defaults=True).encode()
-        )
-        for folder in (TILES, TABLES, STATES):
-            files.sync(tiles.folder / folder)
-        past = (*head.past, head.present)[-KEPT:]
-        head = Head(past=past, present=Step(state=stored, text=text), written=head.written + 1)
-        _switch(tiles.folder, head)
-        _swept(tiles.folder, head)
+        return _committed(tiles, head, _changed(window, after, head.written), text)
+
+
+def _committed(tiles: Tiles, head: Head, state: State, text: str) -> Tiles:
+    """The scene in a new state, whose files are written, after `head`; the folder has it when this returns."""
+    stored = files.write(
+        tiles.folder / STATES, f"{head.written}.json", state.model_dump_json(exclude_defaults=True).encode()
+    )
+    for folder in (TILES, TABLES, STATES):
+        files.sync(tiles.folder / folder)
+    past = (*head.past, head.present)[-KEPT:]
+    head = Head(past=past, present=Step(state=stored, text=text), written=head.written + 1)
+    _switch(tiles.folder, head)
+    _swept(tiles.folder, head)
     return Tiles(tiles.folder, head, state)
+
+
+def regroup(
+    tiles: Tiles,
+    columns: Iterable[NDArray[np.int32]],
+    table: Callable[[], LanguageField],
+    frame: Frame,
+    text: str,
+) -> Tiles:
+    """The scene with other groups; nothing else of its Gaussians changes. The caller has the lock.
+
+    Args:
+        columns: of each tile, the group of each of its rows.
+        table: of the whole scene; called after the last column.
+        text: what was done, for the history.
+
+    Raises:
+        FileError: a file cannot be written; the scene is then as it was.
+    """
+    head = read_head(tiles.folder)
+    _swept(tiles.folder, head)
+    number, new = head.written, []
+    for k, (tile, column) in enumerate(zip(tiles.state.tiles, columns, strict=True)):
+        stored = files.write(tiles.folder / TILES, f"{k}.group.{number}", column.astype("<i4"))
+        owners = write_owners(tiles.folder, f"{k}.owners.{number}", column)
+        new.append(tile.model_copy(update={"columns": {**tile.columns, "group": stored}, "owners": owners}))
+    scene = tiles.scene(tiles.cloud(0, np.zeros(0, np.int64))).replace(frame=frame)
+    update = {
+        "tiles": tuple(new), "comments": comments.describe(scene),
+        "table": tables.write_table(table(), tiles.folder / TABLES, number, tiles.state.table),
+    }  # fmt: skip
+    return _committed(tiles, head, tiles.state.model_copy(update=update), text)
 
 
 def embed(tiles: Tiles, embedded: Scene, text: str) -> Tiles:

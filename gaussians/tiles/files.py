@@ -42,6 +42,27 @@ def write(folder: Path, name: str, content: Array | bytes) -> Stored:
     return Stored(file=name, sha256=hashlib.sha256(data).hexdigest())
 
 
+def allocated(path: Path, kind: np.dtype[Any], shape: tuple[int, ...]) -> Array:
+    """A new file as an array that can be written, with room on the disk for all of it: without, a full disk would end
+    the process (SIGBUS) when a page is written.
+
+    Raises:
+        FileError: the disk is full, or the file cannot be written.
+    """
+    size = kind.itemsize * int(np.prod(shape, dtype=np.int64))
+    try:
+        with open(path, "xb") as file:
+            if hasattr(os, "posix_fallocate") and size:
+                os.posix_fallocate(file.fileno(), 0, size)
+            else:
+                for start in range(0, size, _BLOCK):
+                    file.write(bytes(min(_BLOCK, size - start)))
+    except OSError as error:
+        told = error.strerror or str(error)
+        raise FileError(f"cannot write {size / 1e9:.1f} GB to {path.parent}: {told}; make room on the disk") from error
+    return np.memmap(path, kind, "r+", shape=shape) if size else np.zeros(shape, kind)
+
+
 def mapped(folder: Path, stored: Stored, kind: np.dtype[Any], shape: tuple[int, ...], checked: bool = True) -> Array:
     """A read-only array over a file, whose pages the system loads and drops as it likes.
 

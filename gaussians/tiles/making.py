@@ -28,7 +28,7 @@ from .locking import NAME as LOCK
 from .locking import locked
 from .records import MOST_ROWS, TILE_COLUMNS, Head, State, Step, Stored, Table, Tile, column_type, row_bytes
 from .sources import BLOCK_ROWS, Source, common_table, open_source
-from .store import HEAD, STATES, TABLES, TILES, Tiles, corner, described, is_tiles, write_owners
+from .store import HEAD, PIECES, STATES, TABLES, TILES, Tiles, corner, described, is_tiles, write_owners
 
 AIM = 800_000  # rows of a tile: edits may add some, and a sample does not divide exactly
 _SAMPLE = 1_000_000  # rows of it
@@ -120,7 +120,7 @@ def make(
 
 def _ours(path: Path) -> bool:
     """Whether a file of a folder is of those that are written here."""
-    return str(path) in (HEAD, LOCK) or path.parts[0] in (STATES, TILES, TABLES)
+    return str(path) in (HEAD, LOCK) or path.parts[0] in (STATES, TILES, TABLES, PIECES)
 
 
 def _require_room(output: Path, wanted: int) -> None:
@@ -292,10 +292,11 @@ def _state(
 ) -> State:  # fmt: skip
     """The first state of a folder whose tiles are written."""
     listed = sum(source.rows for source in sources)
-    homes = np.memmap(folder / TABLES / "homes.0", "<u4", "w+", shape=(listed,))
+    homes = files.allocated(folder / TABLES / "homes.0", np.dtype("<u4"), (listed,))
     for number, tile in enumerate(tiles):
         homes[files.mapped(folder / TILES, tile.columns["ids"], np.dtype("<i8"), (tile.rows,), checked=False)] = number
-    homes.flush()
+    if isinstance(homes, np.memmap):
+        homes.flush()
     digest = hashlib.sha256()
     for start in range(0, listed, BLOCK_ROWS):
         digest.update(np.ascontiguousarray(homes[start : start + BLOCK_ROWS]).view(np.uint8).data)

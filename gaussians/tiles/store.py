@@ -32,6 +32,7 @@ from .records import TILE_COLUMNS, Head, State, Stored, Tile, column_type
 
 HEAD = "HEAD.json"
 STATES, TILES, TABLES = "states", "tiles", "tables"
+PIECES = "pieces"  # what an embedding that is not done has found so far
 SUFFIX = ".tiles"
 _MOST_INDEX = 1 << 30  # bytes
 

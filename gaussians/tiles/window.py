@@ -324,6 +324,45 @@ def outline(tiles: Tiles, rows: int = 50_000) -> Scene:
     return tiles.scene(cloud.replace(scales=cloud.scales * float(np.sqrt(step))))
 
 
+def things(tiles: Tiles, memory: int, most: int) -> Scene:
+    """The scene with a sample of each thing, for what is measured on such samples: of the n rows of an object with its
+    parts each `max(1, n // most)`-th by id, and of floor, walls and ceiling about as many; none without a group.
+
+    Raises:
+        UserError: they do not fit into the memory.
+        FileError: a tile is torn.
+    """
+    field = tiles.field
+    assert field is not None
+    whole = np.array([*(g.parent if g.parent >= 0 else g.id for g in field.groups), NO_GROUP], np.int64)
+    count, tiles_of = np.zeros(len(field.groups), np.int64), np.zeros(len(field.groups), np.int64)
+    np.add.at(count, whole[:-1], tiles.sizes(len(field.groups)))
+    numbers = range(len(tiles.state.tiles))
+    for k in numbers:
+        here = np.unique(whole[tiles.owners(k)[:, 0]])
+        tiles_of[here[here >= 0]] += 1
+    step = np.maximum(1, count // most)
+    _require(tiles, int((count // step).sum()), memory)
+    alone = (tiles_of == 1) | np.array([g.level == "structure" for g in field.groups], bool)
+    taken, divided = {}, dict[int, list[NDArray[np.int64]]]()
+    for k in numbers:
+        thing = whole[np.asarray(tiles.column(k, "group"))]
+        order = np.argsort(thing, kind="stable")
+        starts = np.searchsorted(thing[order], thing[order])
+        rank = np.empty(len(thing), np.int64)
+        rank[order] = np.arange(len(thing)) - starts
+        there = thing >= 0
+        taken[k] = np.flatnonzero(there & alone[thing] & (rank % step[thing] == 0))
+        ids = np.asarray(tiles.column(k, "ids"))
+        for g in np.unique(thing[there & ~alone[thing]]).tolist():
+            divided.setdefault(g, []).append(ids[thing == g])
+    wanted = [np.sort(np.concatenate(parts))[:: step[g]] for g, parts in divided.items()]
+    every = np.sort(np.concatenate([np.zeros(0, np.int64), *wanted]))
+    for k in tiles.holding([leaf for g in divided for leaf in field.leaves(g)]):
+        taken[k] = np.union1d(taken[k], np.flatnonzero(np.isin(tiles.column(k, "ids"), every)))
+    return _window(tiles, taken, ()).scene
+
+
 def merged(window: Window, after: LanguageField) -> LanguageField:
     """The table of the whole scene after its window's became `after`: of groups that do not lie in the window only the
     counts are taken."""

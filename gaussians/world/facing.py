@@ -26,7 +26,7 @@ LEAST_OFFSET = 0.3  # of half the depth: least offset of the upper part from the
 UPPER, LOWER = 0.3, 0.0  # heights in the box (-1 bottom, 1 top) above and below which the two parts lie
 AGAINST = 0.15  # of a typical object's size: largest gap to the wall that a thing stands at
 PARALLEL = 0.95  # cosine from which a side of the box lies along a wall
-_SAMPLE = 4096  # rows from which the shape is measured
+SAMPLE = 4096  # rows from which the shape is measured
 LONG = 1.25  # ratio of the sides from which the longer one is taken to stand along the wall
 
 
@@ -63,7 +63,7 @@ def facing_of(
 
 def _away_from_back(cloud: GaussianCloud, rows: NDArray[np.int64], group: Group) -> F64 | None:
     """The direction opposite to the offset of the upper part; None where that offset is small."""
-    taken = torch.from_numpy(np.ascontiguousarray(rows[:: max(1, len(rows) // _SAMPLE)])).to(cloud.device)
+    taken = torch.from_numpy(np.ascontiguousarray(rows[:: max(1, len(rows) // SAMPLE)])).to(cloud.device)
     extents = cloud.scales.index_select(0, taken).double().sort(dim=1).values
     weight: F64 = (extents[:, 1] * extents[:, 2] * cloud.opacities.index_select(0, taken)).cpu().numpy()
     points: F64 = cloud.means.index_select(0, taken).double().cpu().numpy()

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -67,40 +68,88 @@ def write(levels: Levels, folder: Path, chunk_rows: int = CHUNK_ROWS, progress: 
     Raises:
         UserError: some rows hold NaN or infinite values.
     """
-    tree, clouds, moved = levels.tree, levels.clouds, levels.moved
-    runs: list[dict[str, Run]] = [{} for _ in range(tree.leaves)]
-    bounds = np.empty((tree.leaves, 2, 3))
-    bounds[:] = [[np.inf], [-np.inf]]
-    names: list[str] = []
-    total, done = sum(len(cloud) for cloud in clouds), 0
-    for level, cloud in enumerate(clouds):
-        order, ends = _by_leaf(cloud, tree)
-        cloud = cloud[torch.from_numpy(order)]
-        _widen(bounds, cloud, ends)
-        for number, (first, last) in enumerate(_chunks(ends, chunk_rows)):
-            if progress is not None:
-                progress(f"writing level {level}", done / total)
-            start, end = _span(ends, first)[0], _span(ends, last)[1]
-            _write_chunk(folder / f"{level}_{number}", cloud[start:end])
-            for leaf in range(first, last + 1):
-                begin, stop = _span(ends, leaf)
-                if stop > begin:
-                    run: Run = {"file": len(names), "offset": begin - start, "count": stop - begin}
-                    if moved is not None and level > 0:
-                        run["moved"] = _rounded(moved[leaf, level])
-                    runs[leaf][str(level)] = run
-            names.append(f"{level}_{number}/{sog.META}")
-            done += end - start
-    index = {
-        "version": 1,
-        "asset": {"generator": "scenewright"},
-        "count": total,
-        "counts": [len(cloud) for cloud in clouds],
-        "lodLevels": len(clouds),
-        "filenames": names,
-        "tree": _node(tree.root, bounds, runs)[0],
-    }
-    _write_index(folder, index)
+    parts = Parts(folder, chunk_rows)
+    parts.finish(parts.add(levels, progress))
+
+
+class Parts:
+    """Writes a scene that does not fit into memory, part by part: each has levels and a tree of its own, and a tree
+    above them is given last.
+
+    Args:
+        folder: empty.
+        chunk_rows: most Gaussians of a chunk.
+    """
+
+    def __init__(self, folder: Path, chunk_rows: int = CHUNK_ROWS) -> None:
+        self._folder, self._chunk_rows = folder, chunk_rows
+        self._runs: list[dict[str, Run]] = []
+        self._bounds: list[Floats] = []
+        self._names: list[str] = []
+        self._counts: list[int] = []
+        self._chunks: list[int] = []
+
+    def add(self, levels: Levels, progress: Progress | None = None) -> Node:
+        """Write a part; the root of its tree, with leaves numbered among those of all parts.
+
+        Raises:
+            UserError: some rows hold NaN or infinite values.
+        """
+        tree, clouds, moved = levels.tree, levels.clouds, levels.moved
+        runs: list[dict[str, Run]] = [{} for _ in range(tree.leaves)]
+        bounds = np.empty((tree.leaves, 2, 3))
+        bounds[:] = [[np.inf], [-np.inf]]
+        self._counts += [0] * (len(clouds) - len(self._counts))
+        self._chunks += [0] * (len(clouds) - len(self._chunks))
+        total, done = sum(len(cloud) for cloud in clouds), 0
+        for level, cloud in enumerate(clouds):
+            order, ends = _by_leaf(cloud, tree)
+            cloud = cloud[torch.from_numpy(order)]
+            _widen(bounds, cloud, ends)
+            for number, (first, last) in enumerate(_chunks(ends, self._chunk_rows), self._chunks[level]):
+                if progress is not None:
+                    progress(f"writing level {level}", done / total)
+                start, end = _span(ends, first)[0], _span(ends, last)[1]
+                _write_chunk(self._folder / f"{level}_{number}", cloud[start:end])
+                for leaf in range(first, last + 1):
+                    begin, stop = _span(ends, leaf)
+                    if stop > begin:
+                        run: Run = {"file": len(self._names), "offset": begin - start, "count": stop - begin}
+                        if moved is not None and level > 0:
+                            run["moved"] = _rounded(moved[leaf, level])
+                        runs[leaf][str(level)] = run
+                self._names.append(f"{level}_{number}/{sog.META}")
+                self._chunks[level] = number + 1
+                done += end - start
+            self._counts[level] += len(cloud)
+        root = _shifted(tree.root, len(self._runs))
+        self._runs += runs
+        self._bounds += list(bounds)
+        return root
+
+    def finish(self, root: Node) -> None:
+        """Write the index.
+
+        Args:
+            root: of the tree over all parts.
+        """
+        index = {
+            "version": 1,
+            "asset": {"generator": "scenewright"},
+            "count": sum(self._counts),
+            "counts": self._counts,
+            "lodLevels": len(self._counts),
+            "filenames": self._names,
+            "tree": _node(root, self._bounds, self._runs)[0],
+        }
+        _write_index(self._folder, index)
+
+
+def _shifted(node: Node, first: int) -> Node:
+    """A tree whose leaves are counted from a number."""
+    if not node.children:
+        return replace(node, leaf=node.leaf + first)
+    return replace(node, children=tuple(_shifted(child, first) for child in node.children))
 
 
 def annotate(folder: Path, scene: Scene, psnr: Sequence[tuple[float, float]]) -> None:
@@ -158,7 +207,7 @@ def _write_chunk(folder: Path, cloud: GaussianCloud) -> None:
         (folder / name).write_bytes(data)
 
 
-def _node(node: Node, bounds: Floats, runs: Runs) -> tuple[dict[str, Any], Floats]:
+def _node(node: Node, bounds: Sequence[Floats], runs: Runs) -> tuple[dict[str, Any], Floats]:
     """A node of the index, with what is below it, and its box `[2, 3]`."""
     if not node.children:
         return {"bound": _bound(bounds[node.leaf]), "lods": runs[node.leaf]}, bounds[node.leaf]

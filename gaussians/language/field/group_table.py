@@ -95,11 +95,16 @@ def renamed(scene: Scene, encoder: Encoder) -> Scene:
     return replace(scene, language=named(made, encoder, scene.frame))
 
 
-def named(field: LanguageField, encoder: Encoder, frame: Frame) -> LanguageField:
-    """The field with the names of its objects from all sources; structure and names given by others stay."""
+def named(field: LanguageField, encoder: Encoder, frame: Frame, rests_known: bool = False) -> LanguageField:
+    """The field with the names of its objects from all sources; structure and names given by others stay.
+
+    Args:
+        rests_known: the groups tell already what they rest on.
+    """
     if not field.groups:
         return field
-    field = replace(field, groups=with_rests(field, frame.up_vector, frame.floor))
+    if not rests_known:
+        field = replace(field, groups=with_rests(field, frame.up_vector, frame.floor))
     if field.making is not None:
         field = replace(field, making=replace(field.making, trust=None, scale=None))
     first = _named(field, encoder, frame.metres_per_unit)

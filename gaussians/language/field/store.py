@@ -67,19 +67,28 @@ def save_field(scene: Scene, scene_path: Path, packed: bool = False) -> Path:
     """
     if scene.language is None:
         raise FileError("this scene has no language field to save; embed it first")
+    return save_table(scene.language, scene.cloud.group.cpu().contiguous(), scene.frame, scene_path, packed)
+
+
+def save_table(table: LanguageField, group: torch.Tensor, frame: Frame, scene_path: Path, packed: bool = False) -> Path:
+    """Write a field without the scene that it is of; see `save_field`.
+
+    Args:
+        group: `[N]` int32, of each row of the file `scene_path`.
+    """
     mark = fingerprint(scene_path)
     header = {
         "version": VERSION,
         "scene": mark,
-        "encoder": scene.language.encoder,
-        "groups": [asdict(g) for g in scene.language.groups],
-        "notes": scene.language.notes,
-        "making": None if scene.language.making is None else asdict(scene.language.making),
-        "frame": asdict(scene.frame),
+        "encoder": table.encoder,
+        "groups": [asdict(g) for g in table.groups],
+        "notes": table.notes,
+        "making": None if table.making is None else asdict(table.making),
+        "frame": asdict(frame),
     }
     tensors = {
-        "group": scene.cloud.group.cpu().contiguous(),
-        "embeddings": torch.from_numpy(np.ascontiguousarray(scene.language.embeddings, dtype=np.float32)),
+        "group": group,
+        "embeddings": torch.from_numpy(np.ascontiguousarray(table.embeddings, dtype=np.float32)),
     }
     if packed:
         tensors, header = _packed(tensors, header)

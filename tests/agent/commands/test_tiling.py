@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 
 from scenewright.gaussians import files
 from scenewright.gaussians.language.field.loading import load
+from scenewright.gaussians.tiles import embedding, window
 
 
 @pytest.fixture(autouse=True)
@@ -44,6 +46,11 @@ def test_a_folder_of_tiles_is_told_selected_from_drawn_and_converted(
     written = call("convert", folder, tmp_path / "back.ply", "--json")
     assert written.code == 0 and written.data["gaussians"] == 1173, written.err
     assert (tmp_path / "back.ply").read_bytes() == room.read_bytes()
+    field = tmp_path / "back.ply.field.safetensors"  # the names go along
+    assert written.data["field"] == str(field)
+    back, before = load(tmp_path / "back.ply"), load(room)
+    assert back.language is not None and before.language is not None
+    assert back.language.groups == before.language.groups and torch.equal(back.cloud.group, before.cloud.group)
     assert call("convert", folder, tmp_path / "back.splat", "--views", "0").code == 0
     assert call("convert", room, tmp_path / "other.tiles").code == 2
 
@@ -84,3 +91,18 @@ def test_what_does_not_fit_together_is_told(
     names = {"FOLDER": folder, "ROOM": room}
     answer = call(*(names.get(word, word) for word in arguments))
     assert answer.code == 2 and said in answer.err
+
+
+def test_what_needs_all_of_a_scene_that_does_not_fit_says_what_to_do(
+    call: Any, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(embedding, "BYTES", 10**7)
+    monkeypatch.setattr(window, "WORKING", 10**6)
+    answer = call("embed", folder, "--masks", "pictures")
+    assert answer.code == 2 and "when the files are embedded" in answer.err
+    answer = call("slim", folder, "-o", tmp_path / "less.sog")
+    assert answer.code == 2 and "part by part: scenewright convert" in answer.err
+    answer = call("convert", folder, tmp_path / "out.lod", "--levels", "2", "--json")
+    assert answer.code == 0 and [level["gaussians"] for level in answer.data["levels"]] == [1173, 293], answer.err
+    assert answer.data["notes"][1] == "levels of detail hold no names"
+    assert call("embed", folder, "--json").data["was_there"]

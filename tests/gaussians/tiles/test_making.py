@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -123,6 +125,21 @@ def test_a_disk_without_room_is_told_before_anything_is_written(
     monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=1000))
     with pytest.raises(FileError, match="make room"):
         make([source], tmp_path / "a.tiles")
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted([source.name, f"{source.name}.field.safetensors"])
+
+
+def test_a_disk_that_fills_up_meanwhile_is_told_and_nothing_is_left(
+    source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is mapped has its room on the disk before a page is written, as a full disk would end the process then."""
+
+    def full(handle: int, start: int, size: int) -> None:
+        assert size == 4 * len(load_file(source).cloud)
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "posix_fallocate", full)
+    with pytest.raises(FileError, match="No space left on device; make room"):
+        make([source], tmp_path / "a.tiles", most=1000)
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted([source.name, f"{source.name}.field.safetensors"])
 
 
