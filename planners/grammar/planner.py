@@ -247,9 +247,10 @@ def _lit(cleaned: str, previous: str | None) -> list[Part] | None:
 def _thing(phrase: str) -> Query | None:
     """What a phrase for things means, None if it is not understood."""
     with suppress(Refusal, UserError):
-        (op,) = _timeless(f"select {phrase}", None).ops
-        target: Query = op["target"]
-        return target
+        ops = _timeless(f"select {phrase}", None).ops
+        if len(ops) == 1:
+            target: Query = ops[0]["target"]
+            return target
     return None
 
 

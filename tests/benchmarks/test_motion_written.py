@@ -109,3 +109,21 @@ def test_what_must_stand_still_may_stand_still_for_a_while() -> None:
     still = {"kind": "pace", "thing": "cart", "start": 2.0, "stop": None, "frozen": True}
     assert _wrong(still, _Effect(before, after)) == ""
     assert "it moves between" in _wrong(still | {"start": 1.0}, _Effect(before, after))
+
+
+def test_a_thing_is_found_by_its_whole_name_and_its_place_in_a_stack() -> None:
+    size = (0.2, 0.2, 0.2)
+    scene = blocks({
+        "door frame": ((0.0, 0.0, 0.1), size), "door": ((1.0, 0.0, 0.1), size), "drawer 1": ((2.0, 0.0, 0.9), size),
+        "drawer 2": ((2.0, 0.0, 0.1), size), "drawer 3": ((2.0, 0.0, 0.5), size),
+    })  # fmt: skip
+    effect = _Effect(scene, scene)
+    assert [effect.group(n) for n in ("door", "top drawer", "middle drawer", "bottom drawer")] == [1, 2, 4, 3]
+
+
+def test_what_cannot_be_seen_is_hidden() -> None:
+    scene = driving(1, 3, 0.5)
+    clear = scene.cloud.replace(opacities=scene.cloud.opacities.masked_fill(scene.cloud.group == 1, 0.0))
+    hides = {"kind": "hide", "thing": "post", "start": None, "stop": None}
+    assert _wrong(hides, _Effect(scene, scene.replace(cloud=clear))) == ""
+    assert "there" in _wrong(hides, _Effect(scene, scene))

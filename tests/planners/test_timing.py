@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from scenewright.planners.grammar.planner import GrammarPlanner
+from scenewright.planners.grammar.timing.verbs import SENSES, forms, verbs_at
 
 PLANNER = GrammarPlanner()
 UNDERSTOOD: list[tuple[str, str, dict[str, Any]]] = [
@@ -96,3 +99,51 @@ def test_what_is_not_understood_is_refused(text: str) -> None:
 @pytest.mark.parametrize("text", TIMELESS)
 def test_words_that_only_look_like_time_mean_what_they_meant(text: str) -> None:
     assert all(op.time() is None and not op.makes_motion for op in PLANNER.plan(text).ops)
+
+
+PARAPHRASES = [json.loads(line) for line in (Path(__file__).parent / "timing.jsonl").read_text().splitlines()]
+
+
+def holds(meant: Any, seen: Any) -> bool:
+    """Whether an operation has the fields that are meant, to a thousandth."""
+    if isinstance(meant, dict):
+        return isinstance(seen, dict) and all(key in seen and holds(value, seen[key]) for key, value in meant.items())
+    return bool(seen == pytest.approx(meant, abs=1e-3) if isinstance(meant, float) else seen == meant)
+
+
+def test_one_thing_is_said_in_many_ways() -> None:
+    """Orders, wishes, statements and passives, with the words in any order; what has no meaning is refused."""
+    missed = []
+    for case in PARAPHRASES:
+        plan = PLANNER.plan(case["text"])
+        right = not plan.ok if case["op"] is None else [op.op for op in plan.ops] == [case["op"]]
+        if not right or (plan.ok and not holds(case["meant"], said(plan.ops[0]))):
+            missed.append(case["text"])
+    assert not missed
+
+
+def test_verbs_have_all_their_forms() -> None:
+    assert dict(forms("carry")) == {"carry": "plain", "carries": "s", "carrying": "ing", "carried": "past"}
+    assert dict(forms("slide")) == {"slide": "plain", "slides": "s", "sliding": "ing", "slid": "past"}
+    assert dict(forms("stop"))["stopped"] == "past" and dict(forms("go"))["goes"] == "s"
+    for sense, verbs in SENSES.items():
+        for verb in verbs.split(", "):
+            first, *rest = verb.split(" ")
+            for form, kind in forms(first):
+                found = verbs_at([form, *rest], 0)
+                assert any(v.sense == sense and v.form == kind and v.said == verb for v in found), verb
+
+
+WHOLE = (  # half of them would be another edit
+    "roll the ball to the wall and come back",
+    "the drawer should come out twice as far at 2 s",
+    "make the door creak open over 4 seconds",
+    "turn the lamp off at 2 s",
+    "have the door open one second earlier and more slowly",
+)
+
+
+@pytest.mark.parametrize("text", WHOLE)
+def test_nothing_is_half_done(text: str) -> None:
+    plan = PLANNER.plan(text)
+    assert not plan.ok and (plan.reason or plan.unknown)

@@ -33,6 +33,7 @@ from ..transform import turn
 F64 = NDArray[np.float64]
 
 _TAKES = 1.5  # seconds, where nobody says how long
+_LEAST = 0.1  # seconds
 _SAME = 1e-6
 
 
@@ -119,6 +120,8 @@ class Articulate(TargetedOp):
             start, end = self._time(spans_of(self.when, scene, selection, context)[0], motion.start, context)
             now = float(angles_at(own, np.array([start]))[0])
             goal = self._goal(most, slides, scene)
+            if self.when.stop is None and self.when.lasting is None:  # as fast as it opens by itself
+                end = start + max(_taken(own) * abs(goal - now) / abs(most), _LEAST)
             before = [t for t in own.times if t < start - _SAME]
             dense = np.unique(np.round([*before, *np.arange(before[-1], start, 1 / 30)], 9)) if before else np.zeros(0)
             dense = dense[dense < start - _SAME]
@@ -199,6 +202,14 @@ class Articulate(TargetedOp):
                     point = track.pivot + along * track.axis
                     worst = max(worst, float(np.abs(turns @ point + shifts - point).max(initial=0.0)))
         return at_most("hinge stays", worst, 1e-6, "units", f"its hinge moves by {worst:.2g} units")
+
+
+def _taken(own: Track) -> float:
+    """Seconds that a track takes from closed to as wide as it opens."""
+    assert own.angles is not None
+    widest = int(np.argmax(np.abs(own.angles)))
+    closed = np.flatnonzero(np.abs(own.angles[:widest]) < _SAME)
+    return float(own.times[widest] - own.times[closed[-1] if len(closed) else 0])
 
 
 def _told(amount: float, slides: bool, scene: Scene) -> str:

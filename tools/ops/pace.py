@@ -123,11 +123,11 @@ class Pace(TargetedOp):
 
     def _warp(self, motion: Motion, span: Span, spans: list[Span]) -> tuple[Warp, float]:
         """Which old time is shown when, and when the scene or the movement then ends."""
-        low, high = (motion.start, motion.stop) if self._whole else span
+        low, high = (motion.start, motion.stop) if self._whole or self.change == "reverse" else span
         start = spans[0][0] if spans and math.isfinite(spans[0][0]) else None
         stop = spans[0][1] if spans and math.isfinite(spans[0][1]) else None
         if self.change == "stop":
-            return self._stopped(motion, spans, high)
+            return self._stopped(motion, spans, low, high)
         if self.change == "begin":
             begin = low if start is None else start
             lasting = high - low if stop is None else stop - begin
@@ -162,13 +162,15 @@ class Pace(TargetedOp):
         gained = first + (last - first) * self.factor
         return Warp((first, last), (first, gained), 1.0, 1.0), high + last - gained
 
-    def _stopped(self, motion: Motion, spans: list[Span], high: float) -> tuple[Warp, float]:
-        """It stands still in the spans, and goes on behind each of them."""
+    def _stopped(self, motion: Motion, spans: list[Span], low: float, high: float) -> tuple[Warp, float]:
+        """It stands still in the spans, and goes on behind each of them; what stands still anyway does not get late."""
         if not spans:
             return Warp((motion.start,), (motion.start,), 0.0, 0.0), motion.stop
         new, old, late = [], [], 0.0
         for start, stop in spans:
-            first = max(start, motion.start)
+            first = max(start, low + late)
+            if stop <= first:
+                continue
             new.append(first)
             old.append(first - late)
             if math.isinf(stop):
@@ -176,6 +178,8 @@ class Pace(TargetedOp):
             late += stop - first
             new.append(stop)
             old.append(stop - late)
+        if not new:
+            return Warp((low,), (low,)), high
         return Warp(tuple(new), tuple(old), 1.0, 1.0), high + late
 
     def _turned(self, track: Track, motion: Motion, spans: list[Span]) -> tuple[Track, float]:

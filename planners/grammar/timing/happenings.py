@@ -6,14 +6,16 @@ A clause is cut out of the words of a sentence if the whole of it says that some
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from typing import Literal
 
 from ....gaussians.language.query.query import Query
+from ....gaussians.world.words import plural
 from ....tools.when import During, Part
-
-Thing = Callable[[str], Query | None]  # what a phrase for things means, None if it means none
+from . import manner as manners
+from .clauses import Clause, owner, told
+from .manner import MOTION, Manner, Thing
 
 IT = Query(last=True)
 
@@ -31,309 +33,206 @@ class Happening:
     said: str
 
 
-_WHILE = (
-    r"(?:while|whilst|as long as|so long as|whenever|during the time|for as long as|the whole time|all the time|as)"
-)
-_ONCE = (
-    r"(?:once|when|as soon as|the moment|the instant|the second|at the moment when|at the moment|"
-    r"immediately when|right when|from when|from the moment|exactly when|directly when)"
-)
-_AFTER = r"(?:(?:right |just |only |directly |immediately )?after)"
-_UNTIL = r"(?:until|till|til|up until|up to when|before|by the time|right before|just before|right until|only until)"
-_CONJUNCTION = re.compile(rf"(?:^|(?<= ))(?:only |but only |just )?(?P<word>{_ONCE}|{_WHILE}|{_AFTER}|{_UNTIL})(?= )")
-
-_PRONOUNS = ("it", "he", "she", "they", "that", "this")
-_PEOPLE = re.compile(r"^(?:i|we|you|people|guests?|everyone|someone|somebody|my .*|anyone|nobody|there)\b")
-
-_MOVE = (
-    "move|roll|walk|drive|slide|turn|spin|rotate|run|swing|fly|glide|travel|go|bounce|rise|climb|revolve|whirl|float|"
-    "come|wander|march|swivel|step|act|work|operate|play"
-)
-_FALL = "fall|drop|tumble|plunge|sink"
-_OPEN = "open|close|shut"
-_ANY = f"{_MOVE}|{_FALL}|{_OPEN}"
-_WALKING = {"run": "running", "spin": "spinning", "swing": "swinging", "drop": "dropping", "drive": "driving",
-            "slide": "sliding", "move": "moving", "rotate": "rotating", "rise": "rising", "glide": "gliding",
-            "bounce": "bouncing", "close": "closing", "shut": "shutting", "revolve": "revolving", "tumble": "tumbling",
-            "come": "coming", "plunge": "plunging", "operate": "operating", "step": "stepping"}  # fmt: skip
-
-
-def _ing(stems: str) -> str:
-    return "|".join(_WALKING.get(w, f"{w}ing") for w in stems.split("|"))
-
-
-def _third(stems: str) -> str:
-    return "|".join(f"{w}{'es' if w in ('go',) else 's'}?" for w in stems.split("|"))
-
-
-_PAST = (
-    "moved|rolled|walked|driven|drove|slid|turned|spun|rotated|swung|flown|flew|gone|went|fallen|"
-    "fell|dropped|opened|closed|"
-    "shut|landed|arrived|stopped|finished|ended|risen|come|came|bounced"
-)
-_IS = (
-    r"(?:(?:is|are|was|were|has been|have been|s)(?: still| already| now| just| really| actually)*|"
-    r"gets?|goes|stays?|remains?)"
-)
-_TO = r"(?:on to|onto|to|at|into|up to|in|on)"
-_TOUCH = (
-    r"(?:(?:has |have )?(?:touche[sd]?|touch|hits?|hit|reach(?:e[sd])?|strikes?|struck|meets?|met|"
-    r"bumps? (?:into|against)|bumped (?:into|against)|"
-    r"crash(?:es|ed)? (?:into|against)|collides? with|collided with|knocks? (?:into|against)|"
-    r"(?:arrives?|arrived|gets?|got|gotten|comes?|came|makes it|made it|runs?|rolls?|rolled|walks?|"
-    r"walked) (?:at|to|up to|against|over to|as far as)|"
-    r"lands? (?:on|in)|landed (?:on|in)|contacts?))"
-)
-_TOUCHING = r"(?:touching|in contact with|hitting|against|up against|resting against|bumping into|bumping against)"
-_LEAVE = (
-    r"(?:(?:has |have )?(?:leaves?|left|(?:is |are |gets? |got |rolls? |rolled |moves? |moved |comes? "
-    r"|came |goes |falls? |fell |fallen |drives? |walks? |steps? )"
-    r"(?:off|off of|away from|out of|down from|clear of))|is no longer (?:on|in|touching)|is off|has left|exits?)"
-)
-_ENTER = (
-    r"(?:(?:gets?|got|goes|rolls?|rolled|moves?|moved|drives?|walks?|comes?|came|slides?|steps?|runs?|"
-    r"jumps?|climbs?) (?:on to|onto|into|in)|"
-    r"enters?|entered|(?:gets?|rolls?|is) (?:on|in)|steps? on|lands? on)"
-)
-_START = (
-    r"(?:starts?|begins?|started|began|has started|has begun|sets? off|takes? off|gets? going|"
-    r"gets? moving|sets? out|start to|begin to)"
-)
-_STOP = (
-    r"(?:(?:has |have )?(?:stops?|stopped|ends?|ended|finishe[sd]|finish|halts?|halted|come(?:s)? to "
-    r"(?:a )?(?:rest|stop|halt|standstill)|came to (?:a )?(?:rest|stop|halt|standstill)|"
-    r"stands? still|stood still|is done|are done|has arrived|arrives?|arrived|comes? to rest|settles?|"
-    r"settled|lands?|landed|freezes?|rests?)"
-    r"(?: (?:moving|turning|rolling|walking|spinning|running|falling|opening|swinging|sliding|driving|"
-    r"rotating|its \w+|\w+ing))?)"
-)
-_FULLY = r"(?:fully |completely |all the way |wide |entirely |totally |right )"
-
-
 @dataclass(frozen=True)
-class _Predicate:
-    pattern: re.Pattern[str]
-    state: str
-    once: Part  # behind "when" and "once"
-    through: Part  # behind "while"
-    before: Part  # behind "until" and "before"
+class _Course:
+    """Which part of the time a state stands for, by the conjunction before it."""
+
+    once: Part  # "when", "once"
+    through: Part  # "while"
+    before: Part  # "until" and "before"
     after: Part = "after"
 
 
-def _predicates() -> Iterator[_Predicate]:
-    def made(pattern: str, state: str, once: Part, through: Part, before: Part, after: Part = "after") -> _Predicate:
-        return _Predicate(re.compile(rf"^(?P<who>.+?) (?:then )?{pattern}$"), state, once, through, before, after)
+_EVENT = _Course("from", "while", "until", "after")  # "it moves"
+_LASTS = _Course("while", "while", "until", "after")  # "it is moving"
+_BEGINS = _Course("from", "from", "until", "from")
+_ENDED = _Course("after", "after", "until_end", "after")  # "it has moved"
+_HOLDS = _Course("while", "while", "until", "from")  # "it is open"
+_LACKS = _Course("unless", "unless", "until_end", "after")  # "it is closed"
+_COMES = _Course("from", "while", "until", "from")  # "it hits the wall"
 
-    yield made(rf"{_START}(?: (?:to )?(?:{_FALL}|{_ing(_FALL)}))", "falling", "from", "from", "until", "from")
-    yield made(
-        rf"{_START}(?: (?:to )?(?:{_ANY}|{_ing(_ANY)}|its \w+))?(?: (?:to )?\w+)?",
-        "moving",
-        "from",
-        "from",
-        "until",
-        "from",
-    )
-    yield made(
-        rf"(?:{_IS} (?:{_FULLY})(?:open|opened|out)|(?:has|have) (?:{_FULLY})?(?:opened|come out))",
-        "moving",
-        "after",
-        "after",
-        "until_end",
-    )
-    yield made(rf"{_IS} open(?:ed)?(?: (?:all the way|fully|completely|wide))", "moving", "after", "after", "until_end")
-    yield made(
-        rf"(?:{_IS} (?:not closed|not shut|open|opened|ajar|out|pulled out))", "open", "while", "while", "until", "from"
-    )
-    yield made(rf"(?:{_IS} (?:not open|closed|shut))", "open", "unless", "unless", "until_end", "after")
-    yield made(
-        rf"(?:has|have|is|are|s)? ?(?:completely |finally |fully |all )*(?:{_PAST})(?: down| over| "
-        rf"away| past| by| off)?",
-        "moving",
-        "after",
-        "after",
-        "until_end",
-    )
-    yield made(rf"{_STOP}", "moving", "after", "after", "until_end")
-    yield made(rf"{_IS} (?:{_ing(_FALL)})(?: down| off.*)?", "falling", "while", "while", "until")
-    yield made(
-        rf"{_IS} (?:{_ing(_ANY)}|in motion|on the move|on its way|under way|in action|active)(?: "
-        rf"around| along| about| past| by| across .*| around .*)?",
-        "moving",
-        "while",
-        "while",
-        "until",
-    )
-    yield made(
-        rf"{_IS} (?:not (?:moving|in motion|turning|spinning|rolling|walking|rotating|running)|"
-        rf"(?:standing |completely |perfectly )*(?:still|stationary|motionless|at rest|resting|stopped|"
-        rf"idle|parked))",
-        "still",
-        "while",
-        "while",
-        "until",
-    )
-    yield made(r"(?:stands|stand|sits|lies|rests|stays|keeps) still", "still", "while", "while", "until_end")
-    yield made(rf"(?:{_third(_FALL)})(?: down| over| off.*)?", "falling", "from", "while", "until", "after")
-    yield made(
-        rf"(?:{_third(_ANY)})(?: around| along| about| again| away)?", "moving", "from", "while", "until", "after"
-    )
-
-
-def _touches() -> Iterator[_Predicate]:
-    def made(pattern: str, state: str, once: Part, through: Part, before: Part, after: Part = "after") -> _Predicate:
-        return _Predicate(
-            re.compile(rf"^(?P<who>.+?) (?:then |finally |first |has |have )?{pattern} (?P<whom>.+)$"),
-            state,
-            once,
-            through,
-            before,
-            after,
-        )
-
-    yield made(_LEAVE, "on", "after", "after", "until_end", "after")
-    yield made(rf"{_IS} {_TOUCHING}", "touches", "while", "while", "until", "after")
-    yield made(_ENTER, "on", "from", "while", "until", "from")
-    yield made(_TOUCH, "touches", "from", "while", "until", "from")
-
-
-_PHRASED = (
-    r"(?:(?:is|are|was|s|stands?|sits?|lies|rests?|stays?|remains?|rolls?|moves?|walks?|drives?|goes|"
-    r"runs?|passes|travels|slides|"
-    r"is (?:rolling|moving|walking|driving|sliding|standing|sitting|lying|going|running|resting|crossing|travelling))"
-    r"(?: still| currently| directly| right| just)*)"
+_ONCE = (
+    r"(?:once|when|as soon as|the moment|the instant|the second|at the moment when|at the moment|immediately when|"
+    r"right "
+    r"when|from when|from the moment|exactly when|directly when|each time|every time|from the time)"
 )
-_ACROSS = {
-    "on": "on top of|on|upon|over|across|along|above", "inside": "inside of|inside|within|in",
-    "under": "underneath|beneath|under|below",
-    "next_to": "next to|beside|close to|near to|near|by|alongside|at|around", "behind": "behind|in back of",
-    "in_front_of": "in front of|before", "left_of": "to the left of|left of|on the left of",
-    "right_of": "to the right of|right of|on the right of",
+_WHILE = (
+    r"(?:while|whilst|as long as|so long as|whenever|during the time|for as long as|the whole time|all the time|as|"
+    r"during|"
+    r"for the duration of|throughout|in the course of|for the time)"
+)
+_AFTER = r"(?:(?:right |just |only |directly |immediately |shortly )?(?:after|following))"
+_UNTIL = (
+    r"(?:until|till|til|untill|up until|up to when|before|by the time|right before|just before|right until|only until|"
+    r"prior to)"
+)
+_CONJUNCTION = re.compile(
+    rf"(?:^|(?<= ))(?:only |but only |just )?(?P<word>{_ONCE}|{_WHILE}|{_AFTER}|{_UNTIL})(?: that)?(?= )"
+)
+_PRONOUNS = ("it", "he", "she", "they", "that", "this")
+_PEOPLE = re.compile(r"^(?:i|we|you|people|guests?|everyone|someone|somebody|my .*|anyone|nobody|there)\b")
+_RELATIONS = {
+    "on": "on top of|on|upon|over|across|along|above|onto|on to", "inside": "inside of|inside|within|in|into",
+    "under": "underneath|beneath|under|below", "next_to": "next to|beside|close to|near to|near|by|alongside|at|around",
+    "behind": "behind|in back of", "in_front_of": "in front of|before",
 }  # fmt: skip
-
-
-@cache
-def _placed() -> tuple[_Predicate, ...]:
-    found = []
-    for state, phrases in _ACROSS.items():
-        pattern = rf"^(?P<who>.+?) {_PHRASED} (?P<no>not )?(?:{phrases}) (?P<whom>.+)$"
-        found.append(_Predicate(re.compile(pattern), state, "while", "while", "until", "from"))
-    found.append(
-        _Predicate(
-            re.compile(r"^(?P<who>.+?) (?:crosse?s|is crossing) (?P<whom>.+)$"),
-            "on",
-            "while",
-            "while",
-            "until",
-            "after",
-        )
-    )
-    return tuple(found)
-
-
-@cache
-def _alone() -> tuple[_Predicate, ...]:
-    return tuple(_predicates())
-
-
-@cache
-def _together() -> tuple[_Predicate, ...]:
-    return tuple(_touches())
+_RELATED = {said: relation for relation, phrases in _RELATIONS.items() for said in phrases.split("|")}
+_TO = ("to", "up to", "over to", "against", "as far as", "across to", "back to")
+_FULLY = re.compile(r"\b(?:fully|completely|all the way|wide|entirely|totally)\b")
+_NEXT = ("touching", "in contact with", "resting against")
 
 
 def clause_of(word: str, said: str, thing: Thing) -> During | None:
     """What a clause behind a conjunction tells of; None if the whole of it is not understood."""
     if _PEOPLE.match(said):
         return None
-    for predicate in (*_together(), *_placed(), *_alone()):
-        found = predicate.pattern.match(said)
-        if found is None:
-            continue
-        who = _who(found["who"], thing)
-        if who is None:
-            continue
-        anchors: tuple[Query, ...] = ()
-        if "whom" in found.groupdict():
-            whom = _who(_plain(found["whom"]), thing)
-            if whom is None:
+
+    def who(phrase: str) -> Query | None:
+        return _who(phrase, thing)
+
+    for clause in told(said.split(" "), who):
+        for manner in manners.read(clause.tail, who):
+            found = _state(clause, manner)
+            if found is None:
                 continue
-            anchors = (whom,)
-        part = _part(word, predicate)
-        if part is None:
-            return None
-        if found.groupdict().get("no"):
-            part = "unless" if part == "while" else "after"
-        if who.pick == "all" and who.moving:
-            who = who.model_copy(update={"text": who.text})
-        return During(state=predicate.state, anchors=anchors, of=who, part=part)
-    return _noun_event(word, said, thing)
+            state, course = found
+            anchors = (manner.whom,) if manner.whom is not None and state not in _OWN else ()
+            part = _part(word, course)
+            if clause.negated:
+                part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: ignore[assignment]
+            return During(state=state, anchors=anchors, of=clause.target, part=part)
+    return _touching(word, said, who) or _noun_event(word, said, who)
+
+
+_OWN = ("moving", "still", "falling", "turning", "open")
+
+
+def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
+    """The state that a clause tells of."""
+    sense, fields = clause.sense, manner.fields
+    ended = clause.form == "past" and bool({"has", "have", "is", "are", "was", "were", "had"} & set(clause.aux))
+    place = _RELATED.get(manner.at) if manner.whom is not None else None
+    only_place = manner.only("goal", "at", "whom")
+    if sense == "start" and manner.only("doing"):
+        return ("falling" if manner.doing == "fall" else "moving"), _BEGINS
+    if sense in ("stop", "arrive", "close") and manner.only("doing", "state") and (sense != "close" or ended):
+        return "moving", _ENDED
+    if sense in ("be", "stay", "look", "stop") and fields == {"state"}:
+        if manner.state == "open":
+            return ("moving", _ENDED) if _FULLY.search(" ".join(clause.tail)) else ("open", _HOLDS)
+        states: dict[str, tuple[str, _Course]] = {
+            "closed": ("open", _LACKS),
+            "still": ("still", _LASTS),
+            "moving": ("moving", _LASTS),
+            "off": ("moving", _ENDED),
+        }
+        return states.get(manner.state)
+    if sense == "be" and manner.only("doing") and manner.doing:
+        return ("falling" if manner.doing == "fall" else "moving"), _LASTS
+    if sense == "be" and manner.way == "down" and fields == {"way"}:
+        return "moving", _ENDED
+    if sense == "leave" and only_place and place is None and not fields:
+        return "moving", _BEGINS
+    if manner.whom is not None and only_place and sense in (*MOTION, "be") and not clause.negated:
+        if manner.at in _TO:
+            return "touches", _COMES
+        if manner.at in ("off", "out of", "away from"):
+            return "on", _ENDED
+    if place is not None and only_place and sense in ("be", "stay", *MOTION, "stop"):
+        if sense == "stop" or ended:
+            return place, _COMES
+        if manner.at in ("onto", "on to", "into"):
+            return place, _COMES
+        return place, _HOLDS
+    if (
+        sense in MOTION
+        and manner.only("way", "back", "goal", "at", "whom", "origin", "endless", "state", "degrees")
+        and not place
+    ):
+        own: Literal["falling", "moving", "turning"] = "falling" if sense == "fall" and not ended else "moving"
+        if clause.verb is not None and clause.verb.first == "turn":
+            own = "turning"
+        full = _FULLY.search(" ".join(clause.tail)) is not None and sense == "open"
+        return own, _ENDED if ended or full else _LASTS if clause.form == "ing" else _EVENT
+    return None
+
+
+_WITH_OBJECT: dict[str, tuple[str, _Course]] = {
+    "leave": ("on", _ENDED), "enter": ("on", _COMES), "cross": ("on", _LASTS), "reach": ("touches", _COMES),
+}  # fmt: skip
+
+
+def _touching(word: str, said: str, who: Thing) -> During | None:
+    """What one thing does to another: "it hits the wall", "it has left the rug", "it is touching the box"."""
+    said = re.sub(r"\bin contact with\b", "touching", said)
+    said = re.sub(r"\bno longer (?:on|in|touching|touches)\b", "leaves", said)
+    for clause in told(said.split(" "), who):
+        known = _WITH_OBJECT.get(clause.sense)
+        whom = who(" ".join(clause.tail)) if known is not None and clause.tail else None
+        if known is None or whom is None:
+            continue
+        state, course = known
+        if clause.form == "ing" and clause.sense == "reach":
+            course = _LASTS
+        part = _part(word, course)
+        if clause.negated:
+            part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: ignore[assignment]
+        return During(state=state, anchors=(whom,), of=clause.target, part=part)
+    return None
 
 
 _EVENTS = {
     "turn": "turning", "curve": "turning", "bend": "turning", "fall": "falling", "drop": "falling",
-    "movement": "moving",
-    "motion": "moving", "move": "moving", "walk": "moving", "ride": "moving", "roll": "moving", "opening": "moving",
 }  # fmt: skip
 
 
-def _noun_event(word: str, said: str, thing: Thing) -> During | None:
-    """ "after the turn", "before its fall": an event that a noun names."""
-    found = re.match(r"^(?:the|its|his|that|this|their) (?P<event>[a-z]+)(?: of (?P<who>.+))?$", said)
-    state = _EVENTS.get(found["event"]) if found is not None else None
-    if found is None or state is None:
+def _noun_event(word: str, said: str, who: Thing) -> During | None:
+    """ "after the turn", "during the fall of the book", "for the duration of the door swing"."""
+    noun = re.match(r"^(?:the|its|his|that|this|their) (?P<event>[a-z]+)$", said)
+    found = owner(said, who)
+    if found is None or found[1] not in ("event", "way"):
         return None
-    who = _who(found["who"] or "it", thing)
-    if who is None:
-        return None
+    event = noun["event"] if noun is not None else next((w for w in said.split() if w in _EVENTS), "")
+    of = IT if noun is not None else found[0]
     part: Part = "after" if re.fullmatch(_AFTER, word) else "until" if re.fullmatch(_UNTIL, word) else "while"
-    return During(state=state, of=who, part=part)
+    return During(state=_EVENTS.get(event, "moving"), of=of, part=part)
 
 
-def _part(word: str, predicate: _Predicate) -> Part | None:
+def _part(word: str, course: _Course) -> Part:
     if re.fullmatch(_UNTIL, word):
-        return predicate.before
+        return course.before
     if re.fullmatch(_AFTER, word):
-        return predicate.after
+        return course.after
     if word == "when":
-        return predicate.once
+        return course.once
     if re.fullmatch(_ONCE, word):
-        return "from" if predicate.once == "while" else predicate.once
-    return predicate.through
-
-
-_DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|all|every|each|any|both|its|his|her|their)\b")
-
-
-def _plain(said: str) -> str:
-    return re.sub(r"(?:^| )(?:again|finally|then|already|there|completely|please)$", "", said).strip()
+        return "from" if course.once == "while" else course.once
+    return course.through
 
 
 def _who(said: str, thing: Thing) -> Query | None:
-    said = re.sub(r" (?:has|have|is|are|itself|finally|then|just|both|all|also|actually)$", "", said.strip())
+    said = re.sub(
+        r" (?:itself|finally|then|just|both|all|also|actually|again|already|there|completely)$", "", said.strip()
+    )
     said = re.sub(r"^(?:only|just|exactly|right) ", "", said)
     if said in _PRONOUNS:
         return IT
     if not said or len(said.split()) > 7 or _PEOPLE.match(said):
         return None
-    first = re.match(r"^(?:the )?(?:first|last|other) (?=\w)", said)
-    if first:
-        said = f"all {_plural(said[first.end() :])}"
+    if (first := re.match(r"^(?:the )?(?:first|last|other) (?=\w)", said)) is not None:
+        noun = said[first.end() :]
+        return IT if noun == "one" else thing(f"all {noun if noun.endswith('s') else plural(noun)}")
     return thing(said)
-
-
-def _plural(noun: str) -> str:
-    return noun if noun.endswith("s") else f"{noun}s"
 
 
 def cut(said: str, thing: Thing) -> Iterator[tuple[str, Happening]]:
     """The words of a sentence without a clause that tells a time, and what it tells; the likeliest first."""
     for found in reversed(list(_CONJUNCTION.finditer(said))):
         word, start = found["word"], found.start()
-        behind = said[found.end() :].strip()
-        words = behind.split(" ")
-        ends = _ends(words, bool(said[:start].strip(" ,")))
-        for end in ends:
+        words = said[found.end() :].strip().split(" ")
+        for end in _ends(words, bool(said[:start].strip(" ,"))):
             clause = " ".join(words[:end]).strip(" ,.")
-            during = clause_of(word, clause, thing)
+            during = clause_of(word, clause, thing) if clause else None
             if during is None:
                 continue
             left, right = said[:start].strip(" ,"), " ".join(words[end:]).strip(" ,.")

@@ -41,6 +41,11 @@ class Moment:
     said: tuple[str, ...] = ()
 
     @property
+    def told(self) -> bool:
+        """Whether it says when, how long, or that it is to be slow."""
+        return self.slowly or not (self.start is None and self.stop is None and self.lasting is None)
+
+    @property
     def empty(self) -> bool:
         return self == Moment(always=self.always, said=self.said)
 
@@ -74,15 +79,15 @@ _NAME = (
     rf"(?:(?:the )?(?:very )?(?:start|beginning|outset|end|finish)(?: of (?:the |this )?(?:scene|"
     rf"{_CLIP}))?|(?:the )?middle of (?:the |this )?{_CLIP})"
 )
-_POINT = (
-    rf"(?:(?:the )?(?:t|time|second|sec|seconds) ?=? ?{_NUMBER}(?: {_UNIT})?{_MARK}|(?:the "
-    rf")?{_HEDGE}{_DURATION}{_MARK}|{_NAME})"
-)
+_STAMP = rf"(?:the )?(?:t|time|second|sec|seconds) ?=? ?{_NUMBER}(?: {_UNIT})?"
+_NUMERIC = rf"(?:(?:{_STAMP}|(?:the )?{_HEDGE}{_DURATION}){_MARK})"
+_POINT = rf"(?:{_NUMERIC}|{_NAME})"
 _BARE = rf"(?:{_POINT}|{_DIGITS}|(?:{_ONES}))"
 _TO = r"(?:to|until|till|til|and|up to|through|thru|-|through to|untill)"
 _ALWAYS = (
-    r"(?:(?:for |during |over |through )?(?:the )?(?:whole|entire|full) (?:time|clip|scene|film|video|"
-    r"animation|shot|sequence)|"
+    r"(?:(?:(?:for|during|over|through|,) (?:the )?(?:whole|entire|full) (?:clip|scene|film|video|animation|shot|"
+    r"sequence)|"
+    r"(?:for |during |over |through )?(?:the )?(?:whole|entire|full) time)|"
     r"all the time|all through|throughout(?: the (?:scene|clip|film|shot))?|always|permanently|"
     r"forever|for ever|constantly|"
     r"from (?:the )?(?:start|beginning) to (?:the )?(?:end|finish)|at all times|the whole way(?: "
@@ -150,6 +155,10 @@ def _start(moment: Moment, found: re.Match[str]) -> Moment | None:
     return None if start is None or moment.start is not None else replace(moment, start=start)
 
 
+def _at_once(moment: Moment, found: re.Match[str]) -> Moment | None:
+    return None if moment.start is not None else replace(moment, start=0.0)
+
+
 def _stop(moment: Moment, found: re.Match[str]) -> Moment | None:
     stop = _end(found["a"])
     if stop is None or stop == 0.0 or moment.stop is not None:
@@ -182,7 +191,8 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
     (rf"(?:for |during |in |over |within )?(?:the )?(?:last|final) (?P<a>{_DURATION}|second)", _last),
     (rf"(?:from|starting (?:at|from)) (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
     (rf"(?:in )?between (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
-    (rf"(?:from )?(?P<a>{_POINT}|{_DIGITS}) ?{_TO} (?P<b>{_POINT})", _range),
+    (rf"(?!an? )(?P<a>{_NUMERIC}|{_DIGITS}) ?{_TO} (?P<b>{_POINT})", _range),
+    (rf"(?P<a>t ?=? ?{_DIGITS}) ?{_TO} (?P<b>{_BARE})", _range),
     (
         rf"(?:from|starting(?: at| from)?|beginning(?: at| from)?|as of|since|as from) "
         rf"(?P<a>{_POINT})(?: (?:on|onwards?|and on))?",
@@ -203,7 +213,9 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
         rf")*(?P<a>{_POINT})(?: (?:on|onwards?))?",
         _start,
     ),
-    (rf"(?:only )?(?:until|till|til|untill|up to|up until|before|by) (?P<a>{_POINT})", _stop),
+    (rf"(?:only )?(?:until|till|til|untill|up to|up until|before|(?<!back )(?<!forward )by) (?P<a>{_POINT})", _stop),
+    (rf"(?:at|after) (?P<a>{_DIGITS})", _start),
+    (rf"(?:until|till) (?P<a>{_DIGITS})", _stop),
     (rf"(?:for|lasting) (?:the (?:next )?)?(?P<a>{_HEDGE}{_DURATION})(?: long| only)?", _holds),
     (
         rf"(?:so (?:that )?(?:it|this|that|\w+ing) (?:takes|lasts)|which takes|and take|taking|takes) "
@@ -220,6 +232,10 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
         r"(?:at|by) (?P<a>the (?:very )?(?:end|start|beginning)|halfway|half time|the middle)(?: of "
         r"it| through| point)?",
         _start,
+    ),
+    (
+        r"(?:(?:from|at|in) the (?P<a>first) (?:moment|frame|instant)|immediately|right away|straight away|instantly)",
+        _at_once,
     ),
     (r"(?P<a>halfway) (?:through|in)(?: (?:it|the (?:clip|scene|film|video|animation)))?", _start),
 )
@@ -267,11 +283,14 @@ def _fits(said: str, found: re.Match[str]) -> bool:
         re.search(r"\ba second$", text) and after not in ("", ",", ".", "and", "then", "later", "it", "while", "when")
     ):
         return False  # "at the end of the bed", "a second lamp"
+    if text in ("immediately", "right away", "straight away", "instantly"):
+        return after in ("", ",", ".", "and", "then")
     if "=" in text or re.search(rf"{_UNIT}|\b(?:t|sec|time|start|beginning|end|middle|halfway)\b", text):
         behind = said[found.end() :].strip().split(" ")[0]
         return behind not in ("chair", "one", "of") or "second" not in text
     behind = said[found.end() :].strip().split(" ")[0]
-    return text.startswith(("from", "between", "in between")) and behind in ("", ",", ".", "then", "and")
+    begins = text.startswith(("from", "between", "in between", "at ", "until ", "till ", "after "))
+    return begins and behind in ("", ",", ".", "then", "and", "instead")
 
 
 def _without(said: str, found: re.Match[str]) -> str:

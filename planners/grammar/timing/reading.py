@@ -1,7 +1,7 @@
 """Reads an instruction that says something of time, of motion, or of what moves; all others are left alone.
 
-What it says of time is cut out; the rest is a command about motion (`motions`), or a plain command of the grammar,
-whose operations get the time.
+What it says of time is cut out (`moments`, `happenings`); the rest is a command about motion (`clauses`, `manner`,
+`commands`), or a plain command of the grammar, whose operations get the time.
 """
 
 from __future__ import annotations
@@ -21,148 +21,165 @@ from ....tools.registry import parse as parse_op
 from ....tools.when import During, When
 from ..parsing import Refusal
 from ..restating.speech.frames import unframed
-from ..tagging.words import split
+from ..tagging.words import bag, split
+from ..vocabulary.nouns import is_known
 from . import happenings, moments
+from .clauses import AUXILIARIES
+from .commands import Command, Fields, commands
 from .happenings import IT, Happening
+from .manner import MOTION
 from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
-from .motions import Command, Fields, commands
+from .verbs import SENSES, any_of, has_form
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
 
-_HINTS = re.compile(
-    r"\b(?:\d+ ?s|secs?|seconds?|t ?= ?\d|while|whilst|until|till?|untill|when|whenever|once|after|"
-    r"before|as soon as|as long as|the moment|"
-    r"mov(?:e|es|ing)|still|motion|still|open|opens|close|closes|shut|spin|spins|spinning|rpm|revs?|"
-    r"faster|slower|fast|slow|speed|pause|"
-    r"freeze|stop|stops|start|starts|begin|begins|halt|backwards?|reverse|rewind|later|earlier|sooner|"
-    r"drives?|walks?|rolls?|fl(?:y|ies)|falls?|drops?|"
-    r"fade|fades|slowly|gradually|vanish(?:es)?|disappears?|appears?|halfway|half speed|delay|turning|"
-    r"rotat(?:e|es|ing)|whole (?:time|clip)|"
-    r"always|permanently|throughout|forever|keeps?|swings?|slides?|pull|push|other way|crazy|rise|"
-    r"rises|float|let|last|beginning|despawn|spawn|"
-    r"play|clip|turns?|do|does|doing|hold|from \d\S* (?:to|until|till)|between \d)\b",
-    re.IGNORECASE,
+_TIME_WORDS = re.compile(
+    r"\b(?:\d+ ?s|secs?|seconds?|t ?= ?\d|while|whilst|until|till?|untill|when|whenever|once|after|before|as soon "
+    r"as|as "
+    r"long as|the moment|during|still|motion|movement|rpm|revs?|fast|slow|fast(?:er)?|slower|pause|backwards?|later|"
+    r"earlier|"
+    r"sooner|slowly|gradually|halfway|way back|(?:half|double) speed|whole (?:time|clip)|always|permanently|throughout|"
+    r"forever|other way|crazy|let|last|beginning|clip|do|does|doing|from \d\S* (?:to|until|till)|between \d|direction|"
+    r"speed|moving|moves?)\b"
 )
-_TAIL = re.compile(
-    r" ?,? ?(?:(?:and|then|and then|after(?: that|wards)?|but|finally) ?,? ?)+(?:"
-    r"(?:it |then |the rest |everything )?(?:carr(?:y|ies) on|continues?|goes? on|resumes?|keeps? "
-    r"going|moves? on|on it goes)(?: as (?:before|usual|normal))?|"
-    r"(?:it |he |she |they |turn(?:s)? it |make it |goes |go |change(?:s)? |turn(?:s)? |switch(?:es)? "
-    r"|return(?:s)? |bring it |let it |put it |have it )*(?:back |return |again )+(?:to )?(?:normal|"
-    r"how it was|as (?:it was|before|usual)|(?:its |the )?(?:original|old|usual|own|first|previous) "
-    r"(?:colou?r|look|state|one)|what it was|before)(?: again| afterwards| after that)?|"
-    r"back(?: again)?|(?:bring|put) it back|(?:it )?(?:comes?|reappears?|appears?|returns?|shows?)(?: "
-    r"back| again| up)*|normal(?: again)?|"
-    r"(?:it |to |let it )?(?:stays?|remains?|holds?|keeps?|hold it|keep it|leave it)(?: (?:there|"
-    r"still|it|so|open|shut|closed|like that|that way|in place|put|there for good))*)$"
+_TIMELY = (
+    *MOTION, "stop", "prevent", "stay", "start", "continue", "faster", "slower", "double", "triple", "halve", "reverse",
+    "delay", "advance", "play", "fade", "off", "on", "hide", "show",
+)  # fmt: skip
+_JOINT = r"(?: ,)*(?: (?:and|then|and then|after(?: that|wards)?|but|finally|or)(?: ,)*)+ "
+_NORMAL = (
+    r"(?:normal|how it was|as (?:it was|before|usual)|(?:its |the )?(?:original|old|usual|own|first|previous) "
+    r"(?:colou?r|"
+    r"look|state|one)|what it was|before)"
+)
+_REMARKS = re.compile(  # what goes without saying behind a time: "..., then back to normal", "..., and stays there"
+    rf"(?:{_JOINT}(?:(?:it |then |the rest |everything |let it |to )*(?:carr(?:y|ies) on|continues?|goes? on|"
+    rf"resumes?|keeps? "
+    rf"going|moves? on)(?: as (?:before|usual|normal))?|(?:(?:it|he|she|they|turns?|make|goes?|changes?|"
+    rf"switch(?:es)?|returns?|"
+    rf"bring|let|put|have) )*(?:back|return|again)+ (?:to )?{_NORMAL}(?: again| afterwards| after that)?|back(?: "
+    rf"again)?|"
+    rf"(?:bring|put) it back|(?:it )?(?:comes?|reappears?|appears?|returns?|shows?)(?: back| again| up)*|normal(?: "
+    rf"again)?|"
+    rf"(?:it |to |let it |i want it )*(?:stays?|remains?|holds?|keeps?|hold|keep|leave|stand|rest|lies?|waits?|"
+    rf"stops?)(?: "
+    rf"(?:it|there|"
+    rf"still|so|open|shut|closed|like that|that way|in place|put|there for good|that))*|"
+    rf"(?:let it |it )?(?:opens?|goes?|moves?|rolls?|walks?|drives?|falls?|spins?|turns?|runs?)|"
+    rf"not (?:close|open|shut|move|fall|go|start)(?: again| any ?more)?)"
+    rf"|(?: ,)+ (?:(?:and |it )?(?:is |stays? |stand |be |keep it )?(?:still|stopped|not moving|at rest) "
+    rf"(?:before(?: that)?|"
+    rf"until then)|otherwise (?:as (?:it )?is|unchanged|normal|as (?:usual|before))|"
+    rf"if you (?:would|can|could|please|like)|back to [a-z ]+? when (?:it|the \w+) \w+(?: it)?)"
+    rf"|(?: ,)? (?:so (?:that )?|because |as )(?:i|we|you|one|people) (?!take|last).+)$"
 )
 _BACK_WHEN = re.compile(
-    r" ?,? ?(?:(?:and|then|and then|but) )*(?:(?:it |turns? |goes? |turn it |change it )*(?:back|"
-    r"again)(?: to [a-z ]+?)?|normal(?: again)?|off(?: again)?)"
-    r" (?:when|once|as soon as|after) (?:it|the \w+|that|this) (?:leaves?|stops?|is off|has left|is "
-    r"gone|ends?|does not|is past|has passed|moves? on|rolls? off)(?: it)?$"
+    r" ?,? ?(?:(?:and|then|and then|but) )*(?:(?:it |turns? |goes? |turn it |change it )*(?:back|again)(?: to "
+    r"[a-z ]+?)?|"
+    r"normal(?: again)?|off(?: again)?) (?:when|once|as soon as|after) (?:it|the \w+|that|this) (?:leaves?|stops?|"
+    r"is off|has "
+    r"left|is gone|ends?|does not|is past|has passed|moves? on|rolls? off)(?: it)?$"
 )
 _NOISE = re.compile(
-    r"(?:^| )(?:lol|haha|pls|plz|please|thanks|thank you|dear|mate|ok|okay|right|you know|cheers|"
-    r"kindly|if you can|if possible|would you|could you)(?= |$)"
+    r"(?:^| )(?:lol|haha|pls|plz|please|thanks|thank you|dear|mate|ok|okay|you know|cheers|kindly|if you can|if "
+    r"possible|"
+    r"would you mind|would you|could you|honey|bro|dude|hey|hi)(?= |$)"
 )
-_ITS = re.compile(
-    r"\bits (?=(?:on|in|under|at|near|next|behind|moving|falling|rolling|open|closed|still|turning|"
-    r"spinning|touching|walking|standing|opening|closing|driving|sliding|not|going|inside|over|off|"
-    r"running|done)\b)"
-)
-_WHO = re.compile(
-    r"\bwhile (?=(?:moving|falling|rolling|turning|spinning|walking|opening|closing|driving|sliding|"
-    r"running|standing still|rotating|on|in|under|touching)\b)"
-)
-_MOVING = (
-    (re.compile(r"\b(?:whatever|anything|everything|all|any ?thing|all things|every ?thing|the "
-                r"things?|things|stuff|all the things|all of the things|every object|all objects|the "
-                r"objects?|objects) (?:that |which )?(?:is |are |s )?(?:moves?|moving|in motion|on "
-                r"the move|not standing still|animated|not static|not still)\b(?: around| about)?"), True),
-    (re.compile(r"\b(?:whatever|anything|everything|all|all things|the things?|things|stuff|all the "
-                r"things|every object|all objects|the objects?|objects) (?:that |which )?(?:(?:is |"
-                r"are |s )?(?:standing still|stands? still|static|stationary|not moving|immobile|"
-                r"still|motionless|unmoving|at rest)|does not move|do not move|never moves?|stays? "
-                r"(?:still|put)|keeps? still)\b"), False),
-)  # fmt: skip
-_MOVING_ONE = re.compile(
-    r"\b(?P<det>the|every|all|all the|any|that|this|both|each) (?P<how>moving|still|static|stationary|"
-    r"unmoving|motionless) (?=(?P<noun>[a-z]+))"
-)
-_ASKS = re.compile(
-    r"^(?:what|where|who|why|how|which|when (?:does|do|did|is|will)|does|did|do (?:the|any|all)|is|"
-    r"are|was|were|has|have (?:the|any)|tell me)\b"
-)
-_SAME_TIME = re.compile(r" (?:at the same time|at once|simultaneously|together|all together)(?= |$)")
-_CONTRARY = re.compile(
-    r"\b(?:spin|move|turn|roll|walk|rotate|run)s? and (?:stand|stay|be|keep)s? still\b|\bopen and "
-    r"closed?\b.*\bsame time\b"
-)
-_COLORED = (
-    r"(?:turns?|goes?|becomes?|gets?|flashes|flash|shines?|glows?|is|are|be|looks?|stays?|in|painted|to|has|have)"
-)
-# What ends a name only if that was read too far.
-_VERB = re.compile(
-    r"(?: (?:turns?|flash(?:es)?|goes|go|gets?|becomes?|shines?|glows?|spins?|rotates?|walks?|rolls?|"
-    r"drives?|falls?|drops?|opens?|closes?|shuts?|"
-    r"stops?|starts?|begins?|moves?|runs?|slides?|swings?|fades?|vanish(?:es)?|disappears?|appears?|"
-    r"keeps?|stays?|comes?|stands?|flies|fly|rises?|"
-    r"sinks?|hides?|shows?|plays?|waits?|pauses?|freezes?|halts?|continues?|remains?|hit|hits|touch|"
-    r"touches|reach|reaches|red|blue|green|yellow|"
-    r"white|black|purple|pink|orange|golden|later|earlier|last|first|there|still|speed|too|late|early|"
-    r"open|closed|halfway|want|wants|need|needs)|^(?:stop|start|make|let|have|get|turn|open|close|"
-    r"play|freeze|pause|keep|hold|hide|slow|speed|spin))$"
-)
-_HIDING = (
-    r"(?:disappears?|vanish(?:es)?|be gone|is gone|are gone|despawns?|hides?|go away|goes away|"
-    r"be hidden|is hidden|be invisible|is invisible|not be (?:there|visible|seen|shown)|leaves "
-    r"the (?:scene|room)|out of sight|turn invisible|turns invisible|poofs?|is not there|gone)"
-)
-_SHOWING = (
-    r"(?:(?:only |first |just )*(?:appears?|shows? up|pops? up|is visible|be visible|be there|"
-    r"is there|spawns?|comes? into (?:view|existence)|shows?|becomes? visible|be seen|is "
-    r"seen))"
-)
-
-
-_FADES = re.compile(r"^(?:fade|dissolve) (?:out|away)\b|\b(?:fades?|dissolves?) (?:out|away)$|^fade .+ (?:out|away)$")
-_RIDDING = re.compile(r"^(?:delete|remove|take|get rid of|throw|put|move|erase|bin|save|catch)\b")
-_REMARK = re.compile(
-    r"^(?P<np>.+?) (?:is|are|looks?|seems?|opens?|starts?|moves?|goes|comes?|turns?|feels?)(?: "
-    r"\w+){0,2} (?:too|much too|way too|so|very|not|really|a bit) .+$"
-)
-
-
-_T = r"(?:an?|one|two|three|four|half an?|[\d.,]+)(?: and a half)? (?:seconds?|secs?|s)"
-_NAMED = r"(?P<x>(?:the )?[\w ]+?)"
-_SAME = tuple(  # what people say, and the same as a plain command
+_RANGE = re.compile(r"(?P<a>\d+(?:\.\d+)?) ?(?:s|secs?)? ?[-–] ?(?P<b>\d+(?:\.\d+)?) ?(?:s|secs?|seconds)\b")
+_RANKS = {"first": 1, "second": 2, "third": 3, "fourth": 4, "fifth": 5}
+_RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] = tuple(
+    # what people write, and the same in words that the readers know
     (re.compile(pattern), plain)
     for pattern, plain in (
-        (rf"^(?:start|begin|launch|kick off) {_NAMED} (?P<t>{_T}) (?P<w>later|earlier|sooner)$",
-         r"\g<x> starts \g<t> \g<w>"),
-        (rf"^{_NAMED} (?:sets? (?:off|out)|gets? going|kicks? off|takes? off) (?P<t>{_T}) (?P<w>later|earlier|sooner)$",
-         r"\g<x> starts \g<t> \g<w>"),
-        (rf"^(?:delay|postpone) {_NAMED} (?:by )?(?P<t>{_T})$", r"\g<x> starts \g<t> later"),
-        (rf"^double (?:the )?(?:speed of )?{_NAMED}(?: 's)?(?: speed)?$", r"make \g<x> twice as fast"),
-        (rf"^halve (?:the )?(?:speed of )?{_NAMED}(?: 's)?(?: speed)?$", r"make \g<x> half as fast"),
-        (rf"^{_NAMED}(?: 's)? speed (?:x|times|by) ?(?P<n>[\d.]+)$", r"make \g<x> \g<n> times as fast"),
-        (rf"^slow ?motion (?:on|for) {_NAMED}(?: ,? (?P<f>half|quarter|third) speed)?$", r"play \g<x> at \g<f> speed"),
-        (r"^(?P<a>(?:stop|start|freeze|pause|open|close) .+?) (?:earlier|sooner|later) ,? ?(?P<b>at .+)$",
-         r"\g<a> \g<b>"),
-        (r"\bsince (?P<a>[\d.]+)(?: (?:seconds?|secs?|s))? until\b", r"from \g<a> until"),
-        (r"\bbetween seconds? (?P<a>[\d.]+) and (?P<b>[\d.]+)\b", r"from \g<a> to \g<b> seconds"),
-        (r"\b(?:one|1) time in (?P<t>[\d.]+ seconds?)\b", r"once in \g<t>"),
-        (r"\bin (?:the )?direction of\b", "toward the"),
-        (r"^relocate\b", "move"),
-        (r"^reverse (?P<x>.+?) (?:anim|animation|motion|movement)$", r"reverse \g<x>"),
+        (r"(?<=\d) ?= ?", " "), (r"(?: [.!?])+$", ""), (r" ?[!?] ?", " . "), (r"^(?P<x>[\w ]+?) : ", r"\g<x> "),
+        (r"\bits (?=(?:on|in|under|at|near|next|behind|still|not|over|off|open|closed|\w+ing)\b)", "it is "),
+        (r"\b(?P<w>while|when|once|until|whenever|as long as) (?=(?:on|in|under|touching|still|standing still|open|"
+         r"closed|"
+         r"moving|(?!the|every|any)\w+ing)\b(?! (?:is|has|starts|stops)))", r"\g<w> it is "),
+        (r"\bsince (?P<a>[\d.]+)(?P<s> (?:seconds?|secs?|s))? until\b", r"from \g<a> until"),
+        (r"\b(?:between|from) seconds? (?P<a>[\d.]+) (?:and|to|until|till) (?P<b>[\d.]+)\b", r"from \g<a> to \g<b> "
+            r"seconds"),
+        (r"\bbetween the (?P<a>first|second|third|fourth|fifth) and (?:the )?(?P<b>first|second|third|fourth|fifth) "
+         r"second\b",
+         lambda m: f"from {_RANKS[m['a']]} to {_RANKS[m['b']]} seconds"),
+        (r"^(?:it (?:would|might) be (?:nice|great|good|lovely|cool) if|i (?:would )?(?:love|like) it if|i would "
+         r"like to see|"
+         r"i want to see|how about|what about) ", ""),
+        (r"^slow ?motion (?:on|for) (?P<x>.+?)(?: ,? (?P<f>half|quarter|third) speed)?$", r"play \g<x> at \g<f> speed"),
+        (r"\b(?P<w>visible|shown|seen|there) only (?=while|when|from|after|between)", r"\g<w> "),
+        (r"\b(?P<w>stop|start|freeze|pause|open|close)(?P<x> .+?)? (?:earlier|sooner|later) ,? "
+         r"?(?=at\b)", r"\g<w>\g<x> "),
+        (r"\b(?:one|1) time in\b", "once in"),
+        (r"\bto (?:the|its) right\b(?! of)", "rightwards"),  # "right" at an end is politeness
+        (r"\b(?P<a>as|so) (?:quickly|rapidly)\b", r"\g<a> fast"), (r"\b(?P<a>as|so) slowly\b", r"\g<a> slow"),
+        (r"\bmore (?:quickly|rapidly)\b", "faster"), (r"\bmore slowly\b", "slower"),
+        (r"^(?:would|will) it be (?:possible|ok|okay|great|nice|all right) (?:to|if you|if) ?", ""),
+        (r"\bsay (?=half|twice|double|\d)", ""),
+        (r"\bquarter speed\b", "a quarter of the speed"), (r"\bhalf speed\b", "half the speed"),
     )
 )  # fmt: skip
+_THINGS_ALL = (
+    r"(?:whatever|anything|everything|any thing|every thing|all of the things|all (?:the )?(?:things|objects|stuff)|"
+    r"the "
+    r"(?:things?|objects?|stuff)|things|stuff|every object|objects|all)"
+)
+_DETERMINERS = r"(?:the|every|all|all the|any|that|this|both|each)"
+_MOVES = (
+    rf"(?:is |are |s |still )*(?:{any_of(MOTION, 'plain', 's', 'ing')}|in motion|on the move|not standing still|"
+    rf"animated|not "
+    rf"static|not still)(?: around| about| down)?"
+)
+_RESTS = (
+    r"(?:(?:is |are |s )?(?:standing still|stands? still|static|stationary|not moving|immobile|still|motionless|"
+    r"unmoving|at "
+    r"rest)|does not move|do not move|never moves?|stays? (?:still|put)|keeps? still)"
+)
+_MOVING = tuple(  # "whatever moves", and "the books that fall"
+    (re.compile(rf"\b(?:{_THINGS_ALL}(?: that| which)?|(?P<np>{_DETERMINERS}(?: \w+){{1,4}}?) (?:that|which|who)) "
+                rf"{how}(?= |$)"), moving)
+    for how, moving in ((_RESTS, False), (_MOVES, True))
+)  # fmt: skip
+_MOVING_ONE = re.compile(
+    rf"\b(?P<det>{_DETERMINERS}) (?P<how>moving|still|static|stationary|unmoving|motionless) (?=(?P<noun>[a-z]+))"
+)
+_ASKS = re.compile(
+    r"^(?:what|where|who|why|how|which|when (?:does|do|did|is|will)|does|did|do (?:the|any|all)|is|are|was|were|has|"
+    r"have "
+    r"(?:the|any)|tell me)\b"
+)
+_CONTRARY = re.compile(
+    r"\b(?:spin|move|turn|roll|walk|rotate|run)s? and (?:stand|stay|be|keep)s? still\b|\bopen and closed?\b.*\bsame "
+    r"time\b"
+)
+_RIDDING = re.compile(r"^(?:delete|remove|take|get rid of|throw|put|move|erase|bin|save|catch)\b")
+_REMARK = re.compile(
+    r"^(?P<np>.+?) (?:is|are|looks?|seems?|opens?|starts?|moves?|goes|comes?|turns?|feels?)(?: \w+){0,2} (?:too|"
+    r"much too|way "
+    r"too|so|very|not|really|a bit) .+$|^(?:leave|keep|hold) (?P<kept>.+?) (?:up )?(?:on|in|at|under|over|by|there|"
+    r"where)\b.*$"
+)
+# Words that no name of a thing holds, begins with, or ends with.
+_NEVER = AUXILIARIES - bag("s 's first simply all both") | bag(
+    "let make when while until i you we instead not at by than no"
+)
+_NEVER_FIRST = bag(
+    "to in at on of for with and or up down out off from into by as so faster slower fast slow back half stop begin , "
+    "moving keep hold set please halfway between"
+)
+_NEVER_LAST = bag(
+    "to in at on of for with and or the a from into by as up down out off over back again way more much too , red blue "
+    "green yellow white black purple pink orange golden later earlier last first there still speed late early open "
+    "closed "
+    "shut halfway want 's s wants slowly around round about away gone toward towards onto under behind every my"
+)
 
 
 def may_be_timed(cleaned: str) -> bool:
     """Whether any word could be about time or motion."""
-    return _HINTS.search(cleaned) is not None
+    said = cleaned.lower()
+    return _TIME_WORDS.search(said) is not None or any(
+        has_form(w, _TIMELY, "plain", "s", "ing", "past") for w in re.findall(r"[a-z]+", said)
+    )
 
 
 class TimeReader:
@@ -184,12 +201,10 @@ class TimeReader:
         Raises:
             Refusal: it names a time, and the rest is not understood.
         """
-        said = " ".join(w.text for w in split(cleaned))
+        said = " ".join(w.text for w in split(_RANGE.sub(r"\g<a> to \g<b> s", cleaned)))
         if _ASKS.match(said) and cleaned.rstrip().endswith("?"):
             return None
         said = _tidy(said)
-        for pattern, plain in _SAME:
-            said = pattern.sub(plain, said)
         if not said:
             return None
         if _CONTRARY.search(said):
@@ -204,7 +219,7 @@ class TimeReader:
         if numbers is not None:
             raise Refusal(f"what is to happen “{numbers[0]}” is not understood", numbers[0])
         clause = next(iter(happenings.cut(said, self.thing)), None)
-        if clause is not None and clause[1].said.split()[0] not in ("when", "as", "after", "before"):
+        if clause is not None and clause[1].said.split()[0] not in ("as", "after", "before"):
             raise Refusal(f"what is to happen “{clause[1].said}” is not understood", clause[1].said)
         return None
 
@@ -218,44 +233,32 @@ class TimeReader:
         return self._things[phrase]
 
     def _thing_of(self, phrase: str) -> Query | None:
-        if not phrase or len(phrase.split()) > 9:
-            return None
         if phrase in ("it", "he", "she", "him", "her", "this", "that", "they", "them", "itself"):
             return IT
-        if re.search(
-            r"\b(?:be|is|are|should|must|will|would|can|do|does|let|make|have|to be|when|while|until|"
-            r"then|i|you|we|instead|not|at|by|than)\b",
-            phrase,
-        ):
-            return None
-        if re.search(
-            r"^(?:to|in|at|on|of|for|with|and|or|up|down|out|off|from|into|by|as|so|faster|slower|"
-            r"fast|slow|back|half|open|start|stop|begin|moving)\b|\b(?:to|in|at|on|of|for|with|and|or|"
-            r"the|a|from|into|by|as|up|down|out|off|over|back|again|way|more|much|too)$",
-            phrase,
-        ):
-            return None
-        if _VERB.search(phrase):
-            return None
         for pattern, moving in _MOVING:
-            if pattern.fullmatch(phrase):
-                return Query(text="", pick="all", moving=moving)
+            if (of := pattern.fullmatch(phrase)) is not None:
+                named = self.thing(of["np"]) if of["np"] else Query(text="", pick="all")
+                return None if named is None else _which_moves(named, moving)
+        words = phrase.split()
+        if not words or len(words) > 9 or _NEVER & set(words) or words[0] in _NEVER_FIRST or words[-1] in _NEVER_LAST:
+            return None
+        if _SECONDS.search(phrase) or (len(words) > 1 and _is_verb(words[0])):
+            return None
+        for i, word in enumerate(words):
+            joined = i > 0 and words[i - 1] in ("and", "or")
+            if _is_verb(word) and (len(words) == 1 or joined or (i and self.thing(" ".join(words[:i])))):
+                return None  # "the robot stop", "the rug and stay there"
+        if len(words) > 1 and not is_known(words[-1]) and self.thing(" ".join(words[:-1])):
+            return None  # "the door creak"
         bare = _MOVING_ONE.match(phrase)
         moves = None
         if bare is not None:
             moves, phrase = bare["how"] == "moving", f"{bare['det']} {phrase[bare.end() :]}"
-        phrase = re.sub(r"^(?:that|this) (?=\w+ )", "the ", phrase)
-        phrase = re.sub(r"^(?:a|an) (?=\w)", "the ", phrase)
-        if not re.match(
-            r"^(?:the|all|every|both|my|our|these|those|each|any|everything|one|two|three|four|five|"
-            r"his|her|their|its)\b",
-            phrase,
-        ):
+        phrase = re.sub(r"^(?:that|this|a|an) (?=\w)", "the ", phrase)
+        if not _DETERMINED.match(phrase):
             phrase = f"the {phrase}"
         found = self._thing(phrase.replace(" 's ", "'s "))
-        if found is None or (not found.text and not found.last and not found.colors):
-            return None
-        if found.invert or found.grow:
+        if found is None or (not found.text and not found.last and not found.colors) or found.invert or found.grow:
             return None
         return found if moves is None else _which_moves(found, moves)
 
@@ -270,7 +273,7 @@ class TimeReader:
         for part in parts:
             about = _REMARK.match(part)
             if topic is None and not ops and about is not None and part is not parts[-1]:
-                topic = self.thing(about["np"])  # "the door opens too late, make it start at 0 s"
+                topic = self.thing(about["np"] or about["kept"])  # "the door opens too late, make it start at 0 s"
                 if topic is not None:
                     continue
             found = self._whole(part)
@@ -292,11 +295,9 @@ class TimeReader:
 
     def _whole(self, said: str) -> tuple[Fields, ...] | None:
         for rest, moment, happening in self._readings(said):
-            told = not moment.empty or moment.slowly or happening is not None
-            for form in dict.fromkeys(
-                (_bare(rest), _bare(_TAIL.sub("", _bare(rest))), _bare(_TAIL.sub("", _TAIL.sub("", _bare(rest)))))
-            ):
-                found = self._command(form, moment, happening, told)
+            told = moment.told or happening is not None
+            for form, remark in _forms(rest):
+                found = self._command(form, remark, moment, happening, told)
                 if found:
                     return found
         return self._about_moving(said)
@@ -307,72 +308,69 @@ class TimeReader:
         flashes = shorter != said
         seen = set[str]()
         for text in dict.fromkeys((shorter, said)):
-            rest, moment = moments.cut(text)
-            for left, happening in happenings.cut(rest, self.thing):
-                if flashes and happening.during.part == "from":
-                    during = happening.during.model_copy(update={"part": "while"})
-                    happening = replace(happening, during=during)
-                if left not in seen:
-                    seen.add(left)
-                    yield left, moment, happening
-            if rest not in seen:
-                seen.add(rest)
-                yield rest, moment, None
+            for rest, moment in dict.fromkeys((moments.cut(text), (text, Moment()))):
+                for left, happening in happenings.cut(rest, self.thing):
+                    if flashes and happening.during.part == "from":
+                        during = happening.during.model_copy(update={"part": "while"})
+                        happening = replace(happening, during=during)
+                    if left not in seen:
+                        seen.add(left)
+                        yield left, moment, happening
+                if rest not in seen:
+                    seen.add(rest)
+                    yield rest, moment, None
 
-    def _command(self, said: str, moment: Moment, happening: Happening | None, told: bool) -> tuple[Fields, ...] | None:
+    def _command(
+        self, said: str, remark: str, moment: Moment, happening: Happening | None, told: bool
+    ) -> tuple[Fields, ...] | None:
         if not said:
             return None
         if happening is not None and not moment.empty and moment.lasting is None and moment.stop is not None:
             return None
+        if happening is not None and happening.said.startswith("before ") and _RIDDING.match(said):
+            return None  # "delete the vase before it falls" gives a reason
+        returns = re.search(r"\b(?:back|returns?|comes?|again)\b", remark) is not None
         for command in commands(said, self.thing, moment, told):
+            if returns and command.kind != "look":
+                continue  # "roll to the wall and come back" is not half done
             with suppress(Refusal, UserError, ValidationError):
                 found = self._made(command, moment, happening)
                 if found:
                     return found
-        if not told and _FADES.search(said):
-            moment, told = replace(moment, slowly=True), True
-        if not told and not moment.always:
-            return None
-        return self._look(said, moment, happening)
+        if told or moment.always:
+            with suppress(Refusal, UserError, ValidationError):
+                return self._made(Command(kind="look", text=said), moment, happening)
+        return None
 
     def _made(self, command: Command, moment: Moment, happening: Happening | None) -> tuple[Fields, ...] | None:
-        ops = list(command.ops)
+        """The operations of a command with its time; None if it cannot be that."""
+        ops, kind = list(command.ops), command.kind
         if command.text:
-            ops = list(self._understand(command.text))
-            if is_misread(ops) or any(op["op"] not in ("move", "rotate") for op in ops):
+            ops = list(self._understand(command.text.replace("rightwards", "to the right")))
+            ways = all(op["op"] in ("move", "rotate") for op in ops)
+            if command.target is not None:
+                ops = [{**op, "target": command.target} if op.get("target") == IT else op for op in ops]
+            if not ops or is_misread(ops) or not all(map(_takes_time, ops)) or (kind == "path" and not ways):
                 return None
+            if re.search(r"\b(?:off|out|on)$", command.text) and any(op["op"] in ("delete", "relight") for op in ops):
+                return None  # "the light should go out"
+            kind = "path" if ways else kind
+        if command.fades:
+            moment = replace(moment, slowly=True)
         if command.during is not None:
             if happening is not None:
                 return None
             happening = Happening(During(**command.during), "")
+        if command.inverse:
+            flipped = _inverse(moment, happening)
+            if flipped is None:
+                return None
+            moment, happening = flipped
         if moment.taken and moment.lasting is not None and all(op.get("change") == "speed" for op in ops):
             ops = [
                 {k: v for k, v in op.items() if k != "factor"} | {"change": "begin"} for op in ops
             ]  # "faster, in 1 s"
-        return self._with_time(ops, moment, happening, command.kind)
-
-    def _look(self, said: str, moment: Moment, happening: Happening | None) -> tuple[Fields, ...] | None:
-        """A plain command that gets a time."""
-        if happening is not None and happening.said.startswith("before ") and _RIDDING.match(said):
-            return None  # "delete the vase before it falls" gives a reason
-        for text, inverse in _plain_commands(said, self.thing):
-            ops: Sequence[Fields] = ()
-            with suppress(Refusal, UserError):
-                ops = self._understand(text)
-            if not ops or any(not _takes_time(op) for op in ops) or is_misread(ops):
-                continue
-            if re.search(r"\b(?:off|out|on)$", said) and any(op["op"] == "delete" for op in ops):
-                continue  # "the light should go out"
-            own, seen = moment, happening
-            if inverse:
-                flipped = _inverse(moment, happening)
-                if flipped is None:
-                    continue
-                own, seen = flipped
-            kind = "path" if all(op["op"] in ("move", "rotate") for op in ops) else "look"
-            with suppress(ValidationError, UserError):
-                return self._with_time(list(ops), own, seen, kind)
-        return None
+        return self._with_time(ops, moment, happening, kind)
 
     def _with_time(
         self, ops: Sequence[Fields], moment: Moment, happening: Happening | None, kind: str
@@ -395,23 +393,27 @@ class TimeReader:
         """A command about what moves, or stands still, without a time: "remove whatever moves"."""
         for pattern, moving in _MOVING:
             if (found := pattern.search(said)) is not None:
-                text = f"{said[: found.start()]}everything{said[found.end() :]}"
-                return self._with_moving(text, lambda q: q.text in ("everything", "all") and not q.exclude, moving)
+                text = f"{said[: found.start()]}{found['np'] or 'everything'}{said[found.end() :]}"
+                named = self.thing(found["np"]) if found["np"] else None
+                meant = ("everything", "all") if named is None else (named.text,)
+                return self._with_moving(text, meant, moving)
         found = _MOVING_ONE.search(said)
         if found is not None:
             text = f"{said[: found.start()]}{found['det']} {said[found.end() :]}"
             noun = found["noun"].removesuffix("s")
-            return self._with_moving(text, lambda q: noun in q.text or noun == "thing", found["how"] == "moving")
+            names = ("", "everything") if noun in ("thing", "object") else (noun,)
+            return self._with_moving(text, names, found["how"] == "moving")
         return None
 
-    def _with_moving(self, text: str, meant: Callable[[Query], bool], moving: bool) -> tuple[Fields, ...] | None:
+    def _with_moving(self, text: str, names: Sequence[str], moving: bool) -> tuple[Fields, ...] | None:
+        """A plain command in which what has one of the names moves, or stands still."""
         with suppress(Refusal, UserError):
             ops = self._understand(_bare(text))
             hit = False
 
             def change(query: Query) -> Query:
                 nonlocal hit
-                if not meant(query):
+                if query.exclude or not any(name == query.text or (name and name in query.text) for name in names):
                     return query
                 hit = True
                 return _which_moves(query, moving)
@@ -423,48 +425,75 @@ class TimeReader:
         return None
 
 
+_DETERMINED = re.compile(
+    r"^(?:the|all|every|both|my|our|these|those|each|any|everything|one|two|three|four|five|his|her|their|its)\b"
+)
+
+
+_SECONDS = re.compile(r"\b(?:\d\S* ?)(?:s|secs?|seconds?)\b")
+_THINGS = bag("sink mirror switch block swing slide paint light float lift step lead brake sail")  # names of verbs
+
+
+def _is_verb(word: str) -> bool:
+    """Whether a word is a verb of the lexicon, and no name of a thing."""
+    return has_form(word, tuple(SENSES), "plain", "s", "past", "ing") and word not in _THINGS
+
+
 def _which_moves(query: Query, moving: bool) -> Query:
     text = "" if query.text in ("everything", "all", "thing", "object") else query.text
     return query.model_copy(update={"text": text, "moving": moving})
 
 
 def _tidy(said: str) -> str:
-    said = re.sub(r"(?<=\d) ?= ?", " ", said)
-    said = _ITS.sub("it is ", said)
-    said = re.sub(r"(?: [.!?])+$", "", said.strip(" .!?\n"))
-    said = re.sub(r" ?[!?] ?", " . ", said)
+    """What is written, in words that the readers know."""
     for _ in range(3):
-        said = _NOISE.sub("", said).strip(" ,")
-    said = _WHO.sub("while it is ", said)
+        said = _NOISE.sub("", said).strip(" ,.!?\n")
+    for pattern, plain in _RESTATED:
+        said = pattern.sub(plain, said)
     said = re.sub(
-        r"^(?:can|could|would|will|may|should|must|shall) (?=(?:the|my|our|this|that|all|every|it) )", "", said
+        r"^(?:can|could|would|will|may|should|must|shall) (?=(?:the|my|our|this|that|all|every|it) )",
+        "",
+        said.strip(" ,."),
     )
-    return " ".join(said.split())
+    return " ".join(re.sub(r"(?: ,)+", " ,", said).split())
+
+
+def _forms(said: str) -> Iterator[tuple[str, str]]:
+    """A command as it is said, and without the remarks at its end; with the remarks."""
+    form, remarks, seen = _bare(said), "", set[str]()
+    while form and form not in seen:
+        seen.add(form)
+        yield form, remarks
+        shorter = _REMARKS.sub("", form)
+        form, remarks = _bare(shorter), form[len(shorter) :] + remarks
+    first, mark, rest = said.partition(" , ")
+    if mark and len(first.split()) < 6 and (turned := _bare(f"{rest} {first}")) not in seen:
+        yield turned, ""  # "at half speed, play it all"
 
 
 def _bare(said: str) -> str:
     """A command without politeness, and without marks at its ends."""
     said = re.sub(r"(?: ,)* (?:like|only|just|about|exactly)$", "", said.strip(" ,.;"))
     said = unframed(said).strip(" ,.;")
-    return re.sub(r"^(?:to |then |and |but |now |from now on |please )+", "", said)
+    return re.sub(r"^(?:to |then |and |but |now |from now on |please |only |that |mind )+", "", said)
+
+
+_PART = (
+    r"(?=(?:open|close|make|let|paint|hide|remove|delete|stop|turn|move|spin|have|put|play|slow|speed|start|freeze|"
+    r"do not|never)\b)"
+)
 
 
 def _parts(said: str) -> list[str]:
     """The commands of an instruction, as far as marks and joints tell."""
-    parts = [p.strip(" ,") for p in re.split(r" \. | ; |(?: ,)? (?:and then|then|and also) | \n ", f" {said} ")]
-    parts = [p for p in parts if p]
-    if len(parts) > 1:
-        return parts
-    return [
-        p.strip(" ,")
-        for p in re.split(
-            r"(?: ,)? and (?=(?:open|close|make|let|paint|hide|remove|delete|stop|turn|move|spin|have|"
-            r"put|play|slow|speed|start|freeze)\b)| , (?=(?:open|close|make|let|paint|hide|remove|"
-            r"delete|stop|move|spin|have|put|play|slow|speed|start|freeze)\b)",
-            said,
-        )
-        if p.strip(" ,")
-    ]
+    for joint in (
+        r" \. | ; |(?: ,)? (?:and then|then|and also) | \n ",
+        rf"(?: ,)? and {_PART}| , {_PART}",
+    ):
+        parts = [p for p in (p.strip(" ,") for p in re.split(joint, f" {said} ")) if p]
+        if len(parts) > 1:
+            return parts
+    return [said]
 
 
 def _takes_time(op: Fields) -> bool:
@@ -477,12 +506,12 @@ def is_misread(ops: Sequence[Fields]) -> bool:
     names = [q.text for op in ops for v in op.values() if isinstance(v, BaseModel) for _, q in queries((v,))]
     names += [q.get("text", "") for op in ops for q in _plain_queries(op)]
     names += [str(op.get("asset", "")) for op in ops]
-    return any(_NO_THING.search(name) for name in names if name)
+    last = [name.split()[-1] for name in names if name.split()]
+    return any(word in _NO_NAMES or (_is_verb(word) and not is_known(word)) for word in last)
 
 
-_NO_THING = re.compile(
-    r"(?:^| )(?:end|start|beginning|motion|slow|appears?|once|twice|while|finish|stops?|opens?|closed|disappears?|"
-    r"vanish|begins?|walks?|rolls|goes|becomes|flash|falls|spins|moves)$"
+_NO_NAMES = bag(
+    "end start beginning motion slow once twice while finish closed falls walks opens stops moves appear flash"
 )
 
 
@@ -554,77 +583,3 @@ def _inverse(moment: Moment, happening: Happening | None) -> tuple[Moment, Happe
     if moment.stop is not None and moment.start is None:
         return replace(moment, start=moment.stop, stop=None), None
     return None
-
-
-def _plain_commands(said: str, thing: Callable[[str], Query | None]) -> Iterator[tuple[str, bool]]:
-    """Plain commands that words may stand for, and whether they say when it is *not* so."""
-    ought = r"(?:should|must|shall|needs to|has to|have to|ought to|is to|are to|will|can|could|to|may)"
-    let = r"(?:let|make|have|get|cause|i want)"
-    hide = re.match(rf"^(?:{let} )?(?P<np>.+?)(?: {ought})? {_HIDING}(?: again)?$", said)
-    if hide is not None and thing(hide["np"]) is not None:
-        yield f"hide {_named(hide['np'])}", False
-    hide = re.match(
-        r"^(?:despawn|lose|take out|take away|remove|hide|kill|drop|blank|switch off|conceal|get rid "
-        r"of|delete|erase|cut) (?P<np>.+?)$",
-        said,
-    )
-    if hide is not None and thing(hide["np"]) is not None:
-        yield f"hide {_named(hide['np'])}", False
-    hide = re.match(
-        r"^(?:take|get|bring|move|cut|leave|keep) (?P<np>.+?) (?:out of (?:the )?(?:room|scene|"
-        r"picture|view|sight|shot|frame|way)|away|out|off)$",
-        said,
-    )
-    if hide is not None and thing(hide["np"]) is not None:
-        yield f"hide {_named(hide['np'])}", False
-    show = re.match(
-        rf"^(?:only |{let} |show )?(?P<np>.+?)(?: {ought})? {_SHOWING}(?: again)?$|^(?:only )?(?:show|"
-        rf"reveal|spawn|unhide|display) (?P<np2>.+?)$",
-        said,
-    )
-    if show is not None and thing(show["np"] or show["np2"]) is not None:
-        yield f"hide {_named(show['np'] or show['np2'])}", True
-    new = re.match(
-        r"^(?P<np>(?:an?|one|two|three|another) .+?) (?:appears?|shows? up|pops? up|spawns?|is there|materiali[sz]es?) "
-        r"(?P<where>(?:on|in|next to|beside|behind|under|near|at|in front of|to the) .+)$",
-        said,
-    )
-    if new is not None:
-        yield f"add {new['np']} {new['where']}", False
-    fade = re.match(
-        r"^(?:fade|dissolve)(?: out| away)? (?P<np>.+?)(?: out| away| to nothing| to (?:zero|0))?$", said
-    ) or re.match(
-        rf"^(?:{let} )?(?P<np>.+?)(?: {ought})? (?:fades?|dissolves?|melts?)(?: out| away| to nothing)?$", said
-    )
-    if fade is not None and re.search(r"\d|percent|%|half", fade["np"]) is None and thing(fade["np"]) is not None:
-        yield f"hide {_named(fade['np'])}", False
-    told = re.match(
-        r"^(?P<np>.+?) (?:turns|goes|becomes|gets|flashes|shines|glows|is|are|turn|go|become|shine|"
-        r"glow|flash) (?:in |into |to )?(?P<hue>[a-z ]+)$",
-        said,
-    )
-    if told is not None and thing(told["np"]) is not None:
-        yield f"make {_named(told['np'])} {told['hue']}", False
-    yield said, False
-    color = re.match(
-        rf"^(?:{let} |turn |paint |that )?(?P<np>.+?)(?: {ought})?(?: be)? (?:back )?{_COLORED} (?P<hue>.+)$", said
-    )
-    if color is not None and thing(color["np"]) is not None:
-        hue = re.sub(r"^(?:in|all|into|to|a|an|be|the colou?r|painted|look|turn|completely) ", "", color["hue"])
-        yield f"make {_named(color['np'])} {hue}", False
-        yield f"paint {_named(color['np'])} {hue}", False
-    color = re.match(
-        r"^(?:paint|turn|make|colou?r|tint|dye|give) (?P<np>.+?) (?:in |into |to |a )?(?P<hue>\w+(?: \w+)?)$", said
-    )
-    if color is not None and thing(color["np"]) is not None:
-        yield f"make {_named(color['np'])} {color['hue']}", False
-    if (pair := re.match(r"^(?P<np>.+?) (?P<hue>\w+)$", said)) is not None and thing(pair["np"]) is not None:
-        yield f"make {_named(pair['np'])} {pair['hue']}", False
-
-
-def _named(np: str) -> str:
-    if re.match(r"^(?:the|all|every|both|my|our|these|those|each|any|it|them|everything|one|two|three|this)\b", np):
-        return "it" if np in ("him", "her", "he", "she") else np
-    if np in ("him", "her", "he", "she"):
-        return "it"
-    return f"the {np}"

@@ -116,6 +116,8 @@ def test_every_operation_that_makes_motion_is_tried_here() -> None:
         ({"change": "stop", "when": {"start": 2}}, {1.0: 0.0, 2.0: 0.25, 3.0: 0.25, 4.0: 0.25}),
         ({"change": "stop", "when": {"start": 1.5, "stop": 2.0}}, {2.0: 0.125, 3.0: 0.375, 3.5: 0.5}),
         ({"change": "stop"}, {2.0: 0.0, 4.0: 0.0}),
+        ({"change": "stop", "when": {"stop": 0.5}}, {1.0: 0.0, 2.0: 0.25, 3.0: 0.5}),  # as it is
+        ({"change": "stop", "when": {"stop": 1.5}}, {1.5: 0.0, 2.5: 0.25, 3.5: 0.5}),
         ({"change": "begin", "when": {"start": 0}}, {1.0: 0.25, 2.0: 0.5}),
         ({"change": "begin", "when": {"start": 2, "lasting": 1}}, {2.0: 0.0, 2.5: 0.25, 3.0: 0.5}),
         ({"change": "speed", "factor": 2}, {1.0: 0.0, 1.5: 0.25, 2.0: 0.5, 4.0: 0.5}),
@@ -131,6 +133,13 @@ def test_motion_is_played_at_other_times(
     start = middle(moving, 0.0)[0]
     for time, place in places.items():
         assert middle(made.scene, time)[0] - start == pytest.approx(place, abs=2e-3)
+
+
+def test_one_thing_is_played_backwards_in_the_time_of_the_scene(moving: Scene, context: Context) -> None:
+    longer = moving.replace(motion=replace(moving.motion, stop=6.0))
+    made = done(longer, {"op": "pace", "target": A_CHAIR, "change": "reverse"}, context)
+    for time in (0.0, 2.0, 3.5, 4.0, 6.0):
+        assert np.allclose(middle(made.scene, time), middle(longer, 6.0 - time), atol=2e-3)
 
 
 def test_the_whole_scene_at_half_speed_lasts_twice_as_long(moving: Scene, context: Context) -> None:
@@ -207,6 +216,8 @@ def test_a_door_that_opens_by_itself_opens_as_far_as_is_said(corner: Scene, cont
     )
     assert np.allclose(middle(shut.scene, 4.0, TABLE), middle(scene, 0.0, TABLE), atol=1e-6)
     assert np.allclose(middle(shut.scene, 2.5, TABLE), middle(scene, 2.5, TABLE), atol=1e-6)
+    alike = done(scene, {"op": "articulate", "target": table, "change": "close", "when": {"start": 2.5}}, context)
+    assert alike.scene.motion is not None and alike.scene.motion.tracks[0].times[-1] == pytest.approx(3.5)  # 1 s, too
 
 
 def test_what_moves_is_told_from_what_stands(moving: Scene, context: Context) -> None:
