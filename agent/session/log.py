@@ -8,7 +8,7 @@ Schema version 1. Every record has `v`, `seq` (1, 2, ... through the file), `tim
     open    session, continues, scenewright, scene (path or null), gaussians, digest, file
                                                                      a session begins; undo never goes back before it
     embed   encoder, things, before, after                           a language field was added to the scene; no edit
-    do      text, it, it_ids, plan, viewer, receipts, selection, before, after, seconds
+    do      text, it, it_ids, plan, viewer, said_at, receipts, selection, before, after, seconds
                                                                      an instruction was carried out
     failed  text, plan (or null), error, message, before             an instruction was refused; nothing was changed
     select  groups, gaussians, ids, before                           "it" was pointed at; no edit
@@ -21,7 +21,8 @@ Schema version 1. Every record has `v`, `seq` (1, 2, ... through the file), `tim
 `session` is the id of the session, `continues` that of the earlier one that ended with this scene, or null; `file` is
 the SHA-256 digest of the scene file's bytes; `it` and `selection` are what "it" referred to before and after, and
 `it_ids` and `ids` its Gaussians (`packed_ids`), null where they are those of its groups; `viewer`
-is the camera in whose frame left, right, in front and behind were meant (see `viewer_fields`). Logs of earlier versions
+is the camera in whose frame left, right, in front and behind were meant (see `viewer_fields`); `said_at` is the time
+of a scene with motion at which it was said, in seconds, null where none was set. Logs of earlier versions
 lack some of these. `before` and `after` are SHA-256 digests of the cloud, so that a reader can check that the records
 form a chain. The functions `*_fields` give the fields of a record. A session without a log does not call them, as
 digests of large clouds take time.
@@ -215,6 +216,7 @@ def do_fields(result: Result, before: State, after: State) -> dict[str, Any]:
         "it_ids": _packed(before),
         "plan": result.plan.model_dump(mode="json") if result.plan is not None else None,
         "viewer": viewer_fields(result.viewer),
+        "said_at": result.said_at,
         "receipts": [r.model_dump(mode="json") for r in result.receipts],
         "selection": {"groups": list(left.groups), "gaussians": len(left)} if left is not None else None,
         "before": before.digest,
@@ -263,6 +265,12 @@ def viewer_of(record: Record) -> Camera | None:
         return Camera(**{**fields, "world_to_camera": np.array(fields["world_to_camera"], dtype=np.float64)})
     except (KeyError, TypeError, ValueError, UserError):
         return None
+
+
+def said_at_of(record: Record) -> float | None:
+    """The time at which a `do` record was said; None if it has none that is a number."""
+    time = record.get("said_at")
+    return float(time) if isinstance(time, int | float) and math.isfinite(time) else None
 
 
 def failed_fields(text: str, plan: EditPlan | None, error: ScenewrightError, state: State) -> dict[str, Any]:

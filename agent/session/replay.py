@@ -15,7 +15,7 @@ from torch import Tensor
 
 from ...gaussians.errors import FileError, ScenewrightError
 from ...gaussians.language.query.nested import exchange, queries
-from .log import Record, viewer_of
+from .log import Record, said_at_of, viewer_of
 from .log_sessions import LoggedSession, logged_session
 from .packed_ids import unpack
 from .plan_runner import has_queries
@@ -51,8 +51,8 @@ class Replayed:
 @dataclass(frozen=True)
 class LoggedEdit:
     """An edit of a logged session: its words, its plan, the digests of the cloud before and after it, the groups that
-    "it" referred to, which a question or a selection between edits may have set, the viewer it was meant for, and the
-    packed Gaussians of "it" where they are not those of the groups."""
+    "it" referred to, which a question or a selection between edits may have set, the viewer it was meant for, the
+    packed Gaussians of "it" where they are not those of the groups, and the time at which it was said."""
 
     text: str
     plan: EditPlan
@@ -61,6 +61,7 @@ class LoggedEdit:
     after: str | None = None
     viewer: Camera | None = None
     it_ids: str | None = None
+    said_at: float | None = None
 
     def plan_for(self, digest: str) -> EditPlan:
         """The plan for the cloud with this digest; on another cloud than the logged one, without group ids."""
@@ -96,11 +97,14 @@ def edit_of(record: Record, log: str | Path) -> LoggedEdit:
         record.get("after"),
         viewer_of(record),
         record.get("it_ids"),
+        said_at_of(record),
     )
 
 
 class Edited(Protocol):
     """The part of `session.Session` that a replay uses."""
+
+    said_at: float | None
 
     @property
     def digest(self) -> str: ...
@@ -120,17 +124,19 @@ class Edited(Protocol):
 def replay_edits(session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool) -> list[Replayed]:
     """Carry out logged edits on a session; see `Session.replay`.
 
-    On the cloud that they were made on, each is carried out for the viewer that it was meant for, so that "left" means
-    the same everywhere; on another cloud for the session's own, who is also the viewer afterwards.
+    On the cloud that they were made on, each is carried out for the viewer and at the time that it was meant for, so
+    that "left" and "there" mean the same; on another cloud for the session's own, which it has afterwards too.
     """
-    own = session.viewer
+    own = session.viewer, session.said_at
     try:
         return _replayed(session, edits, skip_failed, own)
     finally:
-        session.viewer = own
+        session.viewer, session.said_at = own
 
 
-def _replayed(session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool, own: Camera) -> list[Replayed]:
+def _replayed(
+    session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool, own: tuple[Camera, float | None]
+) -> list[Replayed]:
     """See `replay_edits`."""
     outcome: list[Replayed] = []
     for edit in edits:
@@ -144,7 +150,10 @@ def _replayed(session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool, o
                 session.embed()
                 session.remember(edit.it)
                 before = session.digest
-            session.viewer = edit.viewer if edit.viewer is not None and before == edit.before else own
+            if edit.viewer is not None and before == edit.before:
+                session.viewer, session.said_at = edit.viewer, edit.said_at
+            else:
+                session.viewer, session.said_at = own
             result = session.apply(edit.plan_for(before))
             outcome.append(Replayed(edit.text, result, None, edit.difference(before, session.digest)))
         except ScenewrightError as error:

@@ -25,6 +25,7 @@ class Result:
         receipts: one for each operation of the plan, in order.
         before, scene: the scene before and after; they share every column that did not change.
         viewer: the camera in whose frame left and right were resolved.
+        said_at: the time of a scene with motion at which it was said, seconds; None if none was set.
         selection: what "it" refers to in the next instruction, None if nothing was selected.
         seconds: wall time of each stage: "plan", "embed", "edit", "log".
         dry_run: the session's scene was not changed; `scene` is what the edit would give.
@@ -39,6 +40,7 @@ class Result:
     selection: Selection | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
     dry_run: bool = False
+    said_at: float | None = None
 
     def render(self, camera: Camera | None = None, background: Vec3 = (0.0, 0.0, 0.0)) -> Render:
         """The edited scene as `camera` sees it, by default the viewer."""

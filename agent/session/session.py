@@ -154,7 +154,7 @@ class Session:
         self._dialled = SessionDial.of(effort)
         self._asker = Asker()
         self._viewer = viewer
-        self._time: float | None = None
+        self.said_at: float | None = None  # a time that was set; see `time`
         self._seed = seed
         self.pixel_checks = pixel_checks
         self.accept_unconfirmed = accept_unconfirmed
@@ -232,7 +232,7 @@ class Session:
         motion = self.scene.motion
         if motion is None:
             return 0.0
-        return motion.start if self._time is None else min(max(self._time, motion.start), motion.stop)
+        return motion.start if self.said_at is None else min(max(self.said_at, motion.start), motion.stop)
 
     @time.setter
     def time(self, seconds: float) -> None:
@@ -241,7 +241,11 @@ class Session:
             raise UserError("nothing moves in this scene, so that it has no time; say for example 'open the door'")
         if not motion.start <= seconds <= motion.stop:
             raise UserError(f"the scene lasts from {motion.start:g} to {motion.stop:g} s; {seconds:g} s is not in it")
-        self._time = float(seconds)
+        self.said_at = float(seconds)
+
+    def _moment(self) -> float | None:
+        """The time that was set, of a scene with motion."""
+        return None if self.said_at is None or self.scene.motion is None else self.time
 
     @property
     def encoder(self) -> Encoder:
@@ -328,7 +332,7 @@ class Session:
             restyler=self._restyler,
             references=self._references,
             harmony=self._harmony,
-            time=None if self._time is None or self.scene.motion is None else self.time,
+            time=self._moment(),
         )  # fmt: skip
 
     # -- planner ----------------------------------------------------------------------------------------------------
@@ -767,8 +771,10 @@ class Session:
             except PlanFailed as failure:
                 self.question = failure.question
                 return self._carry_out(self._settled(failure), seconds, dry_run=dry_run, start=start)
-        viewer, last = self.viewer, state.last
-        result = Result(plan.instruction, plan, receipts, before.scene, state.scene, viewer, last, seconds, dry_run)
+        result = Result(
+            plan.instruction, plan, receipts, before.scene, state.scene, self.viewer, state.last, seconds, dry_run,
+            self._moment(),
+        )  # fmt: skip
         return result, state
 
     def _settled(self, failure: PlanFailed) -> EditPlan:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -45,3 +46,20 @@ def test_words_about_time_are_edits_and_undo_is_a_reference(session: Session) ->
     session.undo()
     session.undo()
     assert session.scene is before
+
+
+def test_a_replay_says_words_at_the_time_at_which_they_were_said(
+    session: Session, boxes: Scene, encoder: Any, tmp_path: Path
+) -> None:
+    moving, log = session.scene, tmp_path / "log.jsonl"
+    told = Session(moving, encoder=encoder, viewer=boxes.cameras[0], log=log)
+    told.time = 3
+    told.do("put the left red thing on the green thing")
+    told.close()
+    at_the_start = Session(moving, encoder=encoder, viewer=boxes.cameras[0])
+    at_the_start.do("put the left red thing on the green thing")
+    assert at_the_start.digest != told.digest  # the green thing is higher at 3 s
+    again = Session(moving, encoder=encoder, viewer=boxes.cameras[0])
+    (replayed,) = again.replay(log)
+    assert again.digest == told.digest and replayed.result is not None and replayed.result.said_at == 3
+    assert again.said_at is None
