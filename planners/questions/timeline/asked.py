@@ -355,6 +355,7 @@ def verb(told: Told, what: Happening | None = None) -> str:
         "fall": "falls",
         "land": "lands",
         "rise": "rises",
+        "scene": "ends" if deed is not None and deed.stops else "starts",
         "return": "comes back",
         "is_back": "is back",
         "still": "stands still",
@@ -370,7 +371,7 @@ def verb(told: Told, what: Happening | None = None) -> str:
     other = f" {what.object.describe()}" if what.object is not None else ""
     if deed is None or deed.kind in plain:
         said = plain[deed.kind if deed is not None else None]
-        if deed is not None and deed.phase in ("start", "stop"):
+        if deed is not None and deed.kind != "scene" and deed.phase in ("start", "stop"):
             said = f"{deed.phase}s" + (f" {_DOING[deed.kind]}" if deed.kind in _DOING else "")
         elif deed is not None and deed.phase:
             said = said.replace("is ", {"half": "is half ", "quarter": "is a quarter "}.get(deed.phase, "is fully "))

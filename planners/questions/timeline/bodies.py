@@ -179,6 +179,8 @@ class Timeline:
         if found.verdict == "absent" or not found.things:
             if called:
                 return called
+            if singular(query.text.split()[-1] if query.text else "") in _PARTS_ALONE and len(movers) == 1:
+                return movers  # "the blades", of the one thing that moves
             raise NotResolved(query, found)
         bodies = tuple(dict.fromkeys(b for t in found.things for b in self._of(t, survey)))
         if found.verdict == "found" or all(t.label in SHELL and t.node is None for t in found.things):

@@ -17,6 +17,7 @@ from .bodies import Body, Timeline
 F64 = NDArray[np.float64]
 TURNS = np.radians(20.0)  # a body that turns by less about the vertical while it goes makes no turn
 _TURNING = np.radians(15.0)  # radians a second from which it turns
+_YAWS = {"left": 1, "right": -1, "course": 0}  # a change of the way it goes, and to which side
 _SHARES = {"quarter": 0.25, "half": 0.5}  # of how far it opens
 _HOME = 0.02  # metres, and of a turn radians times the farthest corner: so near to where it started it is back
 AJAR, WIDE = 0.02, 0.985  # of how far it opens: open from the one, wide open from the other
@@ -36,16 +37,21 @@ def spans_of(deed: Deed, body: Body, others: Sequence[Thing], timeline: Timeline
         others: what it does it to; of several, any.
     """
     kind, moving = deed.kind, list(body.moving)
+    if kind == "scene":
+        return [(timeline.start, timeline.stop)]
     if kind == "move":
         return _going(deed.way, body, timeline) if deed.way else moving
     if kind == "still":
         return rest(moving, timeline.start, timeline.stop) if moving else [(timeline.start, timeline.stop)]
     if kind == "turn":
-        sign = {"left": 1, "right": -1}.get(deed.way, 0)
-        return [s for s in turning(body) if not sign or sign * events.yawed(body.course, s) > 0]
+        if deed.way not in _YAWS:
+            return turning(body)
+        sign = _YAWS[deed.way]
+        yaws = [(s, events.yawed(body.course, s)) for s in turning(body)]
+        return [s for s, yaw in yaws if abs(yaw) > TURNS and yaw * sign >= 0]
     if kind == "fall":
         falls = events.falls(body.course, timeline.unit)
-        return [s for s in falls if _is_near(body, others, timeline, s[0])] if others else falls
+        return [s for s in falls if is_near(body, others, timeline, s[0])] if others else falls
     if kind == "rise":
         return _going("up", body, timeline)
     if kind in ("slows", "speeds_up"):
@@ -84,7 +90,9 @@ def spans_of(deed: Deed, body: Body, others: Sequence[Thing], timeline: Timeline
 def _going(way: str, body: Body, timeline: Timeline) -> list[Span] | None:
     """The movements in which a body goes to one side of the viewer, or up; None for a way that needs its own front."""
     stand = timeline.stand
-    sides = {"left": -stand.right, "right": stand.right, "up": stand.up}
+    sides = {
+        "left": -stand.right, "right": stand.right, "up": stand.up, "toward": -stand.forward, "away": stand.forward,
+    }  # fmt: skip
     if way not in sides:
         return None
     far = {s: float(events.displacement(body.course, s) @ sides[way]) for s in body.moving}
@@ -251,7 +259,7 @@ def _reached(body: Body, others: Sequence[Thing], timeline: Timeline) -> list[Sp
     return sorted(beside)
 
 
-def _is_near(body: Body, others: Sequence[Thing], timeline: Timeline, time: float) -> bool:
+def is_near(body: Body, others: Sequence[Thing], timeline: Timeline, time: float) -> bool:
     """Whether it is at one of the others at a time."""
     gaps = [float(p.gaps(np.array([time]))[0]) for p in _encounters(body, others, timeline)]
     return bool(gaps) and min(gaps) < BESIDE * timeline.unit

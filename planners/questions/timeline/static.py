@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ...grammar.tagging.words import bag
 from ..kind import Asked
 from ..reading.time.deeds import Deed, said_in
 from ..reading.time.frames import Frame, frames
@@ -36,7 +37,7 @@ _ENDS_WHERE = re.compile(
 _ENDS_BY = re.compile(
     r"^(?P<q>(?:what|which)(?: thing| object| furniture)?) (?:does|do|did|is|will) (?P<x>.+?) (?:end up|stop|finish|"
     r"come to rest|land|end) "
-    r"(?P<r>next to|near|beside|on|in front of|closest to|nearest to|by|at)$"
+    r"(?P<r>next to|near|beside|against|on|in front of|closest to|nearest to|by|at)$"
 )
 
 
@@ -107,7 +108,7 @@ def moments(words: tuple[str, ...], survey: Survey, timeline: Timeline, asked: A
     """
     said = _named(" ".join(words), survey, timeline)
     for when, rest in _readings(said):
-        if any(_is_of_motion(deed) for _, _, deed in said_in(rest)):
+        if not _MOTION_NOUNS.isdisjoint(rest.split()) or any(_is_of_motion(deed) for _, _, deed in said_in(rest)):
             continue
         rest = _ADVERB.sub("", rest)
         if when is None:
@@ -140,6 +141,9 @@ def _readings(said: str) -> Iterator[tuple[When | None, str]]:
     yield None, said
 
 
+_MOTION_NOUNS = bag(
+    "rotation rotations revolution revolutions movement movements motion spins turns speed velocity falls"
+)
 _NO_MOTION = ("related", "still", "is_open", "is_closed", "is_back", "appear", "nearest", "farthest")
 
 

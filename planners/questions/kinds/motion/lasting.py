@@ -18,8 +18,8 @@ from ...timeline.bodies import Body
 from .when import moment
 
 _TURNS = re.compile(
-    r"\b(?P<n>one|a|each|every|two|three|four|five|ten|\d+) (?:(?:full|single|whole|complete) )?(?:turn|rotation|"
-    r"revolution|spin|round)s?\b"
+    r"\b(?P<n>half a|one|per|a|each|every|two|three|four|five|ten|\d+) (?:(?:full|single|whole|complete) )?"
+    r"(?:turn|rotation|revolution|spin|round)s?\b"
 )
 _WAITS = ("wait", "waits", "waiting", "waited", "rest", "rests", "pause", "pauses", "paused", "idle", "idles")
 
@@ -36,7 +36,7 @@ def _of_one(told: Told, body: Body) -> Answer:
     found = told.spans(body)
     counted = _TURNS.search(told.asked.said)
     if deed.kind == "turn" and counted is not None and events.turned(body.course) > 2 * math.pi:
-        turns = seconds_of(counted["n"]) if counted["n"] not in ("each", "every") else 1.0
+        turns = seconds_of(counted["n"]) if counted["n"] not in ("each", "every", "per") else 1.0
         seconds = turns * sum(b - a for a, b in found) * 2 * math.pi / events.turned(body.course)
         return number(seconds, "s", f"{at(seconds)}: {body.name} turns {turns:g} times in that time.", [body])
     if when is not None:
@@ -44,6 +44,13 @@ def _of_one(told: Told, body: Body) -> Answer:
         found = found[-1:] if deed.kind == "still" and when.conj == "before" else found
     if not found:
         raise Untold(cap(f"{body.name} never {verb(told)}."))
+    if (
+        when is not None and when.kind == "after" and deed.at_once and not deed.starts
+    ):  # "how long after 2 s does it stop"
+        time = moment(deed, found[0])
+        return number(
+            time - when.start, "s", f"{at(time - when.start)}: {body.name} {verb(told)} at {at(time)}.", [body], time
+        )
     if deed.kind in AT_ONCE or (deed.kind == "move" and deed.phase):
         return _way_to(told, body, found)
     if deed.kind == "still" and deed.verb in _WAITS and when is None and len(inner := _inner(found, told)) >= 1:

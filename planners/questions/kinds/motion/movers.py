@@ -8,6 +8,7 @@ from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...reading.noun_phrase import is_anything
+from ...reading.time.deeds import STATES
 from ...reading.time.happenings import TRANSITIVE
 from ...survey import NotResolved, listed
 from ...telling import evidence as evidence_of
@@ -27,7 +28,7 @@ def doing(told: Told) -> list[tuple[Body, list[Span]]]:
         except Untold:
             continue
         deed = told.frame.what.deed
-        if deed is not None and deed.kind == "move" and deed.phase and window is not None:
+        if deed is not None and deed.at_once and window is not None:
             spans = [s for s in spans if window[0] - 0.1 <= moment(deed, s) <= window[1] + 0.1]
         elif deed is not None and deed.stops:
             spans = [s for s in spans if s[1] < told.timeline.stop - 1e-3]
@@ -51,7 +52,8 @@ def _which(told: Told) -> Answer | None:
     deed = what.deed
     if deed is None and not (told.frame.rank and what.subject is not None):
         return None
-    if deed is not None and deed.kind == "related" and (told.frame.when is None or told.frame.when.kind in _MOMENTS):
+    at_moment = told.frame.when is None or told.frame.when.kind in _MOMENTS
+    if deed is not None and deed.kind == "related" and what.object is not None and at_moment and not told.frame.rank:
         return None  # the scene at that time tells it
     said = told.asked.said
     asks_object = re.match(
@@ -106,6 +108,8 @@ def _ranked(told: Told, found: list[tuple[Body, list[Span]]]) -> Answer:
         text = "; ".join(f"{b.name} {verb(told)} {spoken(s)}" for b, s in ordered)
         return names([body], f"{cap(text)}.", spans[0][0], single=True)
     by = _speed if rank in ("fastest", "slowest") else _way
+    if deed is not None and deed.kind in STATES:
+        return _longest(told, found)
     scored = sorted(((by(b, told), b) for b, _ in found), key=lambda pair: -pair[0])
     if rank in ("slowest", "nearest"):
         scored.reverse()
@@ -116,6 +120,15 @@ def _ranked(told: Told, found: list[tuple[Body, list[Span]]]) -> Answer:
     return names([scored[0][1]], f"{cap(text)}.", single=True)
 
 
+def _longest(told: Told, found: list[tuple[Body, list[Span]]]) -> Answer:
+    """Which is so for the longest, or the shortest time."""
+    lasts = sorted(((sum(b - a for a, b in spans), body) for body, spans in found), key=lambda pair: -pair[0])
+    if told.frame.rank == "nearest":
+        lasts.reverse()
+    text = "; ".join(f"{body.name} {verb(told)} for {at(seconds)}" for seconds, body in lasts)
+    return names([lasts[0][1]], cap(f"{text}."), single=True)
+
+
 def _speed(body: Body, told: Told) -> float:
     return float(events.speeds(body.course, body.course.grid()).max()) / told.timeline.unit
 
@@ -124,7 +137,7 @@ def _way(body: Body, told: Told) -> float:
     return sum(events.path_length(body.course, s) for s in body.moving) / told.timeline.unit
 
 
-def _objects(told: Told) -> Answer:
+def _objects(told: Told) -> Answer | None:
     """What a body does something to: "what does the ball hit?"."""
     from ...timeline.happening import spans_of
 
@@ -137,6 +150,8 @@ def _objects(told: Told) -> Answer:
         spans = within(spans_of(deed, body, (thing,), told.timeline, told.survey) or [], window)
         if spans:
             found.append((spans[0][0], thing))
+    if not found and deed.relation == "on":
+        return None  # what stands still is asked of then
     if deed.kind == "reach" and "wall" in told.survey.stage.ids:
         wall = told.survey.at(told.survey.stage.ids.index("wall"))
         spans = within(spans_of(deed, body, (wall,), told.timeline, told.survey) or [], window)

@@ -8,12 +8,16 @@ import numpy as np
 
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
+from .....gaussians.world.support import is_sheet
 from ...answer import Answer, Evidence
+from ...candidates import is_plural
 from ...kind import Undecided
 from ...placing import place_of
+from ...reading.time.deeds import Deed
+from ...survey import Thing
 from ...timeline.asked import Told, Untold, at, cap, during, evidence, kind, within
 from ...timeline.bodies import Body
-from ...timeline.happening import turning
+from ...timeline.happening import spans_of, turning
 from .speeds import is_turning
 from .when import changes, moment
 
@@ -43,7 +47,9 @@ def _way(told: Told) -> Answer | Undecided | None:
     body, window = told.one(), told.window()
     if not body.moving:
         raise Untold(cap(f"{body.name} does not move."))
-    turns = deed.kind == "turn" and told.frame.options not in (("up", "down"), ("down", "up"))
+    turns = "clockwise" in " ".join(told.frame.options) or (
+        deed.kind == "turn" and told.frame.options not in (("up", "down"), ("down", "up"))
+    )
     every = turning(body) if turns else list(body.moving)
     spans = within(every, window) if told.frame.when is None or told.frame.when.kind not in ("start", "end") else every
     kind = told.frame.when.kind if told.frame.when is not None else ""
@@ -118,43 +124,65 @@ def _fits(option: str, body: Body, span: Span, told: Told) -> bool:
 
 
 def _where(told: Told) -> Answer | Undecided | None:
-    deed = told.frame.what.deed
-    if deed is None and (told.frame.when is None or told.frame.what.subject is None):
+    subject = told.frame.what.subject
+    if told.frame.what.deed is None and (told.frame.when is None or subject is None):
         return None
-    body, said = told.one(), told.asked.said
-    if body.thing is None or (deed is None and not body.moving):
+    bodies = told.bodies() if subject is not None and is_plural(subject) else (told.one(),)
+    if any(b.thing is None or (told.frame.what.deed is None and not b.moving) for b in bodies):
         return None  # the scene at that time tells it
+    times = [_time_of(told, b) for b in bodies]
+    if not times or None in times:
+        return None
+    placed = [_place(told, b, t) for b, t in zip(bodies, times, strict=True) if t is not None]
+    return Answer(
+        answer="; ".join(dict.fromkeys(answer for answer, _, _ in placed)),
+        answer_type="text",
+        text=" ".join(text for _, text, _ in placed),
+        confidence=0.85,
+        frame="viewer",
+        evidence=Evidence(ids=tuple(dict.fromkeys(i for _, _, ids in placed for i in ids)), time=times[0]),
+    )
+
+
+def _time_of(told: Told, body: Body) -> float | None:
+    """The time at which a place is asked of: of the deed, or as it is said."""
+    deed, window = told.frame.what.deed, told.window()
     if deed is None:
-        span = told.window()
-        if span is None or told.frame.when.kind in ("ever", "always"):  # type: ignore[union-attr]
-            return None
-        time = (span[0] + span[1]) / 2
-    elif _ORIGIN.search(said) and not deed.stops and deed.kind != "land":
-        time = told.timeline.start
-    elif deed.kind in ("move", "fall", "turn") and not deed.stops:
-        window = told.window()
-        time = window[1] if window is not None else told.timeline.stop
-    else:
-        found = changes(told, body)
-        if not found:
-            raise Untold(cap(f"{body.name} does not do that."))
-        time = moment(deed, found[-1] if deed.stops else found[0])
+        return None if window is None else (window[0] + window[1]) / 2
+    if _ORIGIN.search(told.asked.said) and not deed.stops and deed.kind != "land":
+        return told.timeline.start
+    if deed.kind in ("move", "fall", "turn") and not deed.stops:
+        return window[1] if window is not None else told.timeline.stop
+    if not (found := changes(told, body)):
+        raise Untold(cap(f"{body.name} does not do that."))
+    return moment(deed, found[-1] if deed.stops else found[0])
+
+
+def _place(told: Told, body: Body, time: float) -> tuple[str, str, tuple[int, ...]]:
+    """Where a body is at a time: as an answer, as a sentence, and the ids of it and of what it is on."""
+    assert body.thing is not None
     survey = told.timeline.survey_at(time)
     thing = survey.thing(body.thing.id)
     place, rest = place_of(thing, survey)
-    if not place.startswith("on ") and _is_on_floor(body, time, told):
+    sheet = _sheet_under(body, time, told)
+    if sheet is not None:
+        place, rest = f"on {survey.named(sheet)}", f"{place}{', ' + rest if rest else ''}"
+    elif not place.startswith("on ") and _is_on_floor(body, time, told):
         place, rest = "on the floor", f"{place}{', ' + rest if rest else ''}"
-    text = f"At {at(time)}: {cap(body.name)} is {place}{', ' + rest if rest else ''}."
-    near = [i for i in (thing.node.support if thing.node is not None else "",) if isinstance(i, int)]
     answer = f"{place}, {rest}" if rest else place
-    return Answer(
-        answer=answer,
-        answer_type="text",
-        text=text,
-        confidence=0.85,
-        frame="viewer",
-        evidence=Evidence(ids=(body.thing.id, *near), time=time),
-    )
+    support = thing.node.support if thing.node is not None else ""
+    ids = tuple(i for i in (body.thing.id, support) if isinstance(i, int))
+    return answer, f"At {at(time)}: {cap(body.name)} is {answer}.", ids
+
+
+def _sheet_under(body: Body, time: float, told: Told) -> Thing | None:
+    """The rug, or other sheet, that it is on at a time."""
+    for thing in told.survey.things:
+        if thing.node is not None and thing.id != body.group.id and is_sheet(thing.group.box.size):
+            on = spans_of(Deed("related", relation="on"), body, (thing,), told.timeline, told.survey) or []
+            if any(a <= time <= b for a, b in on):
+                return thing
+    return None
 
 
 def _is_on_floor(body: Body, time: float, told: Told) -> bool:

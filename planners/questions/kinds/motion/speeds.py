@@ -14,9 +14,10 @@ from .....gaussians.world.lengths import METRES
 from ...answer import Answer
 from ...reading.time.deeds import AT_ONCE, Deed
 from ...reading.time.moments import When
-from ...timeline.asked import Told, Untold, agreed, at, cap, during, kind, number, spoken, within
+from ...timeline.asked import Told, Untold, agreed, at, cap, during, kind, names, number, spoken, verb, within
 from ...timeline.bodies import Body
 from ...timeline.happening import bobs, hinged, opened
+from .when import moment
 
 _PER_SECOND = {  # by the first letters of a unit: its sign, and how many of it are a metre a second
     "km": ("km/h", 3.6),
@@ -335,17 +336,29 @@ def _faster(told: Told) -> Answer | None:
     if second is None:
         return None
     bodies = [told.one(first), told.one(second)]
+    if told.frame.rank in ("first", "last"):
+        return _earlier(told, bodies)
     tops = [float(events.speeds(b.course, b.course.grid()).max()) / told.timeline.unit for b in bodies]
     best = int(np.argmin(tops) if told.frame.rank == "slower" else np.argmax(tops))
     if abs(tops[0] - tops[1]) < 0.03 * max(*tops, 1e-9):
         raise Untold(f"Both move at {_short(tops[0])} m/s at most.")
-    from ...timeline.asked import names
-
     text = (
         f"{cap(bodies[best].name)} moves at {_short(tops[best])} m/s at most, {bodies[1 - best].name} at "
         f"{_short(tops[1 - best])} m/s."
     )
     return names([bodies[best]], text, single=True)
+
+
+def _earlier(told: Told, bodies: list[Body]) -> Answer:
+    """Which of two does it first, or last."""
+    deeds, times = [], []
+    for body, what in zip(bodies, (told.frame.what, told.frame.other), strict=True):
+        if what is None or what.deed is None or not (found := told.spans(body, what)):
+            raise Untold(cap(f"{body.name} never {verb(told, what)}."))
+        times.append(moment(what.deed, found[0]))
+        deeds.append(f"{body.name} {verb(told, what)} at {at(times[-1])}")
+    best = int(np.argmin(times) if told.frame.rank == "first" else np.argmax(times))
+    return names([bodies[best]], cap(f"{'; '.join(deeds)}."), times[best], single=True)
 
 
 def _short(value: float) -> str:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from .....gaussians.motion.holding import Span
+from .....gaussians.motion.holding import Span, common
 from ...answer import Answer
 from ...candidates import is_plural
+from ...reading.noun_phrase import is_anything
 from ...reading.time.deeds import STATES, Deed
 from ...survey import listed
-from ...timeline.asked import Told, Untold, at, cap, during, kind, spoken, verb, within, yes_no
+from ...timeline.asked import PLACES, Told, Untold, at, cap, during, kind, spoken, verb, within, yes_no
 from ...timeline.bodies import Body
+from ...timeline.happening import is_near
 from .when import moment
 
 _ROUND = 0.15  # seconds: what starts so soon after the start of the scene starts with it
@@ -25,23 +28,60 @@ def _whether(told: Told) -> Answer | None:
         return None
     if told.frame.other is not None and told.frame.asks == "yesno":
         return _before(told)
-    if deed.kind == "related" and (when is None or when.kind in ("at", "in", "start", "end", "middle")):
+    if (
+        deed.kind == "related"
+        and deed.way != "stay"
+        and (when is None or when.kind in ("at", "in", "start", "end", "middle"))
+    ):
         return None  # the scene at that time tells it
     if deed.kind == "move" and deed.phase and what.at:
-        return None  # "does it stop at the wall?" is asked of where it is then
+        return _there(told)
     window = told.window()
     bodies = told.bodies()
+    if told.frame.rank == "together":
+        return _together(told, bodies, window)
+    if told.frame.rank in PLACES:
+        return _is_ranked(told, window)
+    if when is not None and when.conj == "by" and deed.kind in STATES and window is not None:
+        window = (window[1], window[1])
     if not bodies and (what.subject is None or not what.subject.last):
-        return yes_no(False, f"nothing {verb(told)}.", [])
-    always = when is not None and when.kind == "always"
+        return yes_no(deed.kind == "still", f"nothing {'moves' if deed.kind == 'still' else verb(told)}.", [])
+    always = when.kind == "always" if when is not None else deed.way == "stay"
     each = [(b, _holds(told, b, window, always)) for b in bodies]
     plural = what.subject is not None and is_plural(what.subject) and what.subject.pick == "all"
+    plural = plural or (deed.kind == "still" and what.subject is not None and is_anything(what.subject))
     holds = all(ok for _, (ok, _) in each) if plural else any(ok for _, (ok, _) in each)
     single = what.subject is not None and bool(what.subject.text) and what.subject.pick == "one"
     if single and len({ok for _, (ok, _) in each}) > 1:
         raise Untold(f"That holds of {listed([b.name for b, (ok, _) in each if ok])} only. Say which one is meant.")
+    holds = holds != what.denied
     time = window[0] if window is not None else next((s[0][0] for _, (ok, s) in each if ok and s), None)
     return yes_no(holds, _sentence(told, each, window), [b for b, _ in each], time, told.others())
+
+
+def _together(told: Told, bodies: Sequence[Body], window: Span | None) -> Answer:
+    """Whether several do it at the same time."""
+    each = [(b, within(told.spans(b), window)) for b in bodies]
+    pairs = [(common(x, y), a, b) for i, (a, x) in enumerate(each) for b, y in each[i + 1 :]]
+    both = next(((shared, a, b) for shared, a, b in pairs if shared), None)
+    said = "; ".join(f"{b.name} {verb(told)} {spoken(s)}" for b, s in each if s)
+    return yes_no(both is not None, f"{said or 'nothing does that'}.", bodies, both[0][0][0] if both else None)
+
+
+def _is_ranked(told: Told, window: Span | None) -> Answer:
+    """ "Is the blue book the last to fall?"."""
+    deed, body = told.frame.what.deed, told.one()
+    assert deed is not None
+    found = sorted(
+        (moment(deed, s[0]), b.name, b)
+        for b in told.timeline.movers(told.survey)
+        if (s := within(told.spans(b) if told.spans(b) else [], window))
+    )
+    place = PLACES[told.frame.rank]
+    if not found or place >= len(found):
+        raise Untold(f"Only {listed([name for _, name, _ in found])} {verb(told)}.")
+    text = "; ".join(f"{name} {verb(told)} at {at(time)}" for time, name, _ in found)
+    return yes_no(found[place][2] == body, f"{text}.", [body], found[place][0])
 
 
 def _holds(told: Told, body: Body, window: Span | None, always: bool) -> tuple[bool, list[Span]]:
@@ -95,9 +135,33 @@ def _sentence(told: Told, each: list[tuple[Body, tuple[bool, list[Span]]]], wind
     return f"{'; '.join(said)}{asked}."
 
 
+def _there(told: Told) -> Answer | None:
+    """ "Does it stop at the wall?": whether it is at the other thing when it stops or starts."""
+    what, body, others = told.frame.what, told.one(), told.others()
+    found = told.spans(body)
+    if (
+        not found
+        or what.deed is None
+        or what.at not in ("at", "near", "next to", "beside", "by", "against", "from", "close to")
+    ):
+        return None
+    time = moment(what.deed, found[-1 if what.deed.stops else 0])
+    near = is_near(body, others, told.timeline, time)
+    return yes_no(near != what.denied, f"{body.name} {verb(told)} at {at(time)}.", [body], time, others)
+
+
 def _either(told: Told) -> Answer | None:
     """ "Is the door open or closed at 2 s?"."""
     first, second = told.frame.options
+    if told.frame.options == ("before", "after"):
+        given = _whether(told)
+        said = first if given is not None and given.answer == "yes" else second
+        text = "" if given is None else given.text.partition(", ")[2]
+        return (
+            None
+            if given is None
+            else given.model_copy(update={"answer": said, "answer_type": "label", "text": f"{cap(said)}: {text}"})
+        )
     given = _whether(told)
     if given is None or given.answer is None:
         return given

@@ -12,12 +12,13 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Literal
 
+from .....gaussians.world.words import singular
 from .notation import pattern, verb_forms
 
 Kind = Literal[
     "move", "turn", "open", "close", "fall", "rise", "land", "reach", "enter", "leave", "cross", "pass", "approach",
     "recede", "return", "bob", "appear", "vanish", "still", "is_open", "is_closed", "is_back", "related", "slows",
-    "speeds_up", "nearest", "farthest", "recolor",
+    "speeds_up", "nearest", "farthest", "recolor", "scene",
 ]  # fmt: skip
 Phase = Literal["", "start", "stop", "quarter", "half", "full"]
 STATES = ("still", "is_open", "is_closed", "is_back", "related")
@@ -67,60 +68,67 @@ is_open full -: [STAY] FULL (open|opened|out|extended|pulled out|ajar) | open FU
     opening|full opening|[full|maximum] extension) | ~reach [its] (widest|maximum opening|full (opening|extension))
 is_open - -: [STAY] (open|opened|ajar|pulled out|extended|drawn out|out)
 is_closed - -: [STAY] [FULL] (closed|shut|pushed in|in) [again]
+return - -: (~return|~go|~come|~get|~move) [back] to ITS (original|old|initial|starting|former|first|usual) \
+    (place|position|spot)
 is_back - -: [STAY|~come|~go|~move] [FULL] back [in|at|to|into] [its|the] \
     [original|old|initial|starting|former|first|usual] (place|spot|position) | [STAY] back where it \
     (~be|~start|~begin) | (~go|~get|~come) back where it (~be|~start)
 still - -: [STAY] [SO] (still|at rest|motionless|stationary|at a \
     standstill|immobile|unmoved|fixed|static|resting|stopped|waiting|idle|inactive|put|switched off|turned \
-    off|off|in [ITS|one] [same] (place|spot|position)|where (it|they) (~be)) | ~rest | ~wait | ~pause | ~idle | \
-    ~do nothing | ~hold still
+    off|off|in [ITS|one] [same] (place|spot|position)|where (it|they) (~be)) | ~rest | ~wait | ~pause | ~idle | ~do \
+    nothing | ~hold still
 open - out: ~open [up|out] | (GO|COME|TURN) [FULL] (out|outward|outwards|open|out of) | ~extend | ~pull out
 open stop out: ~open [up] (fully|completely|all the way|entirely|totally|wide) | (fully|completely|entirely) ~open
-close - in: (~close|~shut|~retract) [again|up] | (GO|COME|TURN|~push|~return) [FULL] [back] \
+close - in: (~close|~shut|~retract) [again|up] | (GO|COME|TURN|~push|~return|~slam|~bang) [FULL] [back] \
     (in|inward|inwards|inside|shut|closed) [again]
 close stop in: (~close|~shut) (fully|completely|all the way|entirely|totally) | (fully|completely) (~close|~shut)
-return - -: (GO|COME|TURN) [all the way|right] back [again|home] | ~return [back|home|to its place] | ~go home
+return - -: (GO|COME|TURN|~bounce|~spring) [all the way|right] back [again|home] | ~return [back|home] | ~go home
 move stop -: (~come|~roll|~slow|~grind|~slide|~get) [down] to [a|an|its] [full|complete|final|dead] \
     (rest|stop|halt|standstill|end|stillness) | (~end|~wind|~finish) up | (~settle|~freeze) [down] | END | ~be \
-    (done|finished|over|through) | (~go|~switch|~turn|~shut|~power) [itself] (off|down) | ~die down | ~conclude
-move start -: START [up|out] | ~set (off|out|in motion) | ~take off | ~get (going|moving|rolling) | ~go off | \
-    ~kick off | (~switch|~turn|~come|~go) on | ~launch | ~depart | ~wake up
+    (done|finished|over|through) | ~reach ITS (final|last) (position|place|spot) | (~go|~switch|~turn|~shut|~power) \
+    [itself] (off|down) | ~die down | ~conclude | ~arrive
+move start -: START [up|out] | ~set (off|out|in motion) | ~take off | ~get (going|moving|rolling) | ~go off | ~kick \
+    off | (~switch|~turn|~come|~go) on | ~launch | ~depart | ~wake up
+fall - down: FALL
 fall - down: FALL [down|over|off|downward|downwards] | (~come|~go|~tip|~crash) (down|over) | (GO) \
-    (down|downward|downwards) | in [the|mid] air | airborne | in free fall | ~tip
+    (down|downward|downwards) | in [the|mid] air | airborne | in free fall | ~tip | knocked (over|down|off)
 rise - up: UP [up|off|upward|upwards] | (GO|~come) (up|upward|upwards) | ~take off
 land - -: ~land [on|onto|upon|down] | ~touch down | (~hit|~reach|~touch|~strike|~meet|~get to) [the] GROUND
 bob - -: (~bob|~bounce|~wobble|~shake|~jiggle|~sway|~vibrate|~rock) [up and down|about|around] | GO up and down
 approach - -: ~approach | (GO|COME|~become|~draw) [any] (closer|nearer|near) [to|toward|towards] | GO \
     (toward|towards|in the direction of)
-recede - -: (GO|COME|~become|~be) (farther|further|more distant) [away] [from|of] | (GO|COME) away from | \
-    ~increase ITS distance (to|from)
+recede - -: (GO|COME|~become|~be) (farther|further|more distant) [away] [from|of] | (GO|COME) away from | ~increase \
+    ITS distance (to|from)
 nearest - -: [~be|~get|~come|~pass] [the] (closest|nearest) (to)
 farthest - -: [~be|~get] [the] (farthest|furthest) [away] from
-turn - -: TURN [around|round|about|over] | ~go (round|around) | ~change [ITS] (direction|course|heading) | ~make \
-    (turns|rotations|revolutions|a U turn)
+turn - -: TURN [around|round|about|over] | ~go (round|around) | ~make (turns|rotations|revolutions|a U turn)
+turn - course: ~change [ITS] (direction|course|heading)
 turn - left: ~turn [to] [the|its] left
 turn - right: ~turn [to] [the|its] right
 turn - -: ~turn [around] [the|a] corner
 slows - -: ~slow [down|up] | (~get|~become|~be) slower | (~lose|~drop) speed | ~decelerate | ~brake
-speeds_up - -: ~speed up | ~accelerate | (~get|~become|~be) (faster|quicker) | (~gain|~pick up) speed | ~pick up \
-    speed
-leave - -: ~leave | ~exit | (GO|COME|TURN|~step) (off|off of) | ~depart from | (END) [being] (on|touching) | \
-    ~lose [ITS] [contact|touch] with | ~clear | off | ~quit
+speeds_up - -: ~speed up | ~accelerate | (~get|~become|~be) (faster|quicker) | (~gain|~pick up) speed | ~pick up speed
+leave - -: ~leave | ~exit | (GO|COME|TURN|~step) (off|off of) | ~depart from | (END) [being] (on|touching) | ~lose \
+    [ITS] [contact|touch] with | ~clear | off | ~quit
 cross - -: ~cross | ~traverse | (GO|~pass) (across|over|through|along)
 pass - -: ~pass [by|beside|near|next to|in front of|close to] | (GO|COME) [right|close] (past|by)
 enter - -: ~enter | (GO|COME|TURN|~step) (onto|on to)
 reach - -: ~reach | ~hit | ~touch | ~contact | ~meet | ~strike | BUMP (into|against|with) | ~knock over | ~arrive \
     [at|on|in|by|near|next to|beside|with] | (GO|COME) [all the way|back] [up|over] (to|into|against) | \
-    (~make|made) it [all the way] [up|over] (to|into) | ~come into (contact|touch) with | (~make|~have) \
-    [first|its first|the first] contact with | ~come up (to|against) | ~get as far as
+    (~make|made) it [all the way] [up|over] (to|into) | ~come into (contact|touch) with | (~make|~have) [first|its \
+    first|the first] contact with | ~come up (to|against) | ~get as far as
 vanish - -: ~disappear | ~vanish | ~go away | gone
 appear - -: ~appear | ~reappear | ~show up | ~become visible | ~come into view
 recolor - -: ~change [ITS] (color|colors|look|looks|appearance) | TURN (another|a different) color
-move - left: GO [to [the|its]] left
-move - right: GO [to [the|its]] right
-move - -: GO [around|about|along|away|on|there|anywhere|somewhere|forward|forwards|backward|backwards|ahead] | in \
-    motion | on the move | ~come | under way | active | (on|running|working|going|switched on|turned on) | ~cover \
-    | ~change [ITS] (place|position|location) | ~leave ITS (place|spot)
+move - left: GO [from [the] right] [to [the|its]] left
+move - right: GO [from [the] left] [to [the|its]] right
+move - toward: (GO|COME) (toward|towards) (me|us|the (viewer|camera))
+move - away: (GO|COME) away from (me|us|the (viewer|camera))
+move - forward: GO (forward|forwards|ahead)
+move - backward: GO (backward|backwards)
+move - -: GO [around|about|along|away|on|there|anywhere|somewhere] | in motion | on the move | ~come | under way | \
+    active | (on|running|working|going|switched on|turned on) | ~cover | ~change [ITS] (place|position|location) | \
+    ~leave ITS (place|spot)
 """
 _NOUNS: dict[Kind, str] = {
     "move": "movement|motion|moving|roll|ride|walk|trip|journey|run|travel|path|way|slide|action|animation|rolling|"
@@ -128,14 +136,15 @@ _NOUNS: dict[Kind, str] = {
     "turn": "turn|turning|rotation|spin|spinning|swing|revolution|corner|curve|bend|change of direction",
     "open": "opening", "close": "closing|shutting", "fall": "fall|drop|falling|tumble|plunge|descent|flight",
     "land": "landing|impact|touchdown", "reach": "contact|collision|hit|impact|arrival|touch|bump|crash",
-    "return": "return", "cross": "crossing", "still": "pause|rest|wait|break", "leave": "departure|leaving",
+    "return": "return", "cross": "crossing", "still": "pause|rest|wait|break|stillness|standstill",
+    "leave": "departure|leaving",
 }  # fmt: skip
 _PHASES: dict[Phase, str] = {
     "stop": "stop|halt|end|standstill|finish|stopping", "start": "start|beginning|launch|onset",
 }  # fmt: skip
 _ASPECTS: dict[Phase, str] = {
     "start": "START [to|in|on|with|by|its|the|out] [be|being]",
-    "stop": "(END|~be done|~be finished|~be through|~complete) [to|its|the|with|being]",
+    "stop": "(END|[~be] (done|finished|through)|~complete) [to|its|the|with|being]",
     "": "(~keep|~continue|~go on|~carry on|STAY) [on|to|with|its] [be]",
 }
 _PROCESSES = ("move", "turn", "open", "close", "fall", "rise", "cross", "return", "approach", "recede", "bob")
@@ -185,7 +194,9 @@ def verbs() -> frozenset[str]:
 
 @cache
 def _nouns() -> tuple[Row, ...]:
-    lead = "[the|its|their|a|this|that|his|her] [first|whole|entire|complete|very|single|one|full|each|every]"
+    lead = (
+        "[all|half a] [the|its|their|a|this|that|his|her] [first|whole|entire|complete|very|single|one|full|each|every]"
+    )
     rows = [(f"{lead} ({said})", Deed(kind)) for kind, said in _NOUNS.items()]
     rows += [(f"{lead} ({said})", Deed("move", phase)) for phase, said in _PHASES.items()]
     for kind in ("move", "turn", "open", "close", "fall", "cross"):
@@ -197,6 +208,6 @@ def _nouns() -> tuple[Row, ...]:
 def as_noun(text: str) -> Deed | None:
     """The deed that a noun names: "the turn", "its fall", "the start of the fall"; None if it names none."""
     for row, deed in _nouns():
-        if row.fullmatch(f"{text} "):
+        if row.fullmatch(f"{text} ") or row.fullmatch(f"{singular(text)} "):
             return Deed(deed.kind, deed.phase, verb=text)
     return None

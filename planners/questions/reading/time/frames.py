@@ -12,10 +12,13 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import Literal
 
+from .....gaussians.world.words import singular
 from ..noun_phrase import is_color_word
-from .happenings import Happening, happenings, thing
-from .moments import When, clauses, time_first, without_time
+from .deeds import STATES, Deed, Kind, as_noun
+from .happenings import PARTICLES, Happening, by_noun, happenings, thing
+from .moments import CLIP_EDGE, When, clauses, is_main, time_first, without_time
 from .notation import pattern
+from .plainly import plainly
 
 Asks = Literal[
     "when", "how_long", "between", "how_fast", "how_far", "how_often", "how_many", "where", "which_way", "order",
@@ -50,13 +53,13 @@ class Frame:
 
 # -- what is asked ---------------------------------------------------------------------------------------------------
 
-_POINT = "([exact|precise|very] (time|second|seconds|moment|point|timestamp|instant|sec|frame|stage) [in time|of time|\
-mark|exactly])"
+_POINT = "([exact|precise|very|first|earliest] (time|second|seconds|moment|point|timestamp|instant|sec|frame|stage) \
+[in time|of time|mark|exactly|on])"
 _SPAN = "(duration|time span|timespan|period [of time]|length of time|amount of time|stretch of time)"
 _TOLD = "[~be|tell|give|name|state] [me]"
 _TAKES = "[(do|does|did|will|would|has|is|was) (it|that|this) [all] (~take|~need|~last|~require|be) [time|for]]"
 _ROUNDS = "([full|complete|whole|total|single] (turn|turns|rotation|rotations|revolution|revolutions|spins|rounds|\
-circles|laps|loops|cycles|revs|times|twists))"
+circles|laps|loops|cycles|revs|times|twists) [in all|in total|altogether|overall])"
 _MEASURES = (
     "avg|average|mean|top|maximum|maximal|max|peak|highest|greatest|angular|rotational|rotation|turning|spinning|\
 spin|walking|rolling|sliding|falling|opening|linear|overall|typical|ground|travel|moving|movement|current|usual"
@@ -68,8 +71,8 @@ when end: (until|till|up to|up until) (when|(what|which) {_POINT})
 when: when [exactly] | since when | [by|at|on|in|after|around|about|from|since|through] (what|which) {_POINT} [is \
     it] [that|when]
 when: how (soon|early|late) | how (long|many seconds|much time|many secs) [into it|in] {_TAKES} [is it|will it \
-    be|passes|pass|elapses|goes by|go by|do i wait|must i wait] (until|till|before) | (after|by) how (many \
-    seconds|long|much time|many secs) [in|into it]
+    be|passes|pass|elapses|goes by|go by|[do|must|does|will|should] (i|you|we|one) [have to|need to|must] wait|to \
+    wait] (until|till|before) | (after|by) how (many seconds|long|much time|many secs) [in|into it]
 when: how many (seconds|secs) (in|into it|after the start|from the start) | [what] {_TOLD} the {_POINT} (when|at \
     which|that|of|where|in which|for|on which)
 how_fast: [and] how (fast|quick|quickly|rapidly|slow|slowly|speedy|swiftly) | [at|with|by] (what|which|how much) \
@@ -90,13 +93,14 @@ how_far: [what] {_TOLD} [the] [total|overall|whole] (distance|path length|length
     [of|that|which]
 how_far degrees: [by|through] (what|which) [the] angle [of|that] | [what] {_TOLD} [the] [opening|turn|turning] \
     angle [of|that]
-how_many: how many [different|of] | count | [what ~be] the number of | what number of
+how_many: how many [different|of] | count | [what ~be] [the] number of | what number of
 where: [and] [to|from] (where|whereabouts|where exactly|where to) | (at|in|on|to) (what|which) \
     (place|spot|location|position)
 order: [give|tell|list|name|say] [me] [in] (the|what|which) [is the] (order|sequence) [of|in which|that|do|does]
 order: [tell|list|describe|explain] [me] what [all] (happens|happened|is happening|goes on|is going on|takes \
     place|will happen|events are there|occurs) [here|there|in here] [in] [what|which|the] [order|sequence]
 order: (list|name|give|tell|show) [me] [all] [the] (events|movements|motions|happenings) [here] [in order]
+order: (order|sequence) of
 faster faster: [and] (which|what|who) [one|thing] [is|goes|moves|turns|travels] [the] (faster|quicker) [one]
 faster slower: [and] (which|what|who) [one|thing] [is|goes|moves|turns|travels] [the] slower [one]
 which: [name|list|show|tell] [me] (which|what|who|everything|all|the things|the thing|the objects|the \
@@ -117,7 +121,11 @@ _FIRST_OF = re.compile(
     r"^(?:what|which)(?: one| event)? (?:comes|happens|is|occurs) (?:first|earlier)(?: ,| :)? (?P<a>.+?)(?: ,)? or "
     r"(?P<b>.+)$"
 )
-_RANKED_THING = re.compile(r"^(?:(?:name|list|show|tell)(?: me)? )?(?P<x>the (?:first|last|fastest|slowest) .+)$")
+_RANKED_THING = re.compile(r"^(?:(?:name|list|show|tell)(?: me)? )?(?P<x>(?:the )?(?:first|last|fastest|slowest) .+)$")
+_OF_TWO = re.compile(
+    r"^(?:which|what|who)(?: one| of them| of the two)? (?P<v>.+?) (?P<r>first|earlier|sooner|later|last)(?: ,| :)? "
+    r"(?P<a>.+?)(?: ,)? or (?P<b>.+)$"
+)
 _ASKING = re.compile(
     r"(?:and )?(?:how|what|which|when|where|who|why|in what|in which|at what|at which|by what|by how|list|name|count|"
     r"tell|give|show)\b"
@@ -191,8 +199,20 @@ _IN_UNIT = re.compile(
     rf" , (?P<w>{_LENGTH}|{_ANGLE}|seconds|secs)$"
 )
 _COUNT = r"(?:and )?(?:(?:by|through|for|with|at) )?(?:how many|what number of|(?:what is )?the number of)"
-_SPREAD = re.compile(rf"^{_COUNT} (?P<n>{_COUNTED}) (?P<rest>.+) (?P<per>{_EACH} {_SECOND})$")
+_SPREAD = re.compile(
+    rf"^(?:{_COUNT} (?P<n>{_COUNTED})|how (?:often|many times)) (?P<rest>.+) (?P<per>{_EACH} {_SECOND})$"
+)
 _HOW_MANY = re.compile(rf"^{_COUNT} (?:(?P<rate>{_RATE})|(?P<far>{_LENGTH}|{_ANGLE}))(?: of)?(?= |$)(?P<rest>.*)$")
+_HOW_MANY_EVENTS = re.compile(rf"^{_COUNT} (?P<n>\w+) (?P<rest>(?:does|do|did|are|is|has|have) .+)$")
+_QUANTITIES: dict[str, tuple[Asks, Kind]] = {
+    "time": ("when", "move"), "moment": ("when", "move"), "timestamp": ("when", "move"),
+    "duration": ("how_long", "move"), "distance": ("how_far", "move"), "way": ("how_far", "move"),
+    "path length": ("how_far", "move"), "travel": ("how_far", "move"), "extension": ("how_far", "open"),
+    "displacement": ("how_far", "move"), "angle": ("how_far", "open"), "height": ("how_far", "fall"),
+    "drop": ("how_far", "fall"),
+}  # fmt: skip
+_NOMINAL = re.compile(rf"^(?:the )?(?P<x>.*?) ?\b(?P<q>{'|'.join(_QUANTITIES)})(?: (?:of|for) (?P<y>.+))?$")
+_MOST = re.compile(r"\b(?:total|overall|max|maximum|full|whole|greatest|travel|net|dwell|contact|final|'s)(?= |$)")
 _RATE_FIRST = re.compile(rf"^(?P<u>{_RATE}) (?:of|for)? ?(?P<rest>.+)$")
 _SPEED_LAST = re.compile(rf"^(?P<rest>.+?)(?: 's)? (?:(?:its )?(?P<kind>{pattern(_SPEED)})|(?P<unit>{_RATE}) )$")
 
@@ -209,12 +229,37 @@ def _in_unit(said: str) -> tuple[str, str]:
 def _measured(said: str) -> Iterator[tuple[Frame, str]]:
     """Questions that name what is measured by its unit: "how many cm", "fan rpm", "the ball 's average speed"."""
     if (found := _SPREAD.match(said)) is not None:
-        yield Frame("how_fast", Happening(None), unit=f"{found['n']} {found['per']}"), found["rest"]
+        yield Frame("how_fast", Happening(None), unit=f"{found['n'] or 'turns'} {found['per']}"), found["rest"]
+        return
     if (found := _HOW_MANY.match(said)) is not None:
         asks: Asks = "how_fast" if found["rate"] else "how_far"
         yield Frame(asks, Happening(None), unit=found["rate"] or found["far"]), found["rest"].strip(" ,")
     if (found := _RATE_FIRST.match(said)) is not None:
         yield Frame("how_fast", Happening(None), unit=found["u"]), found["rest"]
+
+
+def _named(said: str, unit: str) -> Iterator[Frame]:
+    """A quantity of a happening by its name: "ball stop time", "maximum opening angle of the door"."""
+    for when, rest in _timed(said):
+        for what in by_noun(rest):  # "onset of motion of the ball?"
+            if what.deed is not None and what.deed.at_once and what.subject is not None:
+                yield Frame("when", what, when=when, unit=unit)
+        if (found := _HOW_MANY_EVENTS.match(rest)) is not None and (deed := as_noun(singular(found["n"]))) is not None:
+            for what in happenings(found["rest"]):
+                if what.deed is None:
+                    yield Frame("how_often", replace(what, deed=deed), when=when)
+        if (found := _NOMINAL.match(rest)) is None or _ASKING.match(said) or is_main(rest):
+            continue
+        asks, kind = _QUANTITIES[found["q"]]
+        x, y = _MOST.sub("", found["x"]).strip(), found["y"]
+        for what in happenings(f"{x} of {y}" if x and y else y or x):
+            if what.subject is None or (what.deed is None and asks != "how_far"):
+                continue
+            deed = what.deed or Deed(kind)
+            told = "how_long" if asks == "when" and not deed.at_once else asks
+            own = unit or ("degrees" if found["q"] == "angle" else "")
+            last = When("end") if found["x"].startswith("final") else when
+            yield Frame(told, replace(what, deed=deed), when=last, unit=own)
 
 
 def _speed_last(said: str, unit: str) -> Iterator[Frame]:
@@ -231,43 +276,7 @@ def _speed_last(said: str, unit: str) -> Iterator[Frame]:
 
 # -- the whole question ----------------------------------------------------------------------------------------------
 
-_IT = r"(?:it|he|she|they)"
-_SAID = r"(?P<x>the [\w ]+?)"
-_PLAIN = tuple(  # what people say, and the same as it is asked plainly
-    (re.compile(said), plain)
-    for said, plain in (
-        (r"^(?:is )?(?:there )?anything (?P<e>else )?(?P<v>moving|turning|spinning|falling)\b", r"is anything "
-        r"\g<e>\g<v>"),
-        (r"^(?:is|are) there (?:still )?(?:any |some )?(?:movements?|motion)(?: in the room)?(?= |$)",
-         "does anything move"),
-        (r"^(?P<v>does|is|did) anything (?P<m>.*?)(?: (?:besides|except|apart from|other than|but)) (?P<x>.+)$",
-         r"\g<v> anything besides \g<x> \g<m>"),
-        (r"\b(?P<w>anything|something) else (?:than|but|besides|except) ", r"\g<w> besides "),
-        (rf"^{_SAID} (?P<v>does|did|is|was|will|has) {_IT} (?P<rest>.+)$", r"\g<v> \g<x> \g<rest>"),
-        (r"^(?P<x>the \w+(?: \w+)?) , (?P<rest>(?:when|how|where|what|which|does|is|at|until)\b.*)\b(?:it|"
-        r"they)\b(?P<end>.*)$",
-         r"\g<rest>\g<x>\g<end>"),
-        (r"\bon the (?P<w>last|final|first) frame\b", r"in the \g<w> frame"),
-        (rf"^(?:the )?(?:total |whole )?time {_SAID} is in motion$", r"how long does \g<x> move"),
-        (r"^(?:the )?(?:total |whole )?(?:path|travel|way) length of (?P<x>.+)$", r"how far does \g<x> move"),
-        (r"^(?:in )?(?:what|which) state (?:is|are) (?P<x>.+?)(?: in)?(?P<t>(?: at .+)?)$", r"is \g<x> open or "
-        r"closed\g<t>"),
-        (r" (?:for|to make|to complete|to do|to finish|makes?|complete|do) (?:one|a|each|a full|a single|one "
-        r"full|every|two|three|four|"
-         r"five|ten|\d+) (?:full |whole |complete )?(?:turn|rotation|revolution|spin|round)s?\b", " turn"),
-        (r"^whether ", ""), (r"metre", "meter"), (r" , (?=in (?:order|sequence)$)", " "),
-        (r"\bon (?:the|its) (?:last|final|second) (?:stretch|leg|part|straight)\b", "after the turn"),
-        (r"\bon (?:the|its) (?:first|initial) (?:stretch|leg|part|straight)\b", "before the turn"),
-        (r"^(?:to )?where (?:is|does) (?P<x>.+?) (?:heading|head|headed|bound)(?: to| for)?(?= |$)",
-         r"which way does \g<x> move"),
-        (r"^(?P<h>(?:for )?how long .+) lasts?$", r"\g<h>"),
-        (r"^(?P<n>\w+) (?:duration|time) of (?P<x>.+)$", r"how long does the \g<n> of \g<x> take"),
-        (r"^(?P<h>how far) (?P<p>(?:out of|away from|from|off) (?:the|its) (?:\w+ ){1,3}?)(?P<rest>(?:does|do|"
-        r"did|is|has) .+)$",
-         r"\g<h> \g<rest> \g<p>"),
-        (r" (?:at|from|in) the moment (?:when|that|at which|where) ", " when "),
-    )
-)  # fmt: skip
+_DONE = re.compile(r"(?:has|have|had) ")
 _PLAIN_SIDES = tuple(
     re.compile(p)
     for p in (r"^(?:when|the (?:moment|time|point)) (?:when |that |at which )?(?=\w)", r" (?:does|do|did|is|has)$")
@@ -299,6 +308,11 @@ _STATE_WORDS = (
 _STATES_OR = re.compile(
     rf" (?P<a>{_STATE_WORDS}) or (?:is it |already |still |again |not )?(?P<b>{_STATE_WORDS}|not)(?= |$)"
 )
+_TOGETHER = re.compile(r" (?:at the same time|simultaneously|at once|together|in parallel)(?= |$)")
+_SOME = re.compile(r"\b(?:any two|two|several|some|any) (?:of the )?(?=\w+s\b)")
+_WHAT_ON = re.compile(r"^(?:is|was|are|were) (.+) on$")
+_RANKED_AS = re.compile(r"\b(?:first|last|second|third|earliest|latest)(?: one| book| thing)?(?: to| that| who|$)")
+_BEFORE_OR_AFTER = re.compile(r"^(.+) before or after (.+)$")
 _SIDES_OF = tuple(  # of two happenings that a time lies between
     re.compile(said)
     for said in (
@@ -307,6 +321,7 @@ _SIDES_OF = tuple(  # of two happenings that a time lies between
         r"^(?:separates?|divides?|lies? between|are between) (?P<a>.+) (?:from|and) (?P<b>.+)$",
         r"^(?:passe?s? |is it |goes by |go by |elapses? )?after (?P<a>.+?) (?:does|do|did|will|is|until|till|"
         r"before) (?P<b>.+)$",
+        r"^before (?P<a>.+?) (?:does|do|did|will|is) (?P<b>.+)$",
         r"^(?:later|earlier|after|before|sooner) (?:does |do |did |is |will )?(?P<a>.+) than (?P<b>.+)$",
     )
 )  # fmt: skip
@@ -322,17 +337,15 @@ _MUCH_LATER = re.compile(
 @lru_cache(maxsize=4096)
 def frames(words: tuple[str, ...]) -> tuple[Frame, ...]:
     """Every way of reading the words of a question as one about a scene with time, the likeliest first."""
-    said = time_first(" ".join(words), _ASKING)
-    for row, plain in _PLAIN:
-        said = row.sub(lambda m, plain=plain: re.sub(" +", " ", m.expand(plain)), said)  # type: ignore[misc]
-    return tuple(dict.fromkeys(_frames(said.strip(" ,"))))
+    return tuple(dict.fromkeys(_frames(plainly(time_first(" ".join(words), _ASKING)))))
 
 
 def _frames(said: str) -> Iterator[Frame]:
     if _TWO_QUESTIONS.search(said):
         return
-    rest, unit = _in_unit(said)
+    rest, unit = _in_unit(said) if _SPREAD.match(said) is None else (said, "")
     yield from _between(rest, unit)
+    yield from _named(rest, unit)
     yield from _speed_last(rest, unit)
     if unit:
         yield from _speed_last(said, "")
@@ -344,11 +357,17 @@ def _frames(said: str) -> Iterator[Frame]:
             yield Frame("order", Happening(None), when=time, rank=found["r"])
     for start, inner in _measured(said):
         yield from _filled(start, inner)
+    if _SPREAD.match(said) is not None:
+        return
     for start, inner in _cued(re.sub(r" on average$", "", rest)):
         yield from _filled(replace(start, unit=unit or start.unit), inner)
     if (found := _FIRST_OF.match(rest)) is not None:
         for a, b in _pairs(found["a"], found["b"]):
             yield Frame("order", a, b)
+    if (found := _OF_TWO.match(rest)) is not None:
+        rank = "last" if found["r"] in ("later", "last") else "first"
+        for a, b in _pairs(found["a"], f"{found['b']} {found['v']}"):
+            yield Frame("faster", a, b, rank=rank)
     if (found := _RANKED_THING.match(rest)) is not None:
         yield from _filled(Frame("which", Happening(None)), found["x"])
     if not unit and not _ASKING.match(said):
@@ -357,6 +376,10 @@ def _frames(said: str) -> Iterator[Frame]:
 
 def _filled(start: Frame, said: str) -> Iterator[Frame]:
     """A frame with its time and its happenings, in each way that the words allow."""
+    if start.asks == "yesno" and (found := _BEFORE_OR_AFTER.match(said)) is not None:
+        for frame in _filled(start, f"{found[1]} before {found[2]}"):
+            yield replace(frame, asks="either", options=("before", "after"))
+        return
     if start.asks in ("which_way", "where", "does", "yesno") and (found := _OPTIONS.search(said)):
         asks: Asks = "which_way" if start.asks == "yesno" else start.asks
         options = (found["a"], found["b"])
@@ -413,15 +436,40 @@ def _told(start: Frame, said: str) -> Iterator[Frame]:
             if what.deed is not None and what.deed.kind == "turn":  # as seen from above
                 way = "right" if found["a"] == "clockwise" else "left"
                 yield replace(start, what=replace(what, deed=replace(what.deed, way=way)))
+    if start.asks == "which" and (found := _WHAT_ON.match(said)) is not None and (named := thing(found[1])) is not None:
+        yield replace(start, what=Happening(Deed("related", relation="on", verb="on"), named))
+    if start.asks == "yesno" and (found := _TOGETHER.search(said)) is not None:
+        rest = _SOME.sub("the ", f"{said[: found.start()]}{said[found.end() :]}")
+        for what in happenings(rest):
+            yield replace(start, what=what, rank="together")
+        return
     lasts = start.asks == "how_long" and re.search(r"(?<!the) last$", said)
     if start.asks not in ("where", "which_way", "faster") and not lasts and (ranked := _ranked(said)) is not None:
         rank, plain = ranked
-        for what in happenings(plain):
-            yield replace(start, what=what, rank=rank)
+        for what in happenings(plain) if start.asks != "yesno" or _RANKED_AS.search(said) else ():
+            if _belongs(what, start.asks, plain):
+                yield replace(start, what=what, rank=rank)
     again = "again" if start.asks in ("when", "yesno") and "again" in said.split() else ""
     for what in happenings(said):
-        if start.asks != "which" or what.deed is None or what.subject is None or not said.startswith(what.deed.verb):
-            yield replace(start, what=what, rank=start.rank or again)  # "who opens the door" is none that the door does
+        if start.asks == "when" and _DONE.match(said) and what.deed is not None and not _is_whole(what.deed):
+            what = replace(what, deed=replace(what.deed, phase="stop"))  # "when has it crossed the rug"
+        if _belongs(what, start.asks, said):
+            yield replace(start, what=what, rank=start.rank or again)
+
+
+def _is_whole(deed: Deed) -> bool:
+    return deed.at_once or deed.kind in STATES
+
+
+def _belongs(what: Happening, asks: Asks, said: str) -> bool:
+    """Whether what is asked may be asked of a happening as it is read."""
+    if what.denied and asks != "yesno":
+        return False
+    if asks != "which" or what.deed is None or what.subject is None or what.object is not None:
+        return True
+    return (
+        not said.startswith(what.deed.verb) and what.deed.verb not in PARTICLES
+    )  # "who opens the door", "what is it on"
 
 
 def _ranked(said: str) -> tuple[str, str] | None:
@@ -442,12 +490,16 @@ def _between(said: str, unit: str) -> Iterator[Frame]:
     rests = [(start, said[m.end() :]) for m in (_GAP.match(said), _MUCH_LATER.match(said)) if m is not None]
     rests += [(start, said[m.end() :]) for m in (_SOON.match(said),) if m is not None]
     rests += [(start, rest) for found, rest in _cued(said) if found.asks == "how_long"]
+    gap = re.search(r"\b(?:pause|gap|delay|break|wait|rest|interval)\b.* between ", said)
     for frame, rest in rests:
         for row in _SIDES_OF:
             if (found := row.match(rest)) is not None:
                 for a, b in _pairs(found["a"], found["b"]):
-                    if a.deed is not None and b.deed is not None:
-                        yield replace(frame, what=a, other=b)
+                    if a.deed is None or b.deed is None:
+                        continue
+                    if gap and not a.deed.at_once:  # from the end of the first to the start of the second
+                        a = replace(a, deed=replace(a.deed, phase="stop"))
+                    yield replace(frame, what=a, other=b)
 
 
 def _pairs(first: str, second: str) -> Iterator[tuple[Happening, Happening]]:
@@ -480,6 +532,9 @@ def _side(said: str) -> Iterator[Happening]:
     """One of two happenings, with its place among several."""
     for row in _PLAIN_SIDES:
         said = row.sub("", said)
+    if (edge := CLIP_EDGE.fullmatch(said)) is not None:
+        yield Happening(Deed("scene", "stop" if edge["end"] or edge["ends"] else "start", verb=said))
+        return
     done = re.search(r"\b(?:has|have|had)\b", said)
     if (ranked := _ranked(said)) is not None and ranked[0] in ("first", "second", "third", "fourth", "last"):
         for what in happenings(re.sub(r" of$", "", ranked[1])):

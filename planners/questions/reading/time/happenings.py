@@ -26,6 +26,7 @@ class Happening:
         object: what it is done to or where; None if nothing is named.
         at: the preposition before the object, "" if there is none.
         nth: of several such happenings "first", "second", "third" or "last"; "" if not said.
+        denied: whether it is said not to happen.
     """
 
     deed: Deed | None
@@ -33,6 +34,7 @@ class Happening:
     object: Query | None = None
     at: str = ""
     nth: str = ""
+    denied: bool = False
 
 
 _BE = bag("is are was were be been being am get gets got")
@@ -46,7 +48,7 @@ _SILENT = _BE | bag(
 )
 _ARTICLES = bag("the a this that its all both own")
 _PRONOUNS = bag("it they them that this he she itself one two three four both all")
-_PARTICLES = bag("on off in out put")
+PARTICLES = bag("on off in out put")
 _STILL = bag("still already again now all")
 _ACTING = bag("do does did will would has have had")
 _AMBIGUOUS = bag("open opened closed shut")  # a state behind "is", else something that is done
@@ -71,11 +73,13 @@ _STATE = re.compile(
     r"^(?P<a>.+?) (?:(?:is|are|was|were|be|stay|stays|staying|stayed|remain|remains|lie|lies|lying|stand|stands|"
     r"sit|sits|"
     r"rest|rests|being|standing|sitting|resting) )?(?:still |already |now |all )*(?P<r>on top of|on|inside|in front of|"
-    r"under|underneath|next to|beside|near|behind|above|over|against|in|close to|between|left of|right of|to the left "
-    r"of|to the right of) (?P<b>(?:the|a|an|its|my|it) .+|it)$"
+    r"under|underneath|next to|beside|near|behind|above|over|against|by|in|close to|between|left of|right of|"
+    r"to the left of|to the right of) (?P<b>(?:the|a|an|its|my|it) .+|it)$"
 )
+_STAYS = re.compile(r"\b(?:stay|stays|staying|stayed|remain|remains|remained|keep|keeps)\b")
+_PARTICIPLE = re.compile(r"^(?:the |all )?(?P<v>\w+ing) (?P<x>\w+(?: \w+)?)$")
 _FROM_TO = re.compile(r"^(?P<x>.*?) ?(?:gets?|to get|to go|goes)? ?from (?P<a>.+) (?:to|until|up to) (?P<b>.+)$")
-_NOT = re.compile(r"\b(?:not|never|no longer)\b ?")
+_NOT = re.compile(r"\b(?:not|never|no longer|nothing)\b ?")
 _ANY_MORE = re.compile(r" (?:any ?more|any longer)$")
 _OPPOSITE: dict[Kind, Kind] = {
     "move": "still", "turn": "still", "still": "move", "is_open": "is_closed", "is_closed": "is_open",
@@ -96,8 +100,10 @@ def happenings(said: str) -> Iterator[Happening]:
         relation = relation_phrases.relation(tuple(state["r"].split())) or ""
         subject, other = _subject(state["a"]), thing(state["b"])
         if relation and subject and other is not None:
-            yield Happening(Deed("related", relation=relation, verb=state["r"]), subject, other)
-    yield from _by_noun(_stripped(said))
+            stays = "stay" if _STAYS.search(said) else ""
+            yield Happening(Deed("related", relation=relation, way=stays, verb=state["r"]), subject, other)
+    yield from by_noun(_stripped(said))
+    yield from _participle(_stripped(said))
     if (way := _FROM_TO.match(said)) is not None:
         goal, origin, subject = thing(way["b"]), thing(way["a"]), _subject(way["x"])
         if goal is not None and origin is not None and subject is not False:
@@ -111,16 +117,21 @@ def happenings(said: str) -> Iterator[Happening]:
 
 def _denied(said: str, found: re.Match[str]) -> Iterator[Happening]:
     """ "Does not move", "is not open"; "no longer moves" is that it stops."""
-    rest = f"{said[: found.start()]}{said[found.end() :]}".strip()
+    anything = "anything " if found.group().startswith("nothing") else ""
+    rest = f"{said[: found.start()]}{anything}{said[found.end() :]}".strip()
     less = _ANY_MORE.sub("", rest)
     for what in happenings(less):
-        if what.deed is None or what.deed.phase:
+        if what.deed is None or what.denied:
             continue
-        if found.group().startswith("no longer") or less != rest:
+        if what.deed.phase:
+            yield replace(what, denied=True)
+        elif found.group().startswith("no longer") or less != rest:
             ended: Deed = replace(what.deed, phase="stop")
             yield replace(what, deed=Deed("leave", verb="leave") if what.deed.kind == "related" else ended)
         elif what.deed.kind in _OPPOSITE:
             yield replace(what, deed=Deed(_OPPOSITE[what.deed.kind], verb=what.deed.verb))
+        else:
+            yield replace(what, denied=True)
 
 
 def _with_deed(said: str) -> Iterator[Happening]:
@@ -136,13 +147,13 @@ def _is_state(deed: Deed, before: str, after: str) -> bool:
     """Whether what may be a state or a particle is one: "is the door open", not "does the door open"."""
     words = before.split()
     is_so = bool(words) and (words[0] in _BE or words[-1] in _BE or words[-1] in _STILL)
-    return is_so and _ACTING.isdisjoint(words) and not (deed.verb in _PARTICLES and after)
+    return is_so and _ACTING.isdisjoint(words) and not (deed.verb in PARTICLES and after)
 
 
 def _around(deed: Deed, before: str, after: str) -> Iterator[Happening]:
     """A deed with the things before and behind it."""
     states = deed.kind in ("is_open", "is_closed", "still", "move")
-    if states and deed.verb in _AMBIGUOUS | _PARTICLES and not _is_state(deed, before, _ends(after)):
+    if states and deed.verb in _AMBIGUOUS | PARTICLES and not _is_state(deed, before, _ends(after)):
         return
     if deed.kind in ("open", "close") and deed.verb in ("open", "shut") and _is_state(deed, before, ""):
         return
@@ -201,7 +212,7 @@ def _placed(deed: Deed, subject: Query | None, other: Query, at: str, before: st
         yield Happening(deed, subject, other, at)
 
 
-def _by_noun(said: str) -> Iterator[Happening]:
+def by_noun(said: str) -> Iterator[Happening]:
     """A happening that a noun names: "the fall of the red book", "the blue drop", "its contact with the wall"."""
     if (deed := as_noun(said)) is not None:
         yield Happening(deed)
@@ -213,7 +224,7 @@ def _by_noun(said: str) -> Iterator[Happening]:
             yield Happening(deed, first, second)
     with_object = re.match(r"^(?P<w>.+) (?P<at>with|at|on|against|off|into|from|in|over|of) (?P<y>.+)$", said)
     if with_object is not None and (other := thing(with_object["y"])) is not None:
-        for what in _by_noun(with_object["w"]):
+        for what in by_noun(with_object["w"]):
             if what.object is None and what.deed is not None and what.deed.kind in (*TRANSITIVE, "land"):
                 yield replace(what, object=other, at=with_object["at"])
     of = re.match(r"^(?P<d>.+?) (?:of|by) (?P<x>.+)$", said)
@@ -225,6 +236,14 @@ def _by_noun(said: str) -> Iterator[Happening]:
         named = thing(last["x"]) or (thing(f"{last['x']} thing") if colored else None)
         if named is not None:
             yield Happening(deed, named)
+
+
+def _participle(said: str) -> Iterator[Happening]:
+    """Things by what they do: "falling books"."""
+    if (found := _PARTICIPLE.match(said)) is not None and (named := thing(found["x"])) is not None:
+        for start, stop, deed in said_in(found["v"]):
+            if (start, stop) == (0, len(found["v"])) and deed.kind not in TRANSITIVE and not deed.phase:
+                yield Happening(deed, named)
 
 
 def _subject(before: str) -> Query | Literal[False] | None:

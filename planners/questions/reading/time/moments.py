@@ -57,6 +57,10 @@ def seconds(said: str) -> float:
     return _ONES[whole] + more
 
 
+CLIP_EDGE = re.compile(
+    rf"(?:the )?(?:very )?(?:(?P<end>end|finish)|start|beginning)(?: of {_CLIP})?|{_CLIP} "
+    r"(?:(?P<ends>ends?|is over|stops?)|starts?|begins?)"
+)
 Make = Callable[[re.Match[str]], When]
 
 
@@ -91,7 +95,10 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
          lambda m: When("last", seconds(m["a"]))),
         (rf"\b(?:in|during|for|over|within) (?:the |its )?(?:last|final) (?:second|sec){_OF_CLIP}(?= |$)",
          lambda _: When("last", 1.0)),
-        (rf"\b(?:before|by|until|till|up to|within)(?: the)?(?: {_A} {SECONDS}| second {_B})(?: mark)?(?= |$)",
+        (rf"\bby(?: the)?(?: {_A} {SECONDS}| second {_B})(?: mark)?(?= |$)",
+         lambda m: When("span", 0.0, seconds(m["a"] or m["b"]), conj="by")),
+        (rf"\b(?:before|until|till|up to|within)(?: the)?(?: {_A} {SECONDS}| second {_B})(?: mark)?"
+         rf"(?: (?:had|has|have|is|are) (?:passed|elapsed|over|up|gone))?(?= |$)",
          lambda m: When("span", 0.0, seconds(m["a"] or m["b"]))),
         (rf"\b(?:after|from|since|past)(?: the)?(?: {_A} {SECONDS}| second {_B})(?: mark| on| onwards?)?{_OF_CLIP}(?= "
          rf"|$)",
@@ -108,6 +115,8 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
         (rf"\b(?:right |just )?(?:at|in|from|on) (?:the )?(?:very )?(?:start|beginning|outset){_OF_CLIP}(?= |$)|"
          r"\b(?:initially|originally|to begin with|to start with|at first|in the first frame|immediately|right away|"
          r"straight away|at once|instantly)(?= |$)", _plain("start")),
+        (rf"\b(?:when|once|by the time|as|until) {_CLIP} (?:ends?|finishes|is over|stops|is done)(?= |$)",
+         _plain("end")),
         (rf"\b(?:right |just )?(?:at|in|by|until|till|to) (?:the|its) (?:very )?(?:end|finish|close){_OF_CLIP}(?= |$)|"
          rf"\b(?:finally|eventually|ultimately|afterwards|afterward|at last|in the last frame|in the final frame|"
          rf"when (?:it|everything|all) is over|after everything|after it all)(?= |$)", _plain("end")),
@@ -138,6 +147,11 @@ _MAIN = re.compile(r"(?:do|does|did|is|are|was|were|has|have|had|will|would|can|
 
 
 _AT_FIRST = re.compile(rf"at {NUMBER}(?: {SECONDS})?(?= )")
+
+
+def is_main(said: str) -> bool:
+    """Whether words begin as a clause does: "does the door ...", "is it ..."."""
+    return _MAIN.match(said) is not None and not said.startswith("the ")
 
 
 def time_first(said: str, asking: re.Pattern[str]) -> str:
