@@ -161,8 +161,7 @@ def _embed_blocks(
     assert done.field is not None
     seconds = round(time.perf_counter() - started, 2)
     data = _data(done.field, tiles.folder, seconds) | {"was_there": False, "renamed": False}
-    data["blocks"] = len(done.state.tiles)
-    terminal.result(_text(tiles.folder, f"embedded in {seconds} s, {len(done.state.tiles)} blocks", done.field), data)
+    terminal.result(_text(tiles.folder, f"embedded in {seconds} s", done.field), data)
 
 
 def _saved(embedded: Scene, path: Path, tiles: Tiles | None) -> Path:

@@ -1,4 +1,9 @@
-"""Blocks: a tile with what lies around it as a cloud in memory, for work that has to see whole things."""
+"""Blocks: parts of a scene in tiles with what lies around them as clouds in memory, for work that has to see whole
+things.
+
+Parts are independent of tiles: a tree over a sample divides space where it is emptiest, between rooms that stand apart
+for instance, into parts that are some times as wide as the margin around them.
+"""
 
 from __future__ import annotations
 
@@ -10,32 +15,53 @@ from numpy.typing import NDArray
 
 from ..cloud import NO_GROUP, GaussianCloud, concat
 from ..errors import UserError
+from ..levels.tree import Node, Tree
 from .store import Tiles
 
 METRES = 2.0  # margin where the scale is known: few things are larger that are no part of a building
 SHARE = 0.35  # margin otherwise, of the typical side of a tile
+ROWS = 100_000  # of a part, unless it is narrow: about a room
+NARROW = 3.0  # margins: a part is not divided across a side that is shorter
 SHRINK = 0.75  # of a margin whose rows do not fit into the memory
 LEAST = 0.2  # of the margin, below which it holds no whole thing
+_MIDDLE = (0.3, 0.7)  # quantiles between which a part is divided
+_BINS = 8  # to a margin, in which rows are counted to find the emptiest place
 _CELLS = 2  # to a margin
 _MOST_CELLS = 1 << 20  # along an axis: three axes fit in 64 bits
-_TRIM = 0.05  # share of the rows of a tile beyond its typical side: floaters
+_TRIM = 0.05  # share of the rows beyond a side: floaters
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """A scene divided in space.
+
+    Attributes:
+        tree: its leaves are the parts.
+        held: `[tiles, parts]` rows of each tile in each part.
+    """
+
+    tree: Tree
+    held: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return self.tree.leaves
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A tile and what lies around it.
+    """A part and what lies around it.
 
     Attributes:
-        number: of the tile.
         cloud: all of its rows and those around, ascending by id, without groups.
         tile, row: `[N]` int32, where each row is stored.
-        margin: how far around the tile it reaches at least, scene units.
+        inside: `[N]` bool, whether it is of the part.
+        margin: how far around the part it reaches at least, scene units.
     """
 
-    number: int
     cloud: GaussianCloud
     tile: NDArray[np.int32]
     row: NDArray[np.int32]
+    inside: NDArray[np.bool_]
     margin: float
 
 
@@ -65,55 +91,105 @@ def margin_of(clouds: list[GaussianCloud], metres_per_unit: float | None) -> flo
     return SHARE * float(np.median([np.sort(spread)[1] for spread in spreads]))
 
 
-def block_of(tiles: Tiles, number: int, margin: float, most: int) -> Block:
-    """A tile with the rows within a margin of it; with a narrower one where these are too many.
+def divided(tiles: Tiles, clouds: list[GaussianCloud], margin: float) -> Parts:
+    """The parts of a scene.
+
+    Args:
+        clouds: a sample of each tile.
+
+    Raises:
+        FileError: a tile is torn.
+    """
+    means = np.concatenate([cloud.means.numpy() for cloud in clouds])
+    most = max(1, ROWS * len(means) // max(len(tiles), 1))
+    leaves = 0
+
+    def node(rows: NDArray[np.int64]) -> Node:
+        nonlocal leaves
+        if len(rows) > most:
+            low, high = np.quantile(means[rows], [_TRIM, 1 - _TRIM], axis=0)
+            axis = int(np.argmax(high - low))
+            if high[axis] - low[axis] > NARROW * margin:
+                position = _emptiest(means[rows, axis], margin)
+                below = means[rows, axis] < position
+                if below.any() and not below.all():
+                    return Node(axis, position, (node(rows[below]), node(rows[~below])))
+        leaves += 1
+        return Node(leaf=leaves - 1)
+
+    tree = Tree(node(np.arange(len(means))), leaves)
+    numbers = range(len(tiles.state.tiles))
+    found = (np.bincount(tree.leaf_of(np.asarray(tiles.column(k, "means"))), minlength=tree.leaves) for k in numbers)
+    return Parts(tree, np.stack(list(found)))
+
+
+def _emptiest(along: NDArray[np.float32], margin: float) -> float:
+    """The place near the middle of some coordinates around which fewest lie; of several the one nearest the middle."""
+    low, middle, high = np.quantile(along.astype(np.float64), [_MIDDLE[0], 0.5, _MIDDLE[1]])
+    bins = int(np.clip((high - low) / margin * _BINS, 2, 1 << 12))
+    count, edges = np.histogram(along, bins, (low, high))
+    near = np.convolve(count, np.ones(min(_BINS, bins)), mode="same")
+    places = (edges[:-1] + edges[1:]) / 2
+    best = np.flatnonzero(near == near.min())
+    return float(places[best[np.argmin(np.abs(places[best] - middle))]])
+
+
+def block_of(tiles: Tiles, parts: Parts, number: int, margin: float, most: int) -> Block:
+    """A part with the rows within a margin of it; with a narrower one where these are too many.
 
     Args:
         margin: scene units.
         most: rows that it may hold.
 
     Raises:
-        UserError: the tile alone, with hardly a margin, has more rows.
+        UserError: the part alone, with hardly a margin, has more rows.
         FileError: a tile is torn.
     """
     wanted = margin
     while True:
-        taken = _taken(tiles, number, margin)
-        rows = sum(len(found) for found in taken.values())
+        taken = _taken(tiles, parts, number, margin)
+        rows = sum(len(found) for found, _ in taken.values())
         if rows <= most:
             break
         margin *= SHRINK
         if margin < LEAST * wanted:
             raise UserError(
-                f"tile {number} of {tiles.folder} and what is around it are {rows:,} Gaussians, and only {most:,} at a "
-                "time fit into the memory; allow more with --memory, or tile the scene again with less in a tile"
+                f"a part of {tiles.folder} and what is around it are {rows:,} Gaussians, and only {most:,} at a time "
+                "fit into the memory; allow more with --memory"
             )
-    joined = concat([tiles.cloud(k, found) for k, found in taken.items()])
-    tile = np.repeat(np.array(list(taken), np.int32), [len(found) for found in taken.values()])
-    row = np.concatenate(list(taken.values())).astype(np.int32)
+    joined = concat([tiles.cloud(k, found) for k, (found, _) in taken.items()])
+    tile = np.repeat(np.array(list(taken), np.int32), [len(found) for found, _ in taken.values()])
+    row = np.concatenate([found for found, _ in taken.values()]).astype(np.int32)
+    inside = np.concatenate([own for _, own in taken.values()])
     order = np.argsort(joined.ids.numpy(), kind="stable")
     cloud = joined[torch.from_numpy(order)]
     bare = cloud.replace(group=torch.full_like(cloud.group, NO_GROUP))
-    return Block(number, bare, tile[order], row[order], margin)
+    return Block(bare, tile[order], row[order], inside[order], margin)
 
 
-def _taken(tiles: Tiles, number: int, margin: float) -> dict[int, NDArray[np.int64]]:
-    """The rows of each tile that a block holds."""
-    means = np.asarray(tiles.column(number, "means"))
+def _taken(
+    tiles: Tiles, parts: Parts, number: int, margin: float
+) -> dict[int, tuple[NDArray[np.int64], NDArray[np.bool_]]]:
+    """The rows of each tile that a block holds, and which of them are of the part."""
+    own = {}
+    for k in np.flatnonzero(parts.held[:, number]).tolist():
+        column = np.asarray(tiles.column(k, "means"))
+        own[k] = parts.tree.leaf_of(column) == number
+    means = np.concatenate([np.asarray(tiles.column(k, "means", checked=False))[rows] for k, rows in own.items()])
     low, high = means.min(axis=0) - margin, means.max(axis=0) + margin
     cell = margin / _CELLS
-    near = np.unique((_offsets() + np.unique(_cells(means, low, cell), axis=0)[:, None]).reshape(-1, 3), axis=0)
-    codes = np.sort(_codes(near))
-    taken = {number: np.arange(len(means))}
+    near = (_offsets() + np.unique(_cells(means, low, cell), axis=0)[:, None]).reshape(-1, 3)
+    codes = np.unique(_codes(near))
+    taken = {}
     for k, tile in enumerate(tiles.state.tiles):
-        if k == number or not tile.rows or (tile.low > high).any() or (tile.high < low).any():
+        if not tile.rows or (k not in own and ((tile.low > high).any() or (tile.high < low).any())):
             continue
         others = np.asarray(tiles.column(k, "means"))
-        inside = np.flatnonzero(((others >= low) & (others <= high)).all(axis=1))
-        code = _codes(_cells(others[inside], low, cell))
+        held = np.flatnonzero(((others >= low) & (others <= high)).all(axis=1))
+        code = _codes(_cells(others[held], low, cell))
         place = np.minimum(np.searchsorted(codes, code), len(codes) - 1)
-        if len(found := inside[codes[place] == code]):
-            taken[k] = found
+        if len(found := held[codes[place] == code]):
+            taken[k] = found, own[k][found] if k in own else np.zeros(len(found), bool)
     return taken
 
 

@@ -1,4 +1,4 @@
-"""Embeds a scene in tiles block by block (`embed_tiles`): a tile with what is around it is embedded as any scene is,
+"""Embeds a scene in tiles block by block (`embed_tiles`): a part of it with what is around is embedded as any scene is,
 and the groups of overlapping blocks are joined into one table.
 
 What is found in a block is kept in the folder until all is done, so that an embedding that was stopped goes on where it
@@ -11,7 +11,7 @@ import contextlib
 import hashlib
 import json
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -36,7 +36,7 @@ from ..language.segmentation.surface import surface_of
 from ..scene import Frame, Scene
 from ..world.box import Box
 from . import changing, files, tables
-from .blocks import block_of, margin_of, sampled
+from .blocks import Parts, block_of, divided, margin_of, sampled
 from .joining import Joined, Piece, join
 from .locking import locked
 from .records import Count, Record, Stored, Table
@@ -53,10 +53,8 @@ class _Kept(Record):
     """A piece on the disk; see `joining.Piece`."""
 
     table: Table
-    core: Stored
-    around: Stored
-    rows: Count
-    beyond: Count
+    rows: Stored
+    count: Count
 
 
 @dataclass(frozen=True)
@@ -69,6 +67,7 @@ class _Work:
     """
 
     folder: Path
+    parts: Parts
     encoder: Encoder
     frame: Frame
     margin: float
@@ -93,10 +92,10 @@ def embed_tiles(
     Args:
         memory: bytes that a block and the work on it may take.
         frame: as the user gives it; the scene's own without. Up and floor are estimated if it does not tell them.
-        margin: how far around its tile a block reaches, scene units; None: `blocks.margin_of`.
+        margin: how far around its part a block reaches, scene units; None: `blocks.margin_of`.
 
     Raises:
-        UserError: a tile does not fit into the memory.
+        UserError: a part does not fit into the memory.
         FileError: another program changes the folder, a tile is torn, or a file cannot be written; the scene is then as
             it was, and the next call goes on where this one stopped.
     """
@@ -107,10 +106,11 @@ def embed_tiles(
         sample = sampled(tiles, _SAMPLE)
         frame = _framed(tiles, by_id(sample), frame or tiles.frame)
         margin = margin_of(sample, frame.metres_per_unit) if margin is None else margin
+        parts = divided(tiles, sample, margin)
         del sample
         folder = _folder(tiles, encoder, frame, margin)
-        work = _Work(folder, encoder, frame, margin, memory // BYTES)
-        count = len(tiles.state.tiles)
+        work = _Work(folder, parts, encoder, frame, margin, memory // BYTES)
+        count = len(parts)
         pieces = []
         for number in range(count):
 
@@ -119,7 +119,7 @@ def embed_tiles(
 
             pieces.append(_found(tiles, number, work, told))
         progress("joining groups", count / (count + 1))
-        whole = _Whole(tiles, pieces, join(pieces), frame)
+        whole = _Whole(tiles, join(pieces, [tile.rows for tile in tiles.state.tiles]), frame)
         done = changing.regroup(tiles, whole.columns(), lambda: whole.table(encoder), frame, "embed")
         shutil.rmtree(folder.parent, ignore_errors=True)
     return done
@@ -151,21 +151,13 @@ def _found(tiles: Tiles, number: int, work: _Work, progress: Progress) -> Piece:
     record = work.folder / f"{number}.json"
     with contextlib.suppress(OSError, FileError, ValidationError):  # of a work that was stopped while it was written
         return _read(work.folder, _Kept.model_validate_json(record.read_bytes()))
-    none = np.zeros(0, np.int32)
-    if not tiles.state.tiles[number].rows:
-        empty = LanguageField((), np.zeros((0, work.encoder.dim), np.float32), work.encoder.fingerprint)
-        return Piece(empty, none, none, none, none)
-    block = block_of(tiles, number, work.margin, work.most)
+    block = block_of(tiles, work.parts, number, work.margin, work.most)
     scene = embed(Scene(block.cloud, work.frame), work.encoder, progress)
-    field, group = scene.language, scene.cloud.group.numpy()
-    assert field is not None
-    inside = block.tile == number
-    around = np.stack([block.tile[~inside], block.row[~inside], group[~inside]])
+    assert scene.language is not None
+    rows = np.stack([block.tile, block.row, scene.cloud.group.numpy(), block.inside.astype(np.int32)])
     kept = _Kept(
-        table=tables.write_table(field, work.folder, number),
-        core=files.write(work.folder, f"core.{number}", group[inside].astype("<i4")),
-        around=files.write(work.folder, f"around.{number}", around.astype("<i4")),
-        rows=int(inside.sum()), beyond=around.shape[1],
+        table=tables.write_table(scene.language, work.folder, number),
+        rows=files.write(work.folder, f"rows.{number}", rows.astype("<i4")), count=rows.shape[1],
     )  # fmt: skip
     files.write(work.folder, record.name, kept.model_dump_json().encode())
     return _read(work.folder, kept)
@@ -173,9 +165,8 @@ def _found(tiles: Tiles, number: int, work: _Work, progress: Progress) -> Piece:
 
 def _read(folder: Path, kept: _Kept) -> Piece:
     """A piece, its columns mapped."""
-    core = files.mapped(folder, kept.core, np.dtype("<i4"), (kept.rows,))
-    around = files.mapped(folder, kept.around, np.dtype("<i4"), (3, kept.beyond))
-    return Piece(tables.read_table(kept.table, folder), core, around[0], around[1], around[2])
+    tile, row, group, inside = files.mapped(folder, kept.rows, np.dtype("<i4"), (4, kept.count))
+    return Piece(tables.read_table(kept.table, folder), tile, row, group, inside == 1)
 
 
 # -- the whole --------------------------------------------------------------------------------------------------------
@@ -184,12 +175,12 @@ def _read(folder: Path, kept: _Kept) -> Piece:
 class _Whole:
     """Columns and table of the whole scene. The table is measured while the columns are made, tile by tile."""
 
-    def __init__(self, tiles: Tiles, pieces: Sequence[Piece], joined: Joined, frame: Frame) -> None:
-        self._tiles, self._pieces, self._joined, self._frame = tiles, pieces, joined, frame
-        self._groups = [g for piece in pieces for g in piece.field.groups]
+    def __init__(self, tiles: Tiles, joined: Joined, frame: Frame) -> None:
+        self._tiles, self._pieces, self._joined, self._frame = tiles, joined.pieces, joined, frame
+        self._groups = [g for piece in joined.pieces for g in piece.field.groups]
         counts = np.zeros(len(self._groups), np.int64)
-        for number in range(len(pieces)):
-            column = joined.column(pieces, number)
+        for number in range(len(tiles.state.tiles)):
+            column = joined.column(number)
             counts += np.bincount(column[column >= 0], minlength=len(counts))
         self._rows = self._numbered(counts)  # (number among all pieces, parent, Gaussians) of each group of the table
         self._id = np.full(len(self._groups) + 1, NO_GROUP, np.int32)  # the last is for rows without a group
@@ -227,8 +218,8 @@ class _Whole:
 
     def columns(self) -> Iterator[NDArray[np.int32]]:
         """The column of groups of each tile."""
-        for number in range(len(self._pieces)):
-            column = self._id[self._joined.column(self._pieces, number)]
+        for number in range(len(self._tiles.state.tiles)):
+            column = self._id[self._joined.column(number)]
             self._loose += int((column == NO_GROUP).sum())
             self._measure(self._tiles.cloud(number).replace(group=torch.from_numpy(column)))
             yield column

@@ -1,15 +1,16 @@
 """Joins the groups that overlapping blocks found into groups of the whole scene (`join`).
 
-Rows in the margin of a block lie in the tile of another block too, and both gave them a group. Two things are one if
-they share most of the rows that both blocks saw of them. Each row then takes the group that the block of its own tile
-gave it: there it lies deepest inside. Where two blocks disagree about a thing at their border, a remnant is left of it
-on the side where less of it lies; its rows go to the things that the other block sees there.
+Rows in the margin of a block are inside another one too, and both gave them a group. Two things are one if they share
+most of the rows that both blocks saw of them. Each row then takes the group that the block gave it in which it is
+inside and not in the margin: there most is seen around it. Where two blocks disagree about a thing at their border, a
+remnant is left of it on the side where less of it lies; its rows go to the things that the other block sees there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ from scipy.sparse.csgraph import connected_components
 from ..cloud import NO_GROUP
 from ..language.field.language_field import LanguageField
 
-SAME = 0.5  # intersection over union, in the rows that both blocks saw, from which two things are one
+SAME = 0.6  # intersection over union, in the rows that both blocks saw, from which two things are one
 SAME_STRUCTURE = 0.5  # intersection over the smaller one, from which two floors, walls or ceilings are one
 LEAST = 0.05  # of the smaller thing: the rows that they share at least; a tip at a border tells nothing
 REMNANT = 0.5  # of the rows that a block gave to a thing: one that keeps fewer is a remnant
@@ -34,15 +35,20 @@ class Piece:
 
     Attributes:
         field: its table.
-        core: `[R]` the group of each row of its tile, ascending by id.
-        tile, row, group: `[M]` where each row around the tile is stored, and the group that it got here.
+        tile, row, group: `[M]` where each row is stored, and its group in that table.
+        inside: `[M]` whether it is in the part of the block and not around it; each row of a scene is so in one block.
     """
 
     field: LanguageField
-    core: Ints
     tile: Ints
     row: Ints
     group: Ints
+    inside: NDArray[np.bool_]
+
+    @cached_property
+    def tiles(self) -> frozenset[int]:
+        """The tiles that its rows are stored in."""
+        return frozenset(np.unique(self.tile).tolist())
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +57,8 @@ class Joined:
     the least number of those that it was joined from.
 
     Attributes:
+        pieces: that were joined.
+        rows: of each tile.
         first: `[P]` number of the first group of each piece.
         whole: `[G]` the thing that each group belongs to: itself, the object that it is a part of, or what that was
             joined to.
@@ -60,36 +68,36 @@ class Joined:
         remnant: `[G]` whether a thing of the whole is a remnant.
     """
 
+    pieces: Sequence[Piece]
+    rows: Sequence[int]
     first: Longs
     whole: Longs
     leaf: Longs
     best: Longs
     remnant: NDArray[np.bool_]
 
-    def column(self, pieces: Sequence[Piece], number: int) -> Longs:
+    def column(self, number: int) -> Longs:
         """The group of the whole `[R]` of each row of a tile; `NO_GROUP` for none."""
-        column = _mapped(self.leaf, self.first[number], pieces[number].core)
+        _, home = _homes(self.pieces, self.first, number, self.rows[number])
+        column = _mapped(self.leaf, home)
         left = np.zeros(len(column), bool)
         there = column >= 0
         left[there] = self.remnant[self.whole[column[there]]]
-        for k in self._neighbours(pieces, number) if left.any() else ():
-            mine = np.flatnonzero(pieces[k].tile == number)
-            row, other = pieces[k].row[mine], _mapped(self.leaf, self.first[k], pieces[k].group[mine])
+        around = [k for k, piece in enumerate(self.pieces) if number in piece.tiles] if left.any() else []
+        seen = {k: np.flatnonzero((self.pieces[k].tile == number) & ~self.pieces[k].inside) for k in around}
+        for k in sorted(around, key=lambda k: (-len(seen[k]), k)):
+            row = self.pieces[k].row[seen[k]]
+            other = _mapped(self.leaf, _numbered(self.pieces[k].group[seen[k]], int(self.first[k])))
             good = left[row] & (other >= 0)
             good[good] = ~self.remnant[self.whole[other[good]]]
             column[row[good]], left[row[good]] = other[good], False
         return column
 
-    def _neighbours(self, pieces: Sequence[Piece], number: int) -> list[int]:
-        """The pieces that hold rows of a tile, most first."""
-        counts = {k: int((piece.tile == number).sum()) for k, piece in enumerate(pieces) if k != number}
-        return sorted((k for k, count in counts.items() if count), key=lambda k: (-counts[k], k))
-
 
 @dataclass(frozen=True, eq=False)
 class _Overlap:
-    """Rows that two blocks saw: `n` `[K]` of them are of group `a` by the block of their own tile, which is block
-    `home`, and of group `b` by another block, `guest`; `NO_GROUP` is none."""
+    """Rows that two blocks saw: `n` `[K]` of them are of group `a` by the block `home` in which they are inside, and of
+    group `b` by another block, `guest`; `NO_GROUP` is none."""
 
     a: Longs
     b: Longs
@@ -119,8 +127,12 @@ class _Scores:
         return np.asarray(self.shared / (self.of_low + self.of_high - self.shared))
 
 
-def join(pieces: Sequence[Piece]) -> Joined:
-    """The groups of the whole scene; `pieces[k]` is that of tile k."""
+def join(pieces: Sequence[Piece], rows: Sequence[int]) -> Joined:
+    """The groups of the whole scene.
+
+    Args:
+        rows: of each tile.
+    """
     counts = [len(piece.field.groups) for piece in pieces]
     first = np.cumsum([0, *counts])[:-1].astype(np.int64)
     groups = [group for piece in pieces for group in piece.field.groups]
@@ -128,7 +140,7 @@ def join(pieces: Sequence[Piece]) -> Joined:
     parent = np.array([g.parent for g in groups], np.int64).reshape(-1)
     own = np.where(parent >= 0, parent + first[block], np.arange(len(groups)))  # the thing of each group in its block
     kept, seen = _held(pieces, first, own)
-    found = _overlap(pieces, first)
+    found = _overlap(pieces, first, rows)
 
     pairs = _scores(found, own, block)
     kind = np.array([g.label if g.level == "structure" else "" for g in groups], object).reshape(-1)
@@ -147,40 +159,57 @@ def join(pieces: Sequence[Piece]) -> Joined:
     best = np.arange(len(groups))
     order = np.lexsort((-best, seen))  # the last that is written counts: seen most, and of equals the first
     best[whole[order]] = np.where(parent[order] >= 0, best[whole[order]], order)
-    return Joined(first, whole, leaf, best, (kind == "") & (left < REMNANT * largest))
+    return Joined(pieces, rows, first, whole, leaf, best, (kind == "") & (left < REMNANT * largest))
 
 
-def _mapped(table: Longs, first: int, group: Ints) -> Longs:
-    """`table` of the groups of a piece, of which the first has the number `first`; none stays none."""
-    found = np.full(len(group), NO_GROUP, np.int64)
-    there = group >= 0
-    found[there] = table[first + group[there]]
-    return found
+def _mapped(table: Longs, group: Longs) -> Longs:
+    """`table` of some groups; none stays none."""
+    return np.where(group >= 0, table[group], NO_GROUP) if len(table) else group
+
+
+def _numbered(group: Ints, first: int) -> Longs:
+    """Groups of a piece by their numbers among those of all pieces; none stays none."""
+    found = np.asarray(group).astype(np.int64)
+    return np.where(found >= 0, found + first, NO_GROUP)
+
+
+def _homes(pieces: Sequence[Piece], first: Longs, number: int, rows: int) -> tuple[Longs, Longs]:
+    """`[R]` each: the block in which each row of a tile is inside, and the group that it has there."""
+    block, group = np.full(rows, -1, np.int64), np.full(rows, NO_GROUP, np.int64)
+    for k, piece in enumerate(pieces):
+        if number in piece.tiles:
+            own = np.flatnonzero((piece.tile == number) & piece.inside)
+            block[piece.row[own]] = k
+            group[piece.row[own]] = _numbered(piece.group[own], int(first[k]))
+    return block, group
 
 
 def _held(pieces: Sequence[Piece], first: Longs, own: Longs) -> tuple[Longs, Longs]:
-    """`[G]` each: rows of each thing of each block that lie in the tile of the block, and all of its rows."""
+    """`[G]` each: rows of each thing of each block that are inside of the block, and all of its rows."""
     kept, seen = np.zeros(len(own), np.int64), np.zeros(len(own), np.int64)
     for start, piece in zip(first.tolist(), pieces, strict=True):
         count = len(piece.field.groups)
-        inside, around = (np.bincount(column[column >= 0], minlength=count) for column in (piece.core, piece.group))
-        np.add.at(kept, own[start : start + count], inside)
-        np.add.at(seen, own[start : start + count], inside + around)
+        there = piece.group >= 0
+        for total, rows in ((kept, there & piece.inside), (seen, there)):
+            np.add.at(total, own[start : start + count], np.bincount(piece.group[rows], minlength=count))
     return kept, seen
 
 
-def _overlap(pieces: Sequence[Piece], first: Longs) -> _Overlap:
+def _overlap(pieces: Sequence[Piece], first: Longs, rows: Sequence[int]) -> _Overlap:
     found: list[NDArray[np.int64]] = [np.zeros((0, 5), np.int64)]
-    for guest, piece in enumerate(pieces):
-        tile, group = np.asarray(piece.tile), np.asarray(piece.group)
-        for home in np.unique(tile).tolist():
-            mine = tile == home
-            a, b = np.asarray(pieces[home].core)[piece.row[mine]].astype(np.int64), group[mine].astype(np.int64)
-            width = len(piece.field.groups) + 1
-            code, n = np.unique((a + 1) * width + b + 1, return_counts=True)
-            a, b = code // width - 1, code % width - 1
-            a, b = np.where(a >= 0, a + first[home], -1), np.where(b >= 0, b + first[guest], -1)
-            found.append(np.stack([a, b, np.full(len(n), home), np.full(len(n), guest), n], axis=1))
+    width = sum(len(piece.field.groups) for piece in pieces) + 1
+    for number, count in enumerate(rows):
+        block, group = _homes(pieces, first, number, count)
+        for guest, piece in enumerate(pieces):
+            if number not in piece.tiles:
+                continue
+            mine = np.flatnonzero((piece.tile == number) & ~piece.inside)
+            row = piece.row[mine]
+            pairs = (group[row] + 1) * width + _numbered(piece.group[mine], int(first[guest])) + 1
+            code, n = np.unique(pairs * len(pieces) + block[row], return_counts=True)
+            pairs, home = np.divmod(code, len(pieces))
+            a, b = np.divmod(pairs, width)
+            found.append(np.stack([a - 1, b - 1, home, np.full(len(n), guest), n], axis=1))
     return _Overlap(*np.concatenate(found).T)
 
 

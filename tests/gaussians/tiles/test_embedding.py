@@ -17,8 +17,8 @@ from scenewright.gaussians.language.field.language_field import Group, LanguageF
 from scenewright.gaussians.language.field.loading import load
 from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
 from scenewright.gaussians.scene import Scene
-from scenewright.gaussians.tiles import changing, embedding
-from scenewright.gaussians.tiles.blocks import block_of, margin_of, sampled
+from scenewright.gaussians.tiles import blocks, changing, embedding
+from scenewright.gaussians.tiles.blocks import Parts, block_of, divided, margin_of, sampled
 from scenewright.gaussians.tiles.joining import Piece, join
 from scenewright.gaussians.tiles.making import make
 from scenewright.gaussians.tiles.store import PIECES, Tiles
@@ -57,11 +57,14 @@ def told(truth: Scene) -> Any:
     return embed
 
 
-def embedded(tiles: Tiles, monkeypatch: pytest.MonkeyPatch, embed: Any, memory: int = 1 << 30) -> Tiles:
+def embedded(tiles: Tiles, monkeypatch: pytest.MonkeyPatch, embed: Any) -> Tiles:
+    """The tiles after `embed_tiles` with parts that cut through things."""
+    monkeypatch.setattr(blocks, "ROWS", 2500)
+    monkeypatch.setattr(blocks, "NARROW", 1.0)
     monkeypatch.setattr(embedding, "embed", embed)
     monkeypatch.setattr(embedding, "named", lambda field, *_, **__: field)
     encoder: Any = Known()
-    return embedding.embed_tiles(tiles, encoder, memory, margin=MARGIN)
+    return embedding.embed_tiles(tiles, encoder, 1 << 30, margin=MARGIN)
 
 
 def same_partition(found: torch.Tensor, truth: torch.Tensor) -> bool:
@@ -69,13 +72,29 @@ def same_partition(found: torch.Tensor, truth: torch.Tensor) -> bool:
     return len(pairs) == len(torch.unique(found)) == len(torch.unique(truth))
 
 
-def test_a_block_holds_its_tile_and_every_row_within_the_margin(tiles: Tiles) -> None:
-    whole = tiles.every_row()
+@pytest.fixture
+def parts(tiles: Tiles, monkeypatch: pytest.MonkeyPatch) -> Parts:
+    monkeypatch.setattr(blocks, "ROWS", 800)
+    return divided(tiles, sampled(tiles, 10**6), 2.0)
+
+
+def test_parts_are_divided_where_little_is_and_hold_every_row_once(tiles: Tiles, parts: Parts) -> None:
+    assert len(parts) == 3 and parts.held.sum() == len(tiles)  # the three rooms of the street, which are no wider
+    rooms = parts.tree.leaf_of(tiles.every_row().means.numpy())
+    truth = load(tiles.folder.with_name("street.ply")).cloud.group.numpy()
+    assert all(len(np.unique(rooms[truth == g])) == 1 for g in range(truth.max() + 1))
+
+
+def test_a_block_holds_its_part_and_every_row_within_the_margin(tiles: Tiles, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blocks, "ROWS", 800)
+    parts, whole = divided(tiles, sampled(tiles, 10**6), MARGIN / 2), tiles.every_row()
+    assert len(parts) > 5
     for number in (0, 3):
-        block = block_of(tiles, number, MARGIN, 10**6)
-        own = block.tile == number
-        assert np.array_equal(block.cloud.ids[torch.from_numpy(own)], tiles.column(number, "ids"))
-        away = cKDTree(whole.means[block.cloud.ids[torch.from_numpy(own)]]).query(whole.means)[0]
+        block = block_of(tiles, parts, number, MARGIN, 10**6)
+        own = torch.from_numpy(block.inside)
+        assert np.array_equal(block.inside, parts.tree.leaf_of(block.cloud.means.numpy()) == number)
+        assert int(own.sum()) == parts.held[:, number].sum()
+        away = cKDTree(whole.means[block.cloud.ids[own]]).query(whole.means)[0]
         held = np.isin(whole.ids.numpy(), block.cloud.ids.numpy())
         assert held[away <= MARGIN].all() and not held[away > 2 * np.sqrt(3) * MARGIN].any()
         assert torch.equal(block.cloud.means, whole.means[block.cloud.ids]) and (np.diff(block.cloud.ids) > 0).all()
@@ -84,13 +103,13 @@ def test_a_block_holds_its_tile_and_every_row_within_the_margin(tiles: Tiles) ->
             assert np.array_equal(tiles.column(k, "ids")[block.row[mine]], block.cloud.ids[torch.from_numpy(mine)])
 
 
-def test_a_block_that_does_not_fit_gets_a_narrower_margin_or_is_refused(tiles: Tiles) -> None:
-    wide = block_of(tiles, 3, MARGIN, 10**6)
-    rows = tiles.state.tiles[3].rows
-    narrow = block_of(tiles, 3, MARGIN, (len(wide.cloud) + rows) // 2)
-    assert rows < len(narrow.cloud) <= (len(wide.cloud) + rows) // 2 and narrow.margin < MARGIN
+def test_a_block_that_does_not_fit_gets_a_narrower_margin_or_is_refused(tiles: Tiles, parts: Parts) -> None:
+    wide = block_of(tiles, parts, 1, 4.0, 10**6)
+    rows = int(parts.held[:, 1].sum())
+    narrow = block_of(tiles, parts, 1, 4.0, (len(wide.cloud) + rows) // 2)
+    assert rows < len(narrow.cloud) <= (len(wide.cloud) + rows) // 2 and narrow.margin < 4.0
     with pytest.raises(UserError, match="--memory"):
-        block_of(tiles, 3, MARGIN, rows - 1)
+        block_of(tiles, parts, 1, MARGIN, rows - 1)
 
 
 def test_margins_follow_the_scale_or_the_tiles(tiles: Tiles) -> None:
@@ -124,18 +143,17 @@ def test_groups_that_all_blocks_see_alike_are_those_of_the_whole_and_can_be_undo
 def test_what_one_block_sees_otherwise_at_its_border_goes_to_what_the_other_sees_there() -> None:
     """A chair, 70 of its rows in the first tile and 30 in the second, whose block sees them as one with half a rug."""
     chair, desk, rug, none = 0, 1, 2, -1
-    first = Piece(
-        table(3), np.repeat(np.int32([chair, rug]), [70, 60]), np.ones(130, np.int32), np.arange(130, dtype=np.int32),
-        np.repeat(np.int32([chair, desk]), [30, 100]),
-    )  # fmt: skip
+    near, far = np.arange(130, dtype=np.int32), np.arange(330, dtype=np.int32)
+    tile = np.repeat(np.int32([0, 1]), 130)
+    group = np.repeat(np.int32([chair, rug, chair, desk]), [70, 60, 30, 100])
+    first = Piece(table(3), tile, np.concatenate([near, near]), group, tile == 0)
     desk_here, other = 0, 1
-    second = Piece(
-        table(2), np.repeat(np.int32([other, desk_here]), [30, 300]), np.zeros(130, np.int32),
-        np.arange(130, dtype=np.int32), np.repeat(np.int32([other, none, other]), [35, 35, 60]),
-    )  # fmt: skip
-    joined = join([first, second])
+    tile = np.repeat(np.int32([0, 1]), [130, 330])
+    group = np.repeat(np.int32([other, none, other, other, desk_here]), [35, 35, 60, 30, 300])
+    second = Piece(table(2), tile, np.concatenate([near, far]), group, tile == 1)
+    joined = join([first, second], [130, 330])
     assert joined.whole.tolist() == [0, 1, 2, 1, 4]
-    columns = [joined.column([first, second], k).tolist() for k in (0, 1)]
+    columns = [joined.column(k).tolist() for k in (0, 1)]
     assert columns == [[0] * 70 + [2] * 60, [0] * 30 + [1] * 300]
 
 
@@ -161,7 +179,7 @@ def test_an_embedding_that_was_stopped_goes_on_where_it_stopped(tiles: Tiles, mo
     with pytest.raises(KeyboardInterrupt):
         embedded(tiles, monkeypatch, stops)
     assert Tiles.open(tiles.folder).digest() == first
-    kept = sorted((tiles.folder / PIECES).glob("*/core.*"))
+    kept = sorted((tiles.folder / PIECES).glob("*/rows.*"))
     assert len(kept) == 3
     kept[0].write_bytes(b"torn")  # told by its hash, and made again
     again: list[int] = []
@@ -171,7 +189,7 @@ def test_an_embedding_that_was_stopped_goes_on_where_it_stopped(tiles: Tiles, mo
         return known(scene, encoder, progress)  # type: ignore[no-any-return]
 
     done = embedded(tiles, monkeypatch, counts)
-    assert len(again) == len(tiles.state.tiles) - 2
+    assert done.field is not None and f"embedded in {len(again) + 2} blocks" in done.field.notes[0] and len(again) > 2
     assert same_partition(done.every_row().group.long(), truth.cloud.group)
 
 
