@@ -18,14 +18,15 @@ from ..errors import UserError
 from ..levels.tree import Node, Tree
 from .store import Tiles
 
-METRES = 2.0  # margin where the scale is known: few things are larger that are no part of a building
+METRES = 1.0  # margin where the scale is known; more reaches through walls into other rooms, and hides the walls
 SHARE = 0.35  # margin otherwise, of the typical side of a tile
 ROWS = 100_000  # of a part, unless it is narrow: about a room
 NARROW = 3.0  # margins: a part is not divided across a side that is shorter
 SHRINK = 0.75  # of a margin whose rows do not fit into the memory
 LEAST = 0.2  # of the margin, below which it holds no whole thing
 _MIDDLE = (0.3, 0.7)  # quantiles between which a part is divided
-_BINS = 8  # to a margin, in which rows are counted to find the emptiest place
+_BINS = 16  # to a margin, in which rows are counted to find the emptiest place
+_GAP = 4  # bins that are counted together: of the width of a gap between rooms
 _CELLS = 2  # to a margin
 _MOST_CELLS = 1 << 20  # along an axis: three axes fit in 64 bits
 _TRIM = 0.05  # share of the rows beyond a side: floaters
@@ -128,7 +129,7 @@ def _emptiest(along: NDArray[np.float32], margin: float) -> float:
     low, middle, high = np.quantile(along.astype(np.float64), [_MIDDLE[0], 0.5, _MIDDLE[1]])
     bins = int(np.clip((high - low) / margin * _BINS, 2, 1 << 12))
     count, edges = np.histogram(along, bins, (low, high))
-    near = np.convolve(count, np.ones(min(_BINS, bins)), mode="same")
+    near = np.convolve(count, np.ones(min(_GAP, bins)), mode="same")
     places = (edges[:-1] + edges[1:]) / 2
     best = np.flatnonzero(near == near.min())
     return float(places[best[np.argmin(np.abs(places[best] - middle))]])

@@ -114,7 +114,7 @@ def test_a_block_that_does_not_fit_gets_a_narrower_margin_or_is_refused(tiles: T
 
 def test_margins_follow_the_scale_or_the_tiles(tiles: Tiles) -> None:
     sample = sampled(tiles, 2000)
-    assert margin_of(sample, 0.5) == 4.0
+    assert margin_of(sample, 0.5) == 2.0
     assert 0.1 < margin_of(sample, None) < 2.0
 
 
