@@ -11,7 +11,7 @@ from ...grammar.tagging.words import bag
 from ..answer import Answer, AnswerType, Evidence
 from ..kind import Asked, Kind, Undecided
 from ..reading.phrase_templates import templates
-from ..reading.time.deeds import Deed
+from ..reading.time.deeds import STATES, Deed
 from ..reading.time.frames import Asks, Frame, frames
 from ..reading.time.happenings import Happening, happenings
 from ..reading.time.moments import When
@@ -280,6 +280,11 @@ def _clause(when: When, told: Told) -> Span:
             what = replace(what, deed=deed)
         if deed is None:
             continue
+        if (
+            when.conj in ("once", "after") and deed.kind == "is_open" and not deed.phase
+        ):  # "once it is open": as far as it goes
+            deed = replace(deed, phase="full")
+            what = replace(what, deed=deed)
         if what.subject is None or (what.subject.last and not told.survey.last):
             what = replace(what, subject=subject)
         try:
@@ -301,8 +306,8 @@ def _about(conj: str, deed: Deed, span: Span, line: Timeline) -> Span:
         return line.start, a
     if conj == "until":
         return line.start, a if deed.at_once else b
-    if conj == "after":
-        return (a if deed.at_once else b), line.stop
+    if conj == "after" or (conj == "once" and deed.kind in STATES):
+        return (a if deed.at_once or deed.kind in STATES else b), line.stop
     if deed.at_once:
         return a, a
     return a, b

@@ -18,6 +18,7 @@ F64 = NDArray[np.float64]
 TURNS = np.radians(20.0)  # a body that turns by less about the vertical while it goes makes no turn
 _TURNING = np.radians(15.0)  # radians a second from which it turns
 _YAWS = {"left": 1, "right": -1, "course": 0}  # a change of the way it goes, and to which side
+_STRAIGHT = 0.97  # of a way: one whose ends are so far apart is straight
 _SHARES = {"quarter": 0.25, "half": 0.5}  # of how far it opens
 _HOME = 0.02  # metres, and of a turn radians times the farthest corner: so near to where it started it is back
 AJAR, WIDE = 0.02, 0.985  # of how far it opens: open from the one, wide open from the other
@@ -89,6 +90,13 @@ def spans_of(deed: Deed, body: Body, others: Sequence[Thing], timeline: Timeline
 
 def _going(way: str, body: Body, timeline: Timeline) -> list[Span] | None:
     """The movements in which a body goes to one side of the viewer, or up; None for a way that needs its own front."""
+    if way == "straight":
+        course = body.course
+        ways = [
+            (s, events.path_length(course, s), float(np.linalg.norm(events.displacement(course, s))))
+            for s in body.moving
+        ]
+        return [s for s, path, straight in ways if straight > _STRAIGHT * path > 0]
     stand = timeline.stand
     sides = {
         "left": -stand.right, "right": stand.right, "up": stand.up, "toward": -stand.forward, "away": stand.forward,

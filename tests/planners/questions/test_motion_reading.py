@@ -10,6 +10,7 @@ from scenewright.planners.questions.reading.time.deeds import as_noun, said_in
 from scenewright.planners.questions.reading.time.frames import frames
 from scenewright.planners.questions.reading.time.moments import When, clauses, without_time
 from scenewright.planners.questions.reading.time.notation import forms, pattern
+from scenewright.planners.questions.reading.time.plainly import plainly
 from scenewright.planners.questions.reading.words import plain_words
 
 
@@ -76,6 +77,20 @@ def test_the_notation_stands_for_all_forms_optional_words_and_alternatives() -> 
     row = re.compile(pattern("~come to [a|an] (rest|halt) | TURN away"))
     assert all(row.fullmatch(f"{said} ") for said in ("came to rest", "coming to a halt", "spun away"))
     assert not any(row.fullmatch(f"{said} ") for said in ("came to", "come to a a rest", "rolled away"))
+
+
+@pytest.mark.parametrize(
+    ("said", "plain"),
+    [
+        ("is there a moment when the chair moves", "the chair moves at some time"),
+        ("the ball does it roll", "does the ball roll"),
+        ("how far out of the dresser does it go", "how far does it go out of the dresser"),
+        ("does only the fan turn", "nothing besides the fan turn"),
+        ("how high is the chair", "how high is the chair"),
+    ],
+)
+def test_plain_order(said: str, plain: str) -> None:
+    assert plainly(said) == plain
 
 
 def test_forms_and_nouns_of_deeds() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
@@ -11,17 +10,25 @@ from ...answer import Answer
 from ...kind import Asked, Kind
 from ...reading.phrase_templates import templates
 from ...reading.time.deeds import AT_ONCE
-from ...reading.time.moments import seconds as seconds_of
 from ...survey import Survey
-from ...timeline.asked import Told, Untold, agreed, at, cap, kind, number, spoken, verb, within
+from ...timeline.asked import PLACES, Told, Untold, agreed, at, cap, kind, number, spoken, verb, within
 from ...timeline.bodies import Body
-from .when import moment
+from .when import COUNTED_TURNS, moment, turns_of
 
-_TURNS = re.compile(
-    r"\b(?P<n>half a|one|per|a|each|every|two|three|four|five|ten|\d+) (?:(?:full|single|whole|complete) )?"
-    r"(?:turn|rotation|revolution|spin|round)s?\b"
+_WAITS = (
+    "wait",
+    "waits",
+    "waiting",
+    "waited",
+    "rest",
+    "rests",
+    "pause",
+    "pauses",
+    "paused",
+    "idle",
+    "idles",
+    "pausing",
 )
-_WAITS = ("wait", "waits", "waiting", "waited", "rest", "rests", "pause", "pauses", "paused", "idle", "idles")
 
 
 def _long(told: Told) -> Answer | None:
@@ -34,14 +41,19 @@ def _of_one(told: Told, body: Body) -> Answer:
     deed, when = told.frame.what.deed, told.frame.when
     assert deed is not None
     found = told.spans(body)
-    counted = _TURNS.search(told.asked.said)
+    counted = COUNTED_TURNS.search(told.asked.said)
     if deed.kind == "turn" and counted is not None and events.turned(body.course) > 2 * math.pi:
-        turns = seconds_of(counted["n"]) if counted["n"] not in ("each", "every", "per") else 1.0
+        turns = turns_of(counted)
         seconds = turns * sum(b - a for a, b in found) * 2 * math.pi / events.turned(body.course)
         return number(seconds, "s", f"{at(seconds)}: {body.name} turns {turns:g} times in that time.", [body])
     if when is not None:
         found = within(found, told.window())
         found = found[-1:] if deed.kind == "still" and when.conj == "before" else found
+    if told.frame.rank in PLACES and found:  # "how long does the second movement last"
+        place = PLACES[told.frame.rank]
+        if place >= len(found):
+            raise Untold(f"That happens {len(found)} times only.")
+        found = [found[place]]
     if not found:
         raise Untold(cap(f"{body.name} never {verb(told)}."))
     if (

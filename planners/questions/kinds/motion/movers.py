@@ -199,9 +199,10 @@ def _many(told: Told) -> Answer | None:
     what = told.frame.what
     if what.deed is None:
         return None
-    if what.deed.kind == "related" and (told.frame.when is None or told.frame.when.kind in _MOMENTS):
-        return None
+    at_moment = told.frame.when is None or told.frame.when.kind in _MOMENTS
     try:
+        if what.deed.kind == "related" and at_moment and not all(b.moving for b in told.bodies()):
+            return None  # the scene at that time tells it
         found = doing(told)
     except NotResolved as error:
         if error.found.verdict != "ambiguous":

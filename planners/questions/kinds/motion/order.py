@@ -21,7 +21,8 @@ Event = tuple[float, str, Body]
 def _order(told: Told) -> Answer | None:
     if told.frame.other is not None:
         return _of_two(told)
-    if told.frame.what.deed is not None:
+    deed = told.frame.what.deed
+    if deed is not None and not deed.verb.startswith(("happen", "occur")):
         return _of_deed(told)
     found = sorted((e for b in told.bodies() for e in story(b, told)), key=lambda e: e[0])
     window = told.window()

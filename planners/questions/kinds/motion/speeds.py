@@ -14,7 +14,7 @@ from .....gaussians.world.lengths import METRES
 from ...answer import Answer
 from ...reading.time.deeds import AT_ONCE, Deed
 from ...reading.time.moments import When
-from ...timeline.asked import Told, Untold, agreed, at, cap, during, kind, names, number, spoken, verb, within
+from ...timeline.asked import Told, Untold, agreed, at, cap, during, kind, names, number, spoken, verb, within, yes_no
 from ...timeline.bodies import Body
 from ...timeline.happening import bobs, hinged, opened
 from .when import moment
@@ -333,6 +333,8 @@ def _often(told: Told) -> Answer | None:
 
 def _faster(told: Told) -> Answer | None:
     first, second = told.frame.what, told.frame.other
+    if told.frame.than is not None:
+        return _at_two_times(told)
     if second is None:
         return None
     bodies = [told.one(first), told.one(second)]
@@ -347,6 +349,20 @@ def _faster(told: Told) -> Answer | None:
         f"{_short(tops[1 - best])} m/s."
     )
     return names([bodies[best]], text, single=True)
+
+
+def _at_two_times(told: Told) -> Answer | None:
+    """ "Is the ball faster at 1 s than at 3 s?"."""
+    frame = replace(told.frame, rank="", than=None)
+    deed = frame.what.deed
+    if deed is not None and deed.kind not in ("move", "turn", "fall", "open", "close"):
+        return None
+    both = [
+        _fast_one(replace(told, frame=replace(frame, when=when)), told.one()) for when in (frame.when, told.frame.than)
+    ]
+    first, second = (float(a.answer) for a in both if isinstance(a.answer, float))
+    holds = first < second if told.frame.rank == "slower" else first > second
+    return yes_no(holds, " ".join(a.text for a in both), [told.one()], both[0].evidence.time)
 
 
 def _earlier(told: Told, bodies: list[Body]) -> Answer:

@@ -2,24 +2,39 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...candidates import is_plural
 from ...reading.time.deeds import AT_ONCE, STATES, Deed
+from ...reading.time.moments import seconds
 from ...survey import listed
 from ...timeline.asked import PLACES, Told, Untold, at, cap, during, kind, number, verb, within
 from ...timeline.bodies import Body
 
+_STEP = 1 / 240  # seconds, over which turns are added
+_ALMOST = 0.01  # of a turn
+COUNTED_TURNS = re.compile(
+    r"\b(?P<n>half a|one|per|a|each|every|two|three|four|five|ten|\d+) (?:(?:full|single|whole|complete) )?"
+    r"(?:turn|rotation|revolution|spin|round)s?\b"
+)
 _ALL = re.compile(r"\b(?:all|both|every|everything|each)\b")
 
 
 def moment(deed: Deed, span: Span) -> float:
     """The time that "when" asks of: the end of what stops, the start of everything else."""
     return span[1] if deed.stops else span[0]
+
+
+def turns_of(counted: re.Match[str]) -> float:
+    """The number of turns that words tell: "two full turns"."""
+    return 1.0 if counted["n"] in ("each", "every", "per") else seconds(counted["n"])
 
 
 def changes(told: Told, body: Body) -> list[Span]:
@@ -41,6 +56,8 @@ def _when(told: Told) -> Answer | None:
     if told.frame.measure == "end" and not deed.phase and deed.kind not in AT_ONCE:  # "until when does it turn"
         deed = replace(deed, phase="stop")
         told = replace(told, frame=replace(told.frame, what=replace(told.frame.what, deed=deed)))
+    if deed.kind == "turn" and (counted := COUNTED_TURNS.search(told.asked.said)) is not None and deed.stops:
+        return _turned(told, told.one(), turns_of(counted))
     subject = told.frame.what.subject
     bodies = told.bodies()
     each = [(b, changes(told, b)) for b in bodies]
@@ -53,16 +70,29 @@ def _when(told: Told) -> Answer | None:
     if len(doing) > 1 and subject is not None and not is_plural(subject) and not told.frame.rank:
         return _several(told, doing)
     events = _events(deed, doing)
+    if told.frame.rank == "last" and deed.stops and len(events) == 1:
+        told = replace(told, frame=replace(told.frame, rank=""))
     place = PLACES.get(told.frame.rank, -1 if deed == replace(deed, kind="move", phase="stop") else 0)
     if told.frame.rank == "again":
         place = min(1, len(events) - 1)
-    if told.frame.rank in ("last", "second", "third") and deed.kind == "turn" and len(events) == 1:
+    if told.frame.rank in ("last", "second", "third") and deed.kind == "turn" and len(events) == 1 and not deed.stops:
         raise Untold(f"Its turns follow one another without a rest: {_told(told, doing)}.")
     if place >= len(events):
         raise Untold(f"That happens {len(events)} time{'s' if len(events) > 1 else ''} only: {_told(told, doing)}.")
     time, body, _ = events[place]
     text = f"{_told(told, doing)}."
     return number(time, "s", cap(text), [body], time, others=told.others())
+
+
+def _turned(told: Told, body: Body, turns: float) -> Answer:
+    """When it has made so many turns."""
+    times = body.course.grid(None, _STEP)
+    rates = np.linalg.norm(body.course.turns(times), axis=1)
+    done = np.cumsum(rates) * _STEP / (2 * math.pi)
+    if done[-1] < turns - _ALMOST:
+        raise Untold(cap(f"{body.name} makes {done[-1]:.1f} turns only."))
+    time = float(times[int(np.argmax(done >= turns - _ALMOST))])
+    return number(time, "s", f"{cap(body.name)} has made {turns:g} turns at {at(time)}.", [body], time)
 
 
 def _events(deed: Deed, doing: Sequence[tuple[Body, list[Span]]]) -> list[tuple[float, Body, Span]]:

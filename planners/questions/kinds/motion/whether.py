@@ -113,7 +113,8 @@ def _holds(told: Told, body: Body, window: Span | None, always: bool) -> tuple[b
     if deed.kind in ("still", "is_open", "is_closed") and window[0] < window[1]:
         return sum(b - a for a, b in inside) >= (window[1] - window[0]) - _ROUND, found
     if window[0] < window[1]:
-        inside = [s for s in inside if s[1] - s[0] > 0.02 or s[0] == s[1]]
+        least = min(_ROUND, 0.1 * (window[1] - window[0]))
+        inside = [s for s in inside if s[1] - s[0] > least or s[0] == s[1]]
     return bool(inside), found
 
 

@@ -59,7 +59,7 @@ class Deed:
         return self.phase != "" or self.kind in AT_ONCE
 
 
-# kind, phase, way: how it is said. Of equally long matches the row above wins.
+# kind, phase, way: how it is said. Of equally long matches the row above wins. "is": a state that nothing is put to.
 _ROWS = """
 related - -: touching | [~be|~come|~get] in [direct|physical] (contact|touch) with | up against
 is_open quarter -: [STAY] ([a|one] quarter|25 %|25 percent) (open|opened|out|extended)
@@ -106,8 +106,10 @@ turn - course: ~change [ITS] (direction|course|heading)
 turn - left: ~turn [to] [the|its] left
 turn - right: ~turn [to] [the|its] right
 turn - -: ~turn [around] [the|a] corner
-slows - -: ~slow [down|up] | (~get|~become|~be) slower | (~lose|~drop) speed | ~decelerate | ~brake
-speeds_up - -: ~speed up | ~accelerate | (~get|~become|~be) (faster|quicker) | (~gain|~pick up) speed | ~pick up speed
+slows - -: ~slow [down|up] | (GO|TURN|~get) (slower and slower|slower|more and more slowly) | (~get|~become|~be) \
+    slower | (~lose|~drop) speed | ~decelerate | ~brake
+speeds_up - -: ~speed up | (GO|TURN|~get) (faster and faster) | ~accelerate | (~get|~become|~be) (faster|quicker) | \
+    (~gain|~pick up) speed | ~pick up speed
 leave - -: ~leave | ~exit | (GO|COME|TURN|~step) (off|off of) | ~depart from | (END) [being] (on|touching) | ~lose \
     [ITS] [contact|touch] with | ~clear | off | ~quit
 cross - -: ~cross | ~traverse | (GO|~pass) (across|over|through|along)
@@ -120,6 +122,7 @@ reach - -: ~reach | ~hit | ~touch | ~contact | ~meet | ~strike | BUMP (into|agai
 vanish - -: ~disappear | ~vanish | ~go away | gone
 appear - -: ~appear | ~reappear | ~show up | ~become visible | ~come into view
 recolor - -: ~change [ITS] (color|colors|look|looks|appearance) | TURN (another|a different) color
+move - straight: GO [on|along|in] [a] (straight [ahead|line|on])
 move - left: GO [from [the] right] [to [the|its]] left
 move - right: GO [from [the] left] [to [the|its]] right
 move - toward: (GO|COME) (toward|towards) (me|us|the (viewer|camera))
@@ -127,8 +130,8 @@ move - away: (GO|COME) away from (me|us|the (viewer|camera))
 move - forward: GO (forward|forwards|ahead)
 move - backward: GO (backward|backwards)
 move - -: GO [around|about|along|away|on|there|anywhere|somewhere] | in motion | on the move | ~come | under way | \
-    active | (on|running|working|going|switched on|turned on) | ~cover | ~change [ITS] (place|position|location) | \
-    ~leave ITS (place|spot)
+    active | ~cover | ~happen | ~occur | ~change [ITS] (place|position|location) | ~leave ITS (place|spot)
+move is -: on | running | working | going | switched on | turned on
 """
 _NOUNS: dict[Kind, str] = {
     "move": "movement|motion|moving|roll|ride|walk|trip|journey|run|travel|path|way|slide|action|animation|rolling|"
@@ -136,7 +139,8 @@ _NOUNS: dict[Kind, str] = {
     "turn": "turn|turning|rotation|spin|spinning|swing|revolution|corner|curve|bend|change of direction",
     "open": "opening", "close": "closing|shutting", "fall": "fall|drop|falling|tumble|plunge|descent|flight",
     "land": "landing|impact|touchdown", "reach": "contact|collision|hit|impact|arrival|touch|bump|crash",
-    "return": "return", "cross": "crossing", "still": "pause|rest|wait|break|stillness|standstill",
+    "return": "return|way back|trip back|journey back", "cross": "crossing", "still": "pause|rest|wait|break|"
+    "stillness|standstill",
     "leave": "departure|leaving",
 }  # fmt: skip
 _PHASES: dict[Phase, str] = {
@@ -164,8 +168,9 @@ def _rows() -> tuple[Row, ...]:
     for line in _ROWS.replace("\\\n    ", "").strip().splitlines():
         key, _, notation = line.partition(":")
         kind, phase, way = (f.strip("-") for f in key.split())
+        combines, phase = not phase, "" if phase == "is" else phase
         add(pattern(notation), Deed(kind, phase, "touches" if kind == "related" else "", way))  # type: ignore[arg-type]
-        if kind in _PROCESSES and not phase:
+        if kind in _PROCESSES and combines:
             whole = [said[kind, way]] if (kind, way) in said else []  # type: ignore[index]
             said[kind, way] = "|".join([*whole, pattern(notation)])  # type: ignore[index]
     for (kind, way), verbs in said.items():

@@ -39,6 +39,7 @@ class Frame:
         unit: in which unit, as said; "" if none is.
         measure: "average", "top" or "angular" of a speed; of a distance "nearest"; of a time "end"; "" if not said.
         options: answers to choose from: ("left", "right").
+        than: of a comparison of one thing at two times the second time.
     """
 
     asks: Asks
@@ -49,6 +50,7 @@ class Frame:
     unit: str = ""
     measure: str = ""
     options: tuple[str, ...] = ()
+    than: When | None = None
 
 
 # -- what is asked ---------------------------------------------------------------------------------------------------
@@ -88,7 +90,7 @@ which_way: [in|to|into|toward|towards|on|from] (which|what) (way|direction|direc
 how_far nearest: how (close|near) (does|do|did|will)
 how_far: [by|to|through|about|over|from] how (far [out|down|up|in|along|across|away]|much \
     [distance|way|farther]|long a (way|path|distance)|large a distance|wide|high [up]|deep|low) | [by|through] \
-    (what|which) [total] (distance|height|path|travel distance|path length) [that]
+    (what|which) [total] (distance|height|path|travel distance|path length|length of path) [that]
 how_far: [what] {_TOLD} [the] [total|overall|whole] (distance|path length|length of the (path|way|route)|travel) \
     [of|that|which]
 how_far degrees: [by|through] (what|which) [the] angle [of|that] | [what] {_TOLD} [the] [opening|turn|turning] \
@@ -122,6 +124,11 @@ _FIRST_OF = re.compile(
     r"(?P<b>.+)$"
 )
 _RANKED_THING = re.compile(r"^(?:(?:name|list|show|tell)(?: me)? )?(?P<x>(?:the )?(?:first|last|fastest|slowest) .+)$")
+_AT_TWO_TIMES = re.compile(
+    r"^(?:is|does|was|did) (?P<x>.+?) (?P<r>faster|quicker|slower) (?P<a>(?:at|in|on|before|after|during|when|"
+    r"while) .+?) "
+    r"than (?P<b>(?:at|in|on|before|after|during|when|while) .+)$"
+)
 _OF_TWO = re.compile(
     r"^(?:which|what|who)(?: one| of them| of the two)? (?P<v>.+?) (?P<r>first|earlier|sooner|later|last)(?: ,| :)? "
     r"(?P<a>.+?)(?: ,)? or (?P<b>.+)$"
@@ -364,6 +371,14 @@ def _frames(said: str) -> Iterator[Frame]:
     if (found := _FIRST_OF.match(rest)) is not None:
         for a, b in _pairs(found["a"], found["b"]):
             yield Frame("order", a, b)
+    if (found := _AT_TWO_TIMES.match(said)) is not None:
+        times = [without_time(found[n]) for n in ("a", "b")]
+        first, second = (
+            t if t is not None and not more else _clause_of(found[n]) for n, (t, more) in zip("ab", times, strict=True)
+        )
+        for what in happenings(found["x"]) if first is not None and second is not None else ():
+            if what.subject is not None:
+                yield Frame("faster", what, when=first, than=second, rank=found["r"])
     if (found := _OF_TWO.match(rest)) is not None:
         rank = "last" if found["r"] in ("later", "last") else "first"
         for a, b in _pairs(found["a"], f"{found['b']} {found['v']}"):
@@ -374,17 +389,24 @@ def _frames(said: str) -> Iterator[Frame]:
         yield from _filled(Frame("yesno", Happening(None)), rest)
 
 
+def _clause_of(said: str) -> When | None:
+    found = next((when for when, rest in clauses(f"it {said}") if rest == "it"), None)
+    return found if found is not None and found.clause else None
+
+
 def _filled(start: Frame, said: str) -> Iterator[Frame]:
     """A frame with its time and its happenings, in each way that the words allow."""
     if start.asks == "yesno" and (found := _BEFORE_OR_AFTER.match(said)) is not None:
         for frame in _filled(start, f"{found[1]} before {found[2]}"):
             yield replace(frame, asks="either", options=("before", "after"))
         return
-    if start.asks in ("which_way", "where", "does", "yesno") and (found := _OPTIONS.search(said)):
-        asks: Asks = "which_way" if start.asks == "yesno" else start.asks
-        options = (found["a"], found["b"])
-        yield from _filled(replace(start, asks=asks, options=options), said[: found.start()].strip(" ,"))
-        return
+    for when, rest in _timed(said) if start.asks in ("which_way", "where", "does", "yesno") else ():
+        if (found := _OPTIONS.search(rest)) is not None:
+            asks: Asks = "which_way" if start.asks == "yesno" else start.asks
+            chosen = replace(start, asks=asks, options=(found["a"], found["b"]), when=when)
+            for what in happenings(rest[: found.start()].strip(" ,")):
+                yield replace(chosen, what=what)
+            return
     if start.asks == "yesno" and (found := _STATES_OR.search(said)):
         yield from _either(start, said, found)
         return
@@ -465,8 +487,10 @@ def _belongs(what: Happening, asks: Asks, said: str) -> bool:
     """Whether what is asked may be asked of a happening as it is read."""
     if what.denied and asks != "yesno":
         return False
-    if asks != "which" or what.deed is None or what.subject is None or what.object is not None:
+    if asks != "which" or what.deed is None or what.subject is None:
         return True
+    if what.object is not None:  # "what does the ball roll over to the wall"
+        return re.match(r"(?:does|do|did|will) ", said) is None
     return (
         not said.startswith(what.deed.verb) and what.deed.verb not in PARTICLES
     )  # "who opens the door", "what is it on"

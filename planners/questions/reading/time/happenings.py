@@ -49,6 +49,7 @@ _SILENT = _BE | bag(
 _ARTICLES = bag("the a this that its all both own")
 _PRONOUNS = bag("it they them that this he she itself one two three four both all")
 PARTICLES = bag("on off in out put")
+_PASSIVE = re.compile(r"^(?:(?:does|do|did) .+ get|(?:is|are|was|were) .+|.+ (?:is|are|was|gets|got))$")
 _STILL = bag("still already again now all")
 _ACTING = bag("do does did will would has have had")
 _AMBIGUOUS = bag("open opened closed shut")  # a state behind "is", else something that is done
@@ -171,6 +172,9 @@ def _around(deed: Deed, before: str, after: str) -> Iterator[Happening]:
     place = _PREPOSITION.match(after)
     rest = _ends(after[place.end() :].strip() if place is not None else after)
     at = place["at"] if place is not None and rest else ""
+    if not rest and deed.kind == "reach" and _PASSIVE.match(before) is not None and not deed.verb.endswith("ing"):
+        yield Happening(deed, thing("anything"), subject or None)  # "does the table get hit"
+        return
     if not rest:
         yield Happening(deed, subject)
         return

@@ -35,7 +35,7 @@ class When:
         kind: "at" `start`; a "span" from `start` to `stop`; "in" `start` seconds; "after" `start`; the "last" `start`
             seconds; the "start", "middle" or "end" of the scene; "always" or "ever" in it; a "clause".
         start, stop: seconds.
-        conj: of a clause: "when", "while", "before", "after" or "until".
+        conj: of a clause: "when", "once", "while", "before", "after" or "until"; "by" of a span up to a time.
         clause: its words behind the conjunction.
     """
 
@@ -114,7 +114,7 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
          rf"\bhalf ?way through(?: {_CLIP})?(?= |$)|\bin the middle of {_CLIP}(?= |$)", _plain("middle")),
         (rf"\b(?:right |just )?(?:at|in|from|on) (?:the )?(?:very )?(?:start|beginning|outset){_OF_CLIP}(?= |$)|"
          r"\b(?:initially|originally|to begin with|to start with|at first|in the first frame|immediately|right away|"
-         r"straight away|at once|instantly)(?= |$)", _plain("start")),
+         r"straight away|(?<!all )at once|instantly)(?= |$)", _plain("start")),
         (rf"\b(?:when|once|by the time|as|until) {_CLIP} (?:ends?|finishes|is over|stops|is done)(?= |$)",
          _plain("end")),
         (rf"\b(?:right |just )?(?:at|in|by|until|till|to) (?:the|its) (?:very )?(?:end|finish|close){_OF_CLIP}(?= |$)|"
@@ -127,7 +127,8 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
          rf"for all {NUMBER} {SECONDS}|the (?:whole|entire|full) way through)(?= |$)", _plain("always")),
         (rf"\b(?:at any (?:time|point|moment|stage)|at some (?:time|point|moment|stage)|sometimes?|ever|at one point|"
          rf"over (?:the )?time|(?:during|in|over|within) {_CLIP}|along the way|in total|altogether|overall|"
-         rf"at all|(?:on|along) (?:the|its|their) way|as time (?:goes (?:by|on)|passes))(?= |$)", _plain("ever")),
+         rf"at all|(?:on|along) (?:the|its|their) way(?: (?:to|towards) the \w+)?|as time (?:goes (?:by|on)|"
+         rf"passes))(?= |$)", _plain("ever")),
     )
 )  # fmt: skip
 _CONJUNCTION = re.compile(rf"(?<= )(?P<conj>{_CONJ})(?= )")
@@ -172,7 +173,12 @@ def clauses(said: str) -> Iterator[tuple[When, str]]:
         yield When("clause", conj=conjunction(found["conj"]), clause=found["clause"].strip(" ,")), found["main"]
     for found in _CONJUNCTION.finditer(said):
         main, clause = said[: found.start()].strip(" ,"), said[found.end() :].strip(" ,")
-        if main and clause and without_time(said[found.start() :].strip())[1]:
+        if (
+            main
+            and clause
+            and not said[: found.start()].endswith(" at")
+            and without_time(said[found.start() :].strip())[1]
+        ):
             yield When("clause", conj=conjunction(found["conj"]), clause=clause), main
 
 
@@ -183,6 +189,8 @@ def conjunction(said: str) -> str:
         return "before"
     if last in ("after", "following"):
         return "after"
+    if last == "once":
+        return "once"
     if last in ("until", "till"):
         return "until"
     return "while" if last in ("while", "whilst", "during", "as") and said != "as soon as" else "when"

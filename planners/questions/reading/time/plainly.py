@@ -25,7 +25,14 @@ do \1 \2
 \b(?:is|was) it that (?=\w+s\b) =>
 \b(?:would you say|do you think) =>
  , (?=in (?:order|sequence)$) =>
- (?:at|from|in) the moment (?:when|that|at which|where) (?=\w) => when
+ (?:at|from|in) the moment (?:(?:when|that|at which|where) )?(?=the |it ) => when
+\b(opening|closing|sliding|rolling|turning|falling|walking) (?:movement|motion|action|phase)\b => \1
+(?: ,)? (?:out and back|there and back)$ =>
+ (?:at rest|still|stationary|motionless) between (?:the|its) (?:two )?(?:movements|motions|moves|trips)$ => pausing
+^((?:which|what|who) (?!.*\b(?:first|earlier|sooner|later|last|faster|slower|quicker)\b)\w+ .+?) , the \w+(?: \w+)? \
+or the \w+(?: \w+)?$ => \1
+^(?:does|do|did|is|are|is it) only (the .+?) (?:that )?(move|moves|moving|fall|falls|falling|turn|turns|turning)$ \
+=> nothing besides \1 \2
 \bon the (last|final|first) frame\b => in the \1 frame
 \bon (?:the|its) (?:last|final|second) (?:stretch|leg|part|straight)\b => after the turn
 \bon (?:the|its) (?:first|initial) (?:stretch|leg|part|straight)\b => before the turn
@@ -38,15 +45,16 @@ some time
 ^(the [\w ]+?) (does|did|is|was|will|has) (?:it|he|she|they) (.+)$ => \2 \1 \3
 ^(the \w+(?: \w+)?) , ((?:when|how|where|what|which|does|is|at|until)\b.*)\b(?:it|they)\b(.*)$ => \2\1\3
 ^(?:in )?(?:what|which) state (?:is|are) (.+?)(?: in)?((?: at .+)?)$ => is \1 open or closed\2
-^how (?:far|wide) open (is|was) (.+?)((?: at| when| after| before| by) .*)?$ => how far \1 \2 open\3
+^how (?:far|wide) (?:open|out) (is|was) (.+?)((?: at| when| after| before| by) .*)?$ => how far \1 \2 open\3
 ^(how far) ((?:out of|away from|from|off) (?:the|its) (?:\w+ ){1,3}?)((?:does|do|did|is|has) .+)$ => \1 \3 \2
 ^(?:to )?where (?:is|does) (.+?) (?:heading|head|headed|bound)(?: to| for)?(?= |$) => which way does \1 move
 ^(?:the )?(?:total |whole )?time (the [\w ]+?) is in motion$ => how long does \1 move
 ^((?:for )?how long .+) lasts?$ => \1
 ^(?:the )?time (?:for|to make) (.+)$ => how long does \1 take
 ^(?:the )?time per (?:one |a )?(.+)$ => how long does one \1 take
- (?:for|to make|to complete|to do|to finish|makes?|complete|do) (?:one|a|each|every|two|three|four|five|ten|\d+) \
-(?:full |single |whole |complete )?(?:turn|rotation|revolution|spin|round)s?\b => turn
+ (?:for|to make|to complete|to do|to finish|makes?|made|complete|do) \
+(?:one|a|each|every|two|three|four|five|ten|\d+) (?:full |single |whole |complete \
+)?(?:turn|rotation|revolution|spin|round)s?\b => turn
 """
 
 
