@@ -50,8 +50,19 @@ _EVENT = (
     "motion|movement|animation|anim|path|walk|roll|fall|drop|swing|ride|flight|turn|way|trip|journey|opening|closing|"
     "slide|run|move"
 )
-_ALONE = "motion|movement|animation|walk|roll|fall|drop|flight|turn|opening|closing"  # said without whose it is
-_ASPECTS = {"speed": _SPEED, "way": _WAY, "event": _EVENT}
+_NAMES = {"speed": _SPEED, "way": _WAY, "event": _EVENT}
+_ASPECTS = tuple(  # "the speed of the fan", "the fan 's speed"; and "the fan speed", where that is no name
+    (
+        aspect,
+        re.compile(rf"^(?:(?:the )?(?:{names}) (?:of|for) (?P<of>.+)|(?P<who>.+?) (?:'s|s) (?:{names}))$"),
+        re.compile(rf"^(?P<who>.+?) (?:{names})$"),
+    )
+    for aspect, names in _NAMES.items()
+)
+_ALONE = re.compile(r"^(?:the|its) (?:motion|movement|animation|walk|roll|fall|drop|flight|turn|opening|closing)$")
+_ANIMATION = re.compile(r"^(?P<who>.+?) (?:animation|anim|motion|movement)$")
+_NOT = re.compile(r"^(?:do not|never|no longer) (?=\S)")
+_NO = re.compile(r"^no (?:more )?(?P<event>[a-z]+) (?:of|for|from) (?P<who>.+)$")  # "no movement of the robot"
 
 
 @dataclass(frozen=True)
@@ -97,11 +108,9 @@ def clauses(said: str, thing: Thing) -> Iterator[Clause]:
     """Each way of dividing a command, the likeliest first."""
     words = said.split(" ")
     yield from _ordered(words, thing, False)
-    if (found := re.match(r"^(?:do not|never|no longer) (?=\S)", said)) is not None:
+    if (found := _NOT.match(said)) is not None:
         yield from _ordered(said[found.end() :].split(" "), thing, True)
-    if (found := re.match(r"^no (?:more )?(?P<event>[a-z]+) (?:of|for|from) (?P<who>.+)$", said)) and (
-        re.fullmatch(_EVENT, found["event"]) or has_form(found["event"], MOTION, "ing")
-    ):
+    if (found := _NO.match(said)) and (found["event"] in _EVENT.split("|") or has_form(found["event"], MOTION, "ing")):
         target = thing(found["who"])
         if target is not None:
             yield Clause(target, "event", next(verbs_at(["move"], 0)), (), found["who"], negated=True)
@@ -169,22 +178,19 @@ def owner(said: str, thing: Thing) -> tuple[Query, str] | None:
         return MOVING, ""
     if _PLAYED.match(said):
         return ALL_OF_IT, ""
-    for aspect, names in _ASPECTS.items():
-        of = re.match(rf"^(?:the )?(?:{names}) (?:of|for) (?P<who>.+)$", said) or re.match(
-            rf"^(?P<who>.+?) (?:'s|s) (?:{names})$", said
-        )
-        if of is not None and (whose := owner(of["who"], thing)) is not None:
+    for aspect, parted, _ in _ASPECTS:
+        of = parted.match(said)
+        if of is not None and (whose := owner(of["of"] or of["who"], thing)) is not None:
             return whose[0], aspect
-    if re.fullmatch(rf"(?:the|its) (?:{_ALONE})", said):
+    if _ALONE.match(said):
         return MOVING, "event"
-    compound = re.match(r"^(?P<who>.+?) (?:animation|anim|motion|movement)$", said)
+    compound = _ANIMATION.match(said)
     if compound is not None and (found := thing(compound["who"])) is not None:
         return found, "event"
     if (found := thing(said)) is not None:
         return found, ""
-    for aspect, names in _ASPECTS.items():
-        if (of := re.match(rf"^(?P<who>.+?) (?:{names})$", said)) is not None and (
-            found := thing(of["who"])
-        ) is not None:
+    for aspect, _, joined in _ASPECTS:
+        of = joined.match(said)
+        if of is not None and (found := thing(of["who"])) is not None:
             return found, aspect
     return None

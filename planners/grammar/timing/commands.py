@@ -100,7 +100,7 @@ def _paced(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     if manner.state not in ("", "open", "moving") or (changed and clause.aspect != "speed" and not manner.compare):
         return
     factor = _factor(sense, manner)
-    if factor is not None:
+    if factor is not None and not moment.slowly:  # "faster little by little" is no one speed
         yield _pace(_all(clause), "speed", factor=factor)
 
 
@@ -154,7 +154,8 @@ def _reversed(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Comman
         yield Command(({"op": "spin", "target": clause.target, "other_way": True},))
     known = clause.sense in (*MOTION, "be", "play", "do", "look")
     allowed = ("backwards", "other_way", "endless", "goal", "at", "whom", "origin")
-    if not known or not (manner.backwards or manner.other_way) or not manner.only(*allowed):
+    opens = clause.sense in ("open", "close") and manner.other_way  # its hinge is where it is
+    if not known or opens or not (manner.backwards or manner.other_way) or not manner.only(*allowed):
         return
     if clause.sense in ("spin", "look") or clause.aspect == "way":
         yield Command(({"op": "spin", "target": clause.target, "other_way": True},))
@@ -164,7 +165,7 @@ def _reversed(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Comman
 
 def _returned(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     """ "let it roll back", "send it back the way it came"; "put it back" asks for an edit."""
-    if not manner.back or manner.fields != {"back"} or clause.negated or clause.sense not in (*MOTION, "be"):
+    if not manner.back or not manner.only("back", "way") or clause.negated or clause.sense not in (*MOTION, "be"):
         return
     first = clause.verb.first if clause.verb else ""
     if clause.sense == "be" or (clause.ordered and first in ("put", "move", "bring", "take", "turn", "return")):
@@ -249,6 +250,7 @@ def _stopped(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command
     kept = (clause.kept and sense == "be" and manner.refrains) or (sense == "prevent" and refrains)
     off = (sense == "off" and manner.only()) or (sense == "be" and manner.state == "off" and manner.only("state"))
     stays = clause.verb is not None and clause.verb.first in ("stay", "remain")
+    rests |= stays and manner.only() and "there" in clause.tail
     rests |= stays and manner.goal != "" and manner.only("goal", "at", "whom")
     if rests or (kept and manner.only("doing", "refrains")) or (off and _runs(clause)):
         yield _pace(target, "stop")
@@ -294,7 +296,8 @@ def _begun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     if manner.last and sense in (*MOTION, "start") and manner.only("last", "doing") and not target.moving:
         others = MOVING.model_copy(update={"exclude": (target,)})
         yield replace(_pace(target, "begin"), during={"state": "moving", "of": others, "part": "after"})
-    if sense == "on" and not manner.fields and _runs(clause):
+    on = (sense == "on" and manner.only()) or (sense == "be" and manner.state == "on" and manner.only("state"))
+    if on and _runs(clause):
         yield _pace(target, "begin", needs=True)
     starts = sense == "start" and manner.only("doing")
     moves = (

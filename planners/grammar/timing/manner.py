@@ -101,13 +101,13 @@ _STATES: dict[State, str] = {
     "still": r"(?:completely |perfectly |absolutely |totally )?(?:still|put|motionless|stationary|frozen|at rest|in "
              r"(?:its )?place|unmoved|fixed|stopped|paused|immobile|where (?:it|he|she|they) (?:is|are|was|were|"
              r"stands?)|"
-             r"as (?:it|they) (?:is|are|was|were)|at a standstill|there|dead|in its tracks|static|idle|parked|halted)",
+             r"as (?:it|they) (?:is|are|was|were)|at a standstill|dead|in its tracks|static|idle|parked|halted)",
     "open": r"(?:fully |completely |wide |all the way |right )*(?:open|opened|ajar|out)(?: all the way| fully| wide)?",
     "closed": r"(?:fully |completely |all the way |right |firmly )*(?:closed|shut|in|back in)",
     "gone": r"(?:gone|hidden|invisible|away(?! from)|out of (?:sight|view|shot|(?:the )?(?:room|scene|picture|way|"
             r"frame|view))|"
             r"absent|removed|not there|transparent|unseen|concealed)",
-    "shown": r"(?:visible|seen|there to see|present|in (?:sight|view)|to be seen|shown)",
+    "shown": r"(?:visible|there|seen|there to see|present|in (?:sight|view)|to be seen|shown)",
     "moving": r"in motion|on the move|going|active|under way|in action|running|at work",
     "off": "off", "on": "on",
 }  # fmt: skip
@@ -140,8 +140,10 @@ _FIXED: tuple[tuple[str, dict[str, Any]], ...] = (
     (r"last|as the last(?: one)?|after (?:all )?(?:of )?the others?|after everything else|at last", {"last": True}),
 )  # fmt: skip
 _IDLE = (
-    r"again|now|please|too|also|just|only|even|then|so|fully|wide|completely|all the way|entirely|,|more|further|even "
-    r"further|this time|already|itself|himself|herself|themselves|about itself|around itself|round itself|on itself|"
+    r"there|from (?:rest|a standstill)|again|now|please|too|also|just|only|even|then|so|fully|wide|completely|all "
+    r"the way|entirely|,|more|further|even "
+    r"further|this time|already|abruptly|suddenly|itself|himself|herself|themselves|about itself|around itself|"
+    r"round itself|on itself|"
     r"around "
     r"(?:him|her)self|on the spot|on its axis|about its (?:own )?axis|around its (?:own )?axis|in place|around|"
     r"round|at "
@@ -156,8 +158,10 @@ _HEDGE = (
     r"doing|"
     r"for|through|it|an angle of|a factor of|a speed of|a rate of|its|up to) )*?"
 )
+_HEDGED = re.compile(_HEDGE)
 _PER = re.compile(r"^(?:full |complete |whole )?(?:turns? |revs? |rotations? |revolutions? |rounds? |spins? |times )?"
-                  r"(?:(?:per|a|each|every|in a|in one|an) |/ ?)(?P<unit>seconds?|secs?|s|minutes?|min|m)(?= |"
+                  r"(?:(?:per|a|each|every|in a|in one|an|in) |/ ?)(?:(?P<count>two|three|four|five|six|ten|"
+                  r"\d+(?:\.\d+)?) )?(?P<unit>seconds?|secs?|s|minutes?|min|m)(?= |"
                   r"$)")  # fmt: skip
 _ROUNDS = re.compile(
     r"^(?:full |complete |whole )?(?:turns?|revs?|rotations?|revolutions?|rounds?|times?|spins?|laps?|circles?|twirls?|"
@@ -243,8 +247,8 @@ def _starts(said: str, thing: Thing) -> Iterator[tuple[dict[str, Any], str]]:
 def _numbers(said: str) -> Iterator[tuple[dict[str, Any], str]]:
     """An amount: its kind is told by its unit, or by what stands behind it."""
     words = said.split(" ")
-    for skip in range(min(4, len(words))):
-        if skip and re.fullmatch(_HEDGE, " ".join(words[:skip]) + " ") is None:
+    for skip in range(min(6, len(words))):
+        if skip and _HEDGED.fullmatch(" ".join(words[:skip]) + " ") is None:
             return
         behind = words[skip:]
         if behind[0] in _NAMED_TIMES:
@@ -256,6 +260,8 @@ def _numbers(said: str) -> Iterator[tuple[dict[str, Any], str]]:
                 yield {"rate": 1 / _seconds(per)}, " ".join(behind[1:])[per.end() :]
             continue
         rest = " ".join(behind[found.taken :])
+        if re.match(r"(?:more|further|less|wider|farther)\b", rest):
+            return  # "5 cm more" is no place
         if per := _PER.match(rest):
             turns = found.value / 360 if found.kind == "ANGLE" else found.value
             if found.kind in ("ANGLE", "NUMBER", "TIMES", "FRACTION"):
@@ -281,7 +287,8 @@ def _digits_with_x(words: Sequence[str]) -> quantities.Quantity | None:
 
 
 def _seconds(per: re.Match[str]) -> float:
-    return 60.0 if per["unit"].startswith("m") else 1.0
+    count = quantities.NUMBERS.get(per["count"]) or float(per["count"]) if per["count"] else 1.0
+    return (60.0 if per["unit"].startswith("m") else 1.0) * count
 
 
 def _kinds(found: quantities.Quantity, first: str) -> Iterator[dict[str, Any]]:
@@ -321,16 +328,16 @@ def _goals(said: str, thing: Thing) -> Iterator[tuple[dict[str, Any], str]]:
                 yield {"goal": f"{plain} {noun}", "at": at, "whom": whom}, rest
 
 
+_DOING = re.compile(
+    r"^(?:to |from |with |ever |even )*(?:its |the |his |their )?(?P<verb>[a-z]+)(?: (?:down|up|open|around|"
+    r"round|off|over))?(?= |$)"
+)
 _EVENT_WORDS = ("movement", "motion", "path", "walk", "fall", "move", "work", "roll", "turn", "swing", "ride", "spin")
 
 
 def _doings(said: str) -> Iterator[tuple[dict[str, Any], str]]:
     """Another verb: "(start) to roll", "(stop) turning", "from falling"."""
-    found = re.match(
-        r"^(?:to |from |with |ever |even )*(?:its |the |his |their )?(?P<verb>[a-z]+)(?: (?:down|up|open|around|"
-        r"round|off|over))?(?= |$)",
-        said,
-    )
+    found = _DOING.match(said)
     if found is None:
         return
     for sense in (*MOTION, "stop", "start"):

@@ -99,9 +99,15 @@ _SLOWLY = (
 _QUICKLY = r"(?:quickly|rapidly|swiftly|in no time)"
 
 
+_HEDGED = re.compile(rf"^{_HEDGE}")
+_UNITED = re.compile(rf" ?(?:full |whole )?{_UNIT}.*$")
+_SPAN = re.compile(rf"^{_HEDGE}{_DURATION}$")
+_AT_TIME = re.compile(rf"{_UNIT}|\b(?:t|sec|time|start|beginning|end|middle|halfway)\b")
+
+
 def _value(text: str) -> float | None:
     """Seconds that a number or a duration names."""
-    text = re.sub(rf"^{_HEDGE}", "", text.strip())
+    text = _HEDGED.sub("", text.strip())
     text = re.sub(r"^(?:the )?(?:t|time|seconds?|sec)\b(?: ?= ?| )(?=\w)", "", text)
     text = re.sub(r" (?:mark|point)$", "", text)
     half = 0.0
@@ -113,7 +119,7 @@ def _value(text: str) -> float | None:
         return 0.75
     if re.match(r"^a quarter|^quarter", text):
         return 0.25
-    number = re.sub(rf" ?(?:full |whole )?{_UNIT}.*$", "", text).strip()
+    number = _UNITED.sub("", text).strip()
     if re.fullmatch(_DIGITS, number):
         return float(number.replace(",", ".")) + half
     if number in ("a", "an", ""):
@@ -130,7 +136,7 @@ def _value(text: str) -> float | None:
 
 def seconds_of(said: str) -> float | None:
     """Seconds that words name if they name a duration and nothing else."""
-    return _value(said) if re.fullmatch(rf"{_HEDGE}{_DURATION}", said) else None
+    return _value(said) if _SPAN.match(said) else None
 
 
 def _end(text: str) -> End | None:
@@ -285,7 +291,7 @@ def _fits(said: str, found: re.Match[str]) -> bool:
         return False  # "at the end of the bed", "a second lamp"
     if text in ("immediately", "right away", "straight away", "instantly"):
         return after in ("", ",", ".", "and", "then")
-    if "=" in text or re.search(rf"{_UNIT}|\b(?:t|sec|time|start|beginning|end|middle|halfway)\b", text):
+    if "=" in text or _AT_TIME.search(text):
         behind = said[found.end() :].strip().split(" ")[0]
         return behind not in ("chair", "one", "of") or "second" not in text
     behind = said[found.end() :].strip().split(" ")[0]

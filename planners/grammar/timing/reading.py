@@ -18,7 +18,7 @@ from ....gaussians.language.query.nested import queries, with_queries
 from ....gaussians.language.query.query import Query
 from ....tools.registry import OPS
 from ....tools.registry import parse as parse_op
-from ....tools.when import During, When
+from ....tools.when import During, Part, When
 from ..parsing import Refusal
 from ..restating.speech.frames import unframed
 from ..tagging.words import bag, split
@@ -36,16 +36,18 @@ Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain comm
 _TIME_WORDS = re.compile(
     r"\b(?:\d+ ?s|secs?|seconds?|t ?= ?\d|while|whilst|until|till?|untill|when|whenever|once|after|before|as soon "
     r"as|as "
-    r"long as|the moment|during|still|motion|movement|rpm|revs?|fast|slow|fast(?:er)?|slower|pause|backwards?|later|"
+    r"long as|the moment|during|still|motion|movement|rpm|revs?|fast|slow|fast(?:er)?|slower|pause|quicker|"
+    r"backwards?|later|"
     r"earlier|"
     r"sooner|slowly|gradually|halfway|way back|(?:half|double) speed|whole (?:time|clip)|always|permanently|throughout|"
     r"forever|other way|crazy|let|last|beginning|clip|do|does|doing|from \d\S* (?:to|until|till)|between \d|direction|"
-    r"speed|moving|moves?)\b"
+    r"speed|moving|moves|that move|not|never|out|back|quick(?:er|ly)?|twice|as fast)\b"
 )
 _TIMELY = (
-    *MOTION, "stop", "prevent", "stay", "start", "continue", "faster", "slower", "double", "triple", "halve", "reverse",
-    "delay", "advance", "play", "fade", "off", "on", "hide", "show",
-)  # fmt: skip
+    *(m for m in MOTION if m != "move"),
+    *("stop", "prevent", "stay", "start", "continue", "faster", "slower", "double", "triple", "halve", "reverse"),
+    *("delay", "advance", "play", "fade", "off", "on", "hide", "show"),
+)
 _JOINT = r"(?: ,)*(?: (?:and|then|and then|after(?: that|wards)?|but|finally|or)(?: ,)*)+ "
 _NORMAL = (
     r"(?:normal|how it was|as (?:it was|before|usual)|(?:its |the )?(?:original|old|usual|own|first|previous) "
@@ -91,7 +93,7 @@ _RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], .
     # what people write, and the same in words that the readers know
     (re.compile(pattern), plain)
     for pattern, plain in (
-        (r"(?<=\d) ?= ?", " "), (r"(?: [.!?])+$", ""), (r" ?[!?] ?", " . "), (r"^(?P<x>[\w ]+?) : ", r"\g<x> "),
+        (r"(?<=\d) ?= ?", " "), (r"(?: [.!?])+$", ""), (r" ?[!?] ?", " . "), (r"^(?P<x>[\w' ]+?) : ", r"\g<x> "),
         (r"\bits (?=(?:on|in|under|at|near|next|behind|still|not|over|off|open|closed|\w+ing)\b)", "it is "),
         (r"\b(?P<w>while|when|once|until|whenever|as long as) (?=(?:on|in|under|touching|still|standing still|open|"
          r"closed|"
@@ -113,6 +115,12 @@ _RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], .
         (r"\bto (?:the|its) right\b(?! of)", "rightwards"),  # "right" at an end is politeness
         (r"\b(?P<a>as|so) (?:quickly|rapidly)\b", r"\g<a> fast"), (r"\b(?P<a>as|so) slowly\b", r"\g<a> slow"),
         (r"\bmore (?:quickly|rapidly)\b", "faster"), (r"\bmore slowly\b", "slower"),
+        (r"(?<= 's) colou?r(?= (?!to\b)\w)(?: is| should be| shall be)?", ""), (r"(?<=\w) 's (?=(?:in )?(?:red|blue|"
+            r"green|yellow|white|"
+         r"black|brown|pink|purple|orange|gr[ae]y|gold|silver)\b)", " "),
+        (r"\b(?P<w>at|until|till|from|after|before) the (?P<a>first|second|third|fourth|fifth) second\b",
+         lambda m: f"{m['w']} {_RANKS[m['a']]} seconds"),
+        (r"\b(?P<w>at|from|until) zero(?! s)", r"\g<w> 0 seconds"), (r"\bfor all (?=\w+ seconds?\b)", "for "),
         (r"^(?:would|will) it be (?:possible|ok|okay|great|nice|all right) (?:to|if you|if) ?", ""),
         (r"\bsay (?=half|twice|double|\d)", ""),
         (r"\bquarter speed\b", "a quarter of the speed"), (r"\bhalf speed\b", "half the speed"),
@@ -277,6 +285,8 @@ class TimeReader:
                 if topic is not None:
                     continue
             found = self._whole(part)
+            if found is None and ops and (first := part.split(" ")[0]) and has_form(first, tuple(SENSES), "s"):
+                found = self._whole(f"it {part}")  # "it opens at 1 s and closes at 2 s"
             if found and topic is not None and found[0].get("target") == IT:
                 found = ({**found[0], "target": topic}, *found[1:])
             if found is not None:
@@ -286,7 +296,7 @@ class TimeReader:
                     found = tuple(self._understand(part))
                 except Refusal as error:
                     refusal = refusal or error
-            ops += found or ()
+            ops = _resting(ops, found or ())
         if not timed:
             return None
         if refusal is not None:
@@ -350,7 +360,13 @@ class TimeReader:
             ways = all(op["op"] in ("move", "rotate") for op in ops)
             if command.target is not None:
                 ops = [{**op, "target": command.target} if op.get("target") == IT else op for op in ops]
-            if not ops or is_misread(ops) or not all(map(_takes_time, ops)) or (kind == "path" and not ways):
+            if (
+                not ops
+                or is_misread(ops)
+                or _is_strange(ops)
+                or not all(map(_takes_time, ops))
+                or (kind == "path" and not ways)
+            ):
                 return None
             if re.search(r"\b(?:off|out|on)$", command.text) and any(op["op"] in ("delete", "relight") for op in ops):
                 return None  # "the light should go out"
@@ -361,20 +377,16 @@ class TimeReader:
             if happening is not None:
                 return None
             happening = Happening(During(**command.during), "")
-        if command.inverse:
-            flipped = _inverse(moment, happening)
-            if flipped is None:
-                return None
-            moment, happening = flipped
+        times = _inverse(moment, happening) if command.inverse else [(moment, happening)]
         if moment.taken and moment.lasting is not None and all(op.get("change") == "speed" for op in ops):
             ops = [
                 {k: v for k, v in op.items() if k != "factor"} | {"change": "begin"} for op in ops
             ]  # "faster, in 1 s"
-        return self._with_time(ops, moment, happening, kind)
+        return tuple(op for time in times for op in self._with_time(ops, *time, kind)) or None
 
     def _with_time(
         self, ops: Sequence[Fields], moment: Moment, happening: Happening | None, kind: str
-    ) -> tuple[Fields, ...] | None:
+    ) -> tuple[Fields, ...]:
         made: list[Fields] = []
         for op in ops:
             target = op.get("target")
@@ -439,6 +451,18 @@ def _is_verb(word: str) -> bool:
     return has_form(word, tuple(SENSES), "plain", "s", "past", "ing") and word not in _THINGS
 
 
+def _resting(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
+    """Operations one after the other; "it stops at 1 s and starts again at 2 s" is one rest from 1 to 2 s."""
+    last = ops[-1] if ops else {}
+    then = more[0] if len(more) == 1 else {}
+    stop, start = last.get("when"), then.get("when")
+    if (last.get("change"), then.get("change")) != ("stop", "begin") or then["target"] not in (IT, last["target"]):
+        return [*ops, *more]
+    if not isinstance(stop, When) or not isinstance(start, When) or start.start is None or stop.stop or stop.lasting:
+        return [*ops, *more]
+    return [*ops[:-1], {**last, "when": stop.model_copy(update={"stop": start.start})}]
+
+
 def _which_moves(query: Query, moving: bool) -> Query:
     text = "" if query.text in ("everything", "all", "thing", "object") else query.text
     return query.model_copy(update={"text": text, "moving": moving})
@@ -482,15 +506,20 @@ _PART = (
     r"(?=(?:open|close|make|let|paint|hide|remove|delete|stop|turn|move|spin|have|put|play|slow|speed|start|freeze|"
     r"do not|never)\b)"
 )
+_JOINTS = tuple(
+    re.compile(joint)
+    for joint in (
+        r" \. | ; |(?: ,)? (?:and then|then|and also) | \n ",
+        rf"(?: ,)? and {_PART}| , {_PART}",
+        rf"(?: ,)? and (?={any_of(tuple(SENSES), 's')} )",  # "it opens at 1 s and closes at 3 s"
+    )
+)
 
 
 def _parts(said: str) -> list[str]:
     """The commands of an instruction, as far as marks and joints tell."""
-    for joint in (
-        r" \. | ; |(?: ,)? (?:and then|then|and also) | \n ",
-        rf"(?: ,)? and {_PART}| , {_PART}",
-    ):
-        parts = [p for p in (p.strip(" ,") for p in re.split(joint, f" {said} ")) if p]
+    for joint in _JOINTS:
+        parts = [p for p in (p.strip(" ,") for p in joint.split(f" {said} ")) if p]
         if len(parts) > 1:
             return parts
     return [said]
@@ -508,6 +537,13 @@ def is_misread(ops: Sequence[Fields]) -> bool:
     names += [str(op.get("asset", "")) for op in ops]
     last = [name.split()[-1] for name in names if name.split()]
     return any(word in _NO_NAMES or (_is_verb(word) and not is_known(word)) for word in last)
+
+
+def _is_strange(ops: Sequence[Fields]) -> bool:
+    """Whether a name in operations may hold more than a name: "the car teleport"."""
+    names = [q.text for op in ops for v in op.values() if isinstance(v, BaseModel) for _, q in queries((v,))]
+    words = [name.split() for name in names]
+    return any(len(w) > 1 and (not is_known(w[-1]) or AUXILIARIES & set(w)) for w in words)
 
 
 _NO_NAMES = bag(
@@ -555,31 +591,26 @@ def _when(moment: Moment, during: During | None, kind: str, op: Fields) -> When 
         lasting = SLOW if moment.slowly else BRIEF if moment.quickly and kind == "path" else None
     stop: End | None = None if lasting is not None else moment.stop
     if kind == "path" and start is None and stop is None and lasting is None and during is None:
-        start = 0.0
+        start, stop = 0.0, "end" if moment.always else None
     if start is None and stop is None and lasting is None and during is None:
         return None
     return When(start=start, stop=stop, lasting=lasting, during=during, gradual=gradual)
 
 
-def _inverse(moment: Moment, happening: Happening | None) -> tuple[Moment, Happening | None] | None:
-    """The time in which something is not to be seen that is to be seen in another; None if that is several."""
+_FLIPPED: dict[Part, Part] = {
+    "from": "until", "after": "until_end", "until": "from", "until_end": "after", "while": "unless", "unless": "while",
+}  # fmt: skip
+
+
+def _inverse(moment: Moment, happening: Happening | None) -> list[tuple[Moment, Happening | None]]:
+    """The times in which something is not to be seen that is to be seen in another; none if nobody can say."""
     if happening is not None:
-        flipped = {
-            "from": "until",
-            "after": "until_end",
-            "until": "from",
-            "until_end": "after",
-            "while": "unless",
-            "unless": "while",
-        }
-        part = flipped[happening.during.part]
-        return (
-            (moment, replace(happening, during=happening.during.model_copy(update={"part": part})))
-            if moment.empty
-            else None
-        )
-    if moment.start is not None and moment.stop is None and moment.lasting is None:
-        return replace(moment, start=None, stop=moment.start), None
-    if moment.stop is not None and moment.start is None:
-        return replace(moment, start=moment.stop, stop=None), None
-    return None
+        during = happening.during.model_copy(update={"part": _FLIPPED[happening.during.part]})
+        return [(moment, replace(happening, during=during))] if moment.empty else []
+    start, stop = moment.start, moment.stop
+    if moment.lasting is not None:
+        stop = start + moment.lasting if isinstance(start, float) and start >= 0 and stop is None else None
+        start = None if stop is None else start
+    ends = [replace(moment, start=None, stop=start, lasting=None)] if start not in (None, 0.0) else []
+    ends += [replace(moment, start=stop, stop=None, lasting=None)] if stop is not None else []
+    return [(end, None) for end in ends]
