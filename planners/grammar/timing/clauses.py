@@ -61,6 +61,7 @@ _ASPECTS = tuple(  # "the speed of the fan", "the fan 's speed"; and "the fan sp
 )
 _ALONE = re.compile(r"^(?:the|its) (?:motion|movement|animation|walk|roll|fall|drop|flight|turn|opening|closing)$")
 _ANIMATION = re.compile(r"^(?P<who>.+?) (?:animation|anim|motion|movement)$")
+_ONLY = re.compile(r"^only (?P<who>.+?) (?:(?:should|may|must|shall|can|is to|are to) )*(?P<verb>[a-z]+)$")
 _NOT = re.compile(r"^(?:do not|never|no longer) (?=\S)")
 _NO = re.compile(r"^no (?:more )?(?P<event>[a-z]+) (?:of|for|from) (?P<who>.+)$")  # "no movement of the robot"
 
@@ -107,6 +108,12 @@ class Clause:
 def clauses(said: str, thing: Thing) -> Iterator[Clause]:
     """Each way of dividing a command, the likeliest first."""
     words = said.split(" ")
+    if (only := _ONLY.match(said)) is not None and has_form(only["verb"], MOTION, "plain", "s"):
+        one = thing(only["who"])  # "only the green book falls": what else moves does not
+        if one is not None:
+            rest = MOVING.model_copy(update={"exclude": (one,)})
+            yield Clause(rest, "", next(verbs_at(["fall"], 0)), (), only["who"], negated=True)
+        return
     yield from _ordered(words, thing, False)
     if (found := _NOT.match(said)) is not None:
         yield from _ordered(said[found.end() :].split(" "), thing, True)

@@ -34,6 +34,7 @@ class Command:
         during: a time that the command itself tells, as the fields of `During`.
         inverse: whether the plain command says what is so at all other times.
         fades: whether it changes little by little.
+        ends: whether a time "at" which it is said to be is that of its end.
         target: what "it" in `text` is, where the plain grammar has no words for it.
     """
 
@@ -45,6 +46,7 @@ class Command:
     inverse: bool = False
     fades: bool = False
     target: Query | None = None
+    ends: bool = False
 
 
 Rule = Callable[[Clause, Manner, Moment], Iterator[Command]]
@@ -72,9 +74,17 @@ def commands(said: str, thing: Thing, moment: Moment, told: bool) -> Iterator[Co
                 for command in rule(clause, manner, moment):
                     if told or not command.needs:
                         yield command
+        meets = clause.sense == "reach" and clause.verb is not None and clause.verb.first in _MEETS
+        if meets and told and not clause.ordered and not clause.negated:
+            whom = thing(" ".join(clause.tail))  # "the ball reaches the wall at 2 s"
+            if whom is not None and (moment.start is not None or moment.lasting is not None):
+                yield replace(_pace(clause.target, "begin"), ends=True)
     if told or moment.always:
         for clause in clauses(said, thing):
             yield from _colored(clause)
+
+
+_MEETS = bag("reach touch hit strike meet arrive bump crash collide")
 
 
 def _pace(target: Query, change: str, needs: bool = False, **more: Any) -> Command:
@@ -299,6 +309,8 @@ def _begun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     on = (sense == "on" and manner.only()) or (sense == "be" and manner.state == "on" and manner.only("state"))
     if on and _runs(clause):
         yield _pace(target, "begin", needs=True)
+    if sense == "arrive" and manner.only() and (moment.start is not None or moment.lasting is not None):
+        yield replace(_pace(target, "begin", needs=True), ends=True)
     starts = sense == "start" and manner.only("doing")
     moves = (
         sense in MOTION
@@ -321,6 +333,8 @@ def _opened(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]
     change = {"open": "open", "close": "close"}.get(sense) or {"open": "open", "closed": "close"}.get(manner.state)
     stays = sense in ("stay", "be") or (sense == "continue" and clause.verb is not None and clause.verb.first == "keep")
     halfway = sense == "stop" and manner.share is not None and manner.fields == {"share"}
+    if sense == "close" and clause.negated and manner.only() and _is_openable(target, clause):
+        yield _held_open(target)  # "do not close it"
     if clause.negated or (sense not in ("open", "close", "move", "go") and not (stays and change) and not halfway):
         return
     if sense in ("move", "go") and manner.state not in ("open", "closed"):
@@ -346,11 +360,15 @@ def _opened(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]
     if kept and moment.stop is not None:
         yield _pace(target, "stop")
     elif kept and change == "open" and moment.empty and not moment.always and not amount and not clause.kept:
-        yield Command(
-            ({"op": "articulate", "target": target, "change": "open"},), during={"state": "open", "part": "from"}
-        )
+        yield _held_open(target)
     else:
         yield Command(({"op": "articulate", "target": target, "change": change, **amount},), needs=gap)
+
+
+def _held_open(target: Query) -> Command:
+    """What opens by itself opens and stays so."""
+    ops = ({"op": "articulate", "target": target, "change": "open"},)
+    return Command(ops, during={"state": "open", "part": "from"})
 
 
 def _is_openable(target: Query, clause: Clause) -> bool:

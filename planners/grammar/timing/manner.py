@@ -249,7 +249,7 @@ def _numbers(said: str) -> Iterator[tuple[dict[str, Any], str]]:
     words = said.split(" ")
     for skip in range(min(6, len(words))):
         if skip and _HEDGED.fullmatch(" ".join(words[:skip]) + " ") is None:
-            return
+            continue
         behind = words[skip:]
         if behind[0] in _NAMED_TIMES:
             yield {"times": _NAMED_TIMES[behind[0]]}, " ".join(behind[1:])

@@ -69,6 +69,7 @@ _REMARKS = re.compile(  # what goes without saying behind a time: "..., then bac
     rf"still|so|open|shut|closed|like that|that way|in place|put|there for good|that))*|"
     rf"(?:let it |it )?(?:opens?|goes?|moves?|rolls?|walks?|drives?|falls?|spins?|turns?|runs?)|"
     rf"not (?:close|open|shut|move|fall|go|start)(?: again| any ?more)?)"
+    rf"|(?: ,)+ (?:and )?(?:not|instead of) (?:to )?{any_of(MOTION, 'plain', 'ing')}\b[^,]*"
     rf"|(?: ,)+ (?:(?:and |it )?(?:is |stays? |stand |be |keep it )?(?:still|stopped|not moving|at rest) "
     rf"(?:before(?: that)?|"
     rf"until then)|otherwise (?:as (?:it )?is|unchanged|normal|as (?:usual|before))|"
@@ -87,7 +88,10 @@ _NOISE = re.compile(
     r"possible|"
     r"would you mind|would you|could you|honey|bro|dude|hey|hi)(?= |$)"
 )
-_RANGE = re.compile(r"(?P<a>\d+(?:\.\d+)?) ?(?:s|secs?)? ?[-–] ?(?P<b>\d+(?:\.\d+)?) ?(?:s|secs?|seconds)\b")
+_RANGE = re.compile(  # "2s-3s", "from 0-1"
+    r"(?:from )?(?P<a>\d+(?:\.\d+)?) ?(?:s|secs?)? ?[-–] ?(?P<b>\d+(?:\.\d+)?) ?(?:s|secs?|seconds)\b|"
+    r"from (?P<c>\d+(?:\.\d+)?) ?[-–] ?(?P<d>\d+(?:\.\d+)?)\b"
+)
 _RANKS = {"first": 1, "second": 2, "third": 3, "fourth": 4, "fifth": 5}
 _RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] = tuple(
     # what people write, and the same in words that the readers know
@@ -97,7 +101,7 @@ _RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], .
         (r"\bits (?=(?:on|in|under|at|near|next|behind|still|not|over|off|open|closed|\w+ing)\b)", "it is "),
         (r"\b(?P<w>while|when|once|until|whenever|as long as) (?=(?:on|in|under|touching|still|standing still|open|"
          r"closed|"
-         r"moving|(?!the|every|any)\w+ing)\b(?! (?:is|has|starts|stops)))", r"\g<w> it is "),
+         r"moving|(?!the|every|any|nothing|some)\w+ing)\b(?! (?:is|has|starts|stops)))", r"\g<w> it is "),
         (r"\bsince (?P<a>[\d.]+)(?P<s> (?:seconds?|secs?|s))? until\b", r"from \g<a> until"),
         (r"\b(?:between|from) seconds? (?P<a>[\d.]+) (?:and|to|until|till) (?P<b>[\d.]+)\b", r"from \g<a> to \g<b> "
             r"seconds"),
@@ -121,6 +125,7 @@ _RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], .
         (r"\b(?P<w>at|until|till|from|after|before) the (?P<a>first|second|third|fourth|fifth) second\b",
          lambda m: f"{m['w']} {_RANKS[m['a']]} seconds"),
         (r"\b(?P<w>at|from|until) zero(?! s)", r"\g<w> 0 seconds"), (r"\bfor all (?=\w+ seconds?\b)", "for "),
+        (r"^(?:i|we) (?:do not|would not) (?:want|like)(?: that)? (?P<x>.+?) to (?=\w)", r"do not let \g<x> "),
         (r"^(?:would|will) it be (?:possible|ok|okay|great|nice|all right) (?:to|if you|if) ?", ""),
         (r"\bsay (?=half|twice|double|\d)", ""),
         (r"\bquarter speed\b", "a quarter of the speed"), (r"\bhalf speed\b", "half the speed"),
@@ -209,7 +214,9 @@ class TimeReader:
         Raises:
             Refusal: it names a time, and the rest is not understood.
         """
-        said = " ".join(w.text for w in split(_RANGE.sub(r"\g<a> to \g<b> s", cleaned)))
+        said = " ".join(
+            w.text for w in split(_RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", cleaned))
+        )
         if _ASKS.match(said) and cleaned.rstrip().endswith("?"):
             return None
         said = _tidy(said)
@@ -285,6 +292,8 @@ class TimeReader:
                 if topic is not None:
                     continue
             found = self._whole(part)
+            if found is None and ops and ops[-1]["op"] in ("recolor", "restyle"):
+                found = self._whole(f"make it {part}")  # "red at 1 s and blue at 3 s"
             if found is None and ops and (first := part.split(" ")[0]) and has_form(first, tuple(SENSES), "s"):
                 found = self._whole(f"it {part}")  # "it opens at 1 s and closes at 2 s"
             if found and topic is not None and found[0].get("target") == IT:
@@ -339,17 +348,18 @@ class TimeReader:
             return None
         if happening is not None and happening.said.startswith("before ") and _RIDDING.match(said):
             return None  # "delete the vase before it falls" gives a reason
-        returns = re.search(r"\b(?:back|returns?|comes?|again)\b", remark) is not None
         for command in commands(said, self.thing, moment, told):
-            if returns and command.kind != "look":
+            ends = moment.stop is not None or moment.lasting is not None or happening is not None
+            if not _goes_without_saying(remark, command, ends):
                 continue  # "roll to the wall and come back" is not half done
             with suppress(Refusal, UserError, ValidationError):
                 found = self._made(command, moment, happening)
                 if found:
                     return found
-        if told or moment.always:
+        plain = Command(kind="look", text=said)
+        if (told or moment.always) and _goes_without_saying(remark, plain, False):
             with suppress(Refusal, UserError, ValidationError):
-                return self._made(Command(kind="look", text=said), moment, happening)
+                return self._made(plain, moment, happening)
         return None
 
     def _made(self, command: Command, moment: Moment, happening: Happening | None) -> tuple[Fields, ...] | None:
@@ -377,11 +387,20 @@ class TimeReader:
             if happening is not None:
                 return None
             happening = Happening(During(**command.during), "")
-        times = _inverse(moment, happening) if command.inverse else [(moment, happening)]
+        if command.ends and moment.start is not None and moment.stop is None:
+            moment = replace(moment, start=None, stop=moment.start)
+        if (
+            happening is not None
+            and happening.said.startswith("when ")
+            and happening.during.part == "while"
+            and all(op.get("change") in ("stop", "begin") for op in ops)
+        ):  # "stop when it is turning" begins then
+            happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
         if moment.taken and moment.lasting is not None and all(op.get("change") == "speed" for op in ops):
             ops = [
                 {k: v for k, v in op.items() if k != "factor"} | {"change": "begin"} for op in ops
             ]  # "faster, in 1 s"
+        times = _inverse(moment, happening) if command.inverse else [(moment, happening)]
         return tuple(op for time in times for op in self._with_time(ops, *time, kind)) or None
 
     def _with_time(
@@ -446,6 +465,29 @@ _SECONDS = re.compile(r"\b(?:\d\S* ?)(?:s|secs?|seconds?)\b")
 _THINGS = bag("sink mirror switch block swing slide paint light float lift step lead brake sail")  # names of verbs
 
 
+_COMES_BACK = re.compile(r"\b(?:back|returns?|comes?|again|normal|reappears?|appears?|shows?)\b")
+_GOES_ON = re.compile(
+    r"\b(?:opens?|goes?|go|moves?|rolls?|walks?|drives?|falls?|spins?|turns?|runs?|not|continues?|"
+    r"on)\b"
+)
+
+
+def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
+    """Whether a remark behind a command says nothing more: what waits then goes on, and a look goes back.
+
+    Args:
+        ends: whether the time of the command has an end.
+    """
+    if _COMES_BACK.search(remark):
+        return command.kind == "look"
+    if re.search(r"\bstops?\b", remark):
+        return command.kind == "path"
+    changes = {op.get("change") for op in command.ops}
+    if changes and changes <= ({"begin", "open", "stop"} if ends else {"begin", "open"}):
+        return True
+    return (changes == {"stop"} and re.search(r"\bnot\b", remark) is not None) or not _GOES_ON.search(remark)
+
+
 def _is_verb(word: str) -> bool:
     """Whether a word is a verb of the lexicon, and no name of a thing."""
     return has_form(word, tuple(SENSES), "plain", "s", "past", "ing") and word not in _THINGS
@@ -499,7 +541,12 @@ def _bare(said: str) -> str:
     """A command without politeness, and without marks at its ends."""
     said = re.sub(r"(?: ,)* (?:like|only|just|about|exactly)$", "", said.strip(" ,.;"))
     said = unframed(said).strip(" ,.;")
-    return re.sub(r"^(?:to |then |and |but |now |from now on |please |only |that |mind )+", "", said)
+    return re.sub(
+        r"^(?:to |then |and |but |now |from now on |please |that |mind |only (?!.* (?:should|may|must|"
+        r"shall|can|is|are) ))+",
+        "",
+        said,
+    )
 
 
 _PART = (
@@ -511,6 +558,7 @@ _JOINTS = tuple(
     for joint in (
         r" \. | ; |(?: ,)? (?:and then|then|and also) | \n ",
         rf"(?: ,)? and {_PART}| , {_PART}",
+        r"(?: ,)? and (?:then )?(?=\w+ (?:at|from|until|till|after|when|while|once|between|for) )|"
         rf"(?: ,)? and (?={any_of(tuple(SENSES), 's')} )",  # "it opens at 1 s and closes at 3 s"
     )
 )
