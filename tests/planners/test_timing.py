@@ -60,6 +60,9 @@ TIMELESS = (
     "there is a gap behind the sofa, please close it",
     "delete the vase before it falls",
     "move the mug to the sink",
+    "spin the office chair round to face the other way",
+    "keep the sofa and remove everything else",
+    "delete the chair quickly",
 )
 
 

@@ -218,7 +218,8 @@ def _meant(scene: Scene, query: Query, context: Context) -> Selection:
 def moving_one(scene: Scene, query: Query, context: Context) -> Selection:
     """What a query means where time is spoken of: of several things that it may mean, the one that moves."""
     found = context.resolve(scene, query)
-    if found.verdict != "ambiguous" or scene.motion is None or query.moving is not None:
+    plain = query.pick == "one" and query.moving is None  # "the middle drawer" is not the one that moves
+    if found.verdict != "ambiguous" or scene.motion is None or not plain:
         return found
     moves = context.resolve(scene, query.model_copy(update={"moving": True}))
     return moves if moves.chosen else found

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -49,7 +50,7 @@ def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
         return _counted(query, scored, matches)
     if query.pick == "any":
         return Choice(matches[:1])
-    key = _keys(stand)[query.pick]
+    key = _keys(stand)[query.pick if query.pick != "middle" else _row(matches, scored, stand)]
     ordered = sorted(_preferred(scored, matches), key=lambda i: (key(scored.groups[i]), scored.groups[i].id))
     told = tuple(scored.candidate(i) for i in ordered)
     if query.pick == "middle" and len(ordered) % 2 == 0:
@@ -66,6 +67,12 @@ def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
     if abs(rank) > len(ordered):
         return Choice([], nothing(query, f"{query.describe()}: there are only {len(ordered)}", told))
     return Choice([ordered[rank - 1 if rank > 0 else rank]])
+
+
+def _row(matches: Sequence[int], scored: Scored, stand: Stand) -> Literal["middle", "lowest"]:
+    """Along what the middle one is in the middle: from left to right, or from the bottom up in a stack."""
+    spans = [np.ptp([_keys(stand)[name](scored.groups[i]) for i in matches]) for name in ("middle", "lowest")]
+    return "lowest" if spans[1] > spans[0] else "middle"
 
 
 def by_distance(query: Query, scored: Scored, anchors: Sequence[Group], nearest: bool) -> Choice:

@@ -164,8 +164,9 @@ def _reversed(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Comman
         yield Command(({"op": "spin", "target": clause.target, "other_way": True},))
     known = clause.sense in (*MOTION, "be", "play", "do", "look")
     allowed = ("backwards", "other_way", "endless", "goal", "at", "whom", "origin")
-    opens = clause.sense in ("open", "close") and manner.other_way  # its hinge is where it is
-    if not known or opens or not (manner.backwards or manner.other_way) or not manner.only(*allowed):
+    placed = clause.sense in ("open", "close") and manner.other_way  # its hinge is where it is
+    placed |= manner.other_way and manner.goal != ""  # "turn it to face the other way"
+    if not known or placed or not (manner.backwards or manner.other_way) or not manner.only(*allowed):
         return
     if clause.sense in ("spin", "look") or clause.aspect == "way":
         yield Command(({"op": "spin", "target": clause.target, "other_way": True},))

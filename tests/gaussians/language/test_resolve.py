@@ -303,6 +303,17 @@ def test_the_middle_is_one_of_an_odd_number() -> None:
     assert ask(two).verdict == "ambiguous"
 
 
+def test_the_middle_of_a_stack_is_told_from_the_bottom_up() -> None:
+    assert SCENE.language is not None
+    heights = {RED: 1.5, BLUE: 0.5, TALL: 1.0}
+    groups = tuple(
+        replace(g, box=replace(g.box, center=(0.0, 0.0, heights[g.id]))) if g.id in heights else g
+        for g in SCENE.language.groups
+    )
+    stack = SCENE.replace(language=replace(SCENE.language, groups=groups))
+    assert found(named("chair", pick="middle"), TALL, scene=stack)
+
+
 def test_what_is_left_out_is_not_in_the_way_of_the_one() -> None:
     others = (Query(groups=(RED,)), Query(groups=(TALL,)))
     assert found(named("chair", exclude=others), BLUE)
