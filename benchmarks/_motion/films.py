@@ -17,11 +17,13 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from ...gaussians.assets.furnishing.furnish import furnish
 from ...gaussians.camera import Camera, Vec3
 from ...gaussians.files.captures.capture import TRANSFORMS, to_transforms
 from ...gaussians.lens import Lens
+from ...gaussians.motion import keys
 from ...gaussians.motion.at import at
-from ...gaussians.motion.motion import poses
+from ...gaussians.motion.motion import Motion, Track, poses
 from ...gaussians.render import render
 from ...gaussians.scene import Scene
 from .rooms import moving_room
@@ -33,14 +35,34 @@ SIZE = (160, 120)
 FPS = {"books": 20.0, "ball": 10.0, "fan": 10.0, "toy": 10.0, "door": 5.0, "drawer": 5.0}
 ENDS = {"books": 3.0}  # seconds; nothing happens after it. Others are filmed to the end of the room
 FOV = 62.0  # degrees, vertical
-# What the cameras look at, and the heights between which they stand.
-AIMS: dict[str, tuple[Vec3, tuple[float, float]]] = {
-    "ball": ((0.2, -0.6, 0.2), (1.0, 2.1)),
-    "door": ((0.2, 0.6, 0.9), (1.0, 2.1)),
-    "drawer": ((0.5, 0.8, 0.6), (1.2, 2.2)),
-    "fan": ((0.0, 0.2, 1.7), (0.9, 1.9)),
-    "books": ((0.0, 0.9, 0.8), (0.8, 2.1)),
-    "toy": ((-0.3, -0.1, 0.2), (0.8, 2.0)),
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Where cameras stand in a room.
+
+    Attributes:
+        aim: what they look at.
+        heights: between which they stand, metres.
+        width, depth: of the room, metres.
+        outside: how far in front of the middle of the room cameras at the south may stand, of its depth; the south side
+            of most rooms is open.
+    """
+
+    aim: Vec3
+    heights: tuple[float, float]
+    width: float
+    depth: float
+    outside: float = 0.75
+
+
+STAGES = {
+    "ball": Stage((0.2, -0.6, 0.2), (1.0, 2.1), 5.0, 4.0),
+    "door": Stage((0.2, 0.6, 0.9), (1.0, 2.1), 4.0, 3.0),
+    "drawer": Stage((0.5, 0.8, 0.6), (1.2, 2.2), 4.0, 4.0),
+    "fan": Stage((0.0, 0.2, 1.7), (0.9, 1.9), 4.0, 4.0),
+    "books": Stage((0.0, 0.9, 0.8), (0.8, 2.1), 4.0, 3.6),
+    "toy": Stage((-0.3, -0.1, 0.2), (0.8, 2.0), 4.0, 3.4),
 }
 _TESTS = (-1.95, -1.25)  # radians: where the two held-out cameras stand, seen from the middle; -pi/2 is the south
 
@@ -91,15 +113,57 @@ def film(name: str, rig: Rig, size: tuple[int, int] = SIZE, fps: float | None = 
     """
     scene = moving_room(name, detail)
     assert scene.motion is not None
-    stop, rate = ENDS.get(name, scene.motion.stop), fps or FPS[name]
+    return _filmed(scene, STAGES[name], rig, size, fps or FPS[name], ENDS.get(name, scene.motion.stop))
+
+
+def unseen(seed: int, rig: Rig, size: tuple[int, int] = SIZE, fps: float = 10.0, detail: float = 1.0) -> Film:
+    """A film of a room furnished from a seed, of which two things move: no setting was chosen by it.
+
+    One thing is carried away and turned meanwhile, another swings about its edge and halfway back.
+    """
+    scene, stage = carried(seed, detail)
+    assert scene.motion is not None
+    return _filmed(scene, stage, rig, size, fps, scene.motion.stop)
+
+
+def carried(seed: int, detail: float = 1.0) -> tuple[Scene, Stage]:
+    """The room of `unseen`, and where its cameras stand."""
+    room = furnish(seed, detail=detail)
+    rng, objects = np.random.default_rng([seed, 7]), room.truth.objects
+    bearers = {o.support for o in objects}
+    free = [o for o in objects if o.id not in bearers and o.support not in ("wall", "ceiling")]
+    free = [o for o in free if min(o.size) > 0.12 and max(o.size) < 1.2]
+    free.sort(key=lambda o: (math.hypot(o.position[0], o.position[1]), o.id))
+    tracks = []
+    for which, thing in enumerate(free[:2]):
+        ids = room.scene.cloud.ids[room.truth.ids == thing.id].numpy()
+        middle = np.array(thing.position)
+        if which:
+            edge = middle + np.array([thing.size[0] / 2, 0.0, 0.0])
+            turn = np.radians([0, 40, 75, 75, 30]) * rng.choice([-1, 1])
+            tracks.append(Track.hinge(ids, [0.8, 1.3, 2.0, 2.6, 3.4], turn, (0, 0, 1), edge, name=thing.kind))
+            continue
+        away = -math.copysign(rng.uniform(0.5, 0.9), middle[0]), -math.copysign(rng.uniform(0.3, 0.6), middle[1])
+        path = np.array([[0, 0, 0], [0, 0, 0.3], [*away, 0.5], [*away, rng.uniform(0.1, 0.3)]])
+        quats = keys.about(np.array([0.0, 0.0, 1.0]), np.array([0, 0.2, 1.2, 1.5]) * rng.uniform(0.6, 1.2))
+        tracks.append(Track.rigid(ids, [0.4, 1.0, 2.4, 3.2], quats, path, middle, name=thing.kind))
+    scene = room.scene.replace(motion=Motion(tuple(tracks), (), (), 0.0, 4.0))
+    aim = np.mean([o.position for o in free[:2]], axis=0)
+    stage = Stage((float(aim[0]), float(aim[1]), float(aim[2])), (1.1, 2.1), room.size[0], room.size[1], 0.47)
+    return scene, stage
+
+
+def _filmed(scene: Scene, stage: Stage, rig: Rig, size: tuple[int, int], rate: float, stop: float) -> Film:
+    """The film of a room until a time."""
+    assert scene.motion is not None
     times = np.round(np.arange(0.0, stop + 0.5 / rate, 1 / rate), 6)
     between = times[:-1] + 0.5 / rate
     some = slice(None, None, max(1, len(times) // 12))
     clouds = Clouds(scene)
-    frames = [clouds.frame(_moving(name, t / stop, size), t) for t in times] if rig == "1" else [
-        clouds.frame(camera, t) for t in times for camera in standing(name, int(rig), size)
+    frames = [clouds.frame(_moving(stage, t / stop, size), t) for t in times] if rig == "1" else [
+        clouds.frame(camera, t) for t in times for camera in standing(stage, int(rig), size)
     ]  # fmt: skip
-    tests = [(camera, t) for camera in _tests(name, size) for t in (*times[some], *between[some])]
+    tests = [(camera, t) for camera in _tests(stage, size) for t in (*times[some], *between[some])]
     return Film(scene, tuple(frames), tuple(clouds.frame(camera, t) for camera, t in tests))
 
 
@@ -122,44 +186,34 @@ class Clouds:
         return Frame(camera, float(time), picture.to_uint8(), picture.group.numpy() == 1)
 
 
-def standing(name: str, count: int, size: tuple[int, int]) -> tuple[Camera, ...]:
+def standing(stage: Stage, count: int, size: tuple[int, int]) -> tuple[Camera, ...]:
     """Cameras that stand around a room; of few, all look in from the south."""
     spread = math.radians(250 if count > 6 else 110)
     angles = [-math.pi / 2 + spread * ((k + 0.5) / count - 0.5) for k in range(count)]
-    return tuple(_camera(name, angle, 0.2 + 0.6 * (k % 2), size, f"cam{k:02d}") for k, angle in enumerate(angles))
+    return tuple(_camera(stage, angle, 0.2 + 0.6 * (k % 2), size, f"cam{k:02d}") for k, angle in enumerate(angles))
 
 
-def _moving(name: str, share: float, size: tuple[int, int]) -> Camera:
+def _moving(stage: Stage, share: float, size: tuple[int, int]) -> Camera:
     """A camera that is carried along an arc at the south of a room, there and halfway back."""
     angle = -math.pi / 2 + math.radians(50) * math.sin(1.5 * math.pi * share - 0.25 * math.pi)
-    return _camera(name, angle, 0.5 + 0.3 * math.sin(5 * share), size, "cam")
+    return _camera(stage, angle, 0.5 + 0.3 * math.sin(5 * share), size, "cam")
 
 
-def _tests(name: str, size: tuple[int, int]) -> tuple[Camera, ...]:
-    return tuple(_camera(name, angle, 0.5, size, f"test{k}") for k, angle in enumerate(_TESTS))
+def _tests(stage: Stage, size: tuple[int, int]) -> tuple[Camera, ...]:
+    return tuple(_camera(stage, angle, 0.5, size, f"test{k}") for k, angle in enumerate(_TESTS))
 
 
-def _camera(name: str, angle: float, level: float, size: tuple[int, int], called: str) -> Camera:
+def _camera(stage: Stage, angle: float, level: float, size: tuple[int, int], called: str) -> Camera:
     """A camera in a direction from what is aimed at: within the walls, or some steps outside the open south side."""
-    (x, y, z), (low, high) = AIMS[name]
-    width, depth = ROOMS[name]
+    (x, y, z), (low, high) = stage.aim, stage.heights
+    width, depth = stage.width, stage.depth
     c, s = math.cos(angle), math.sin(angle)
-    reach = 0.47 * width / max(abs(c), 1e-6), ((0.47 if s > 0 else 0.75) * depth) / max(abs(s), 1e-6)
+    reach = 0.47 * width / max(abs(c), 1e-6), ((0.47 if s > 0 else stage.outside) * depth) / max(abs(s), 1e-6)
     away = min(reach)
     inside = s > -0.6  # beside the walls, where furniture stands: from above it
     eye = (0.3 * x + away * c, 0.3 * y + away * s, high if inside else low + level * (high - low))
     eye = (float(np.clip(eye[0], -0.47 * width, 0.47 * width)), min(eye[1], 0.47 * depth), eye[2])
     return Camera.look_at(eye, (x, y, z), (0, 0, 1), *size, FOV, called)
-
-
-ROOMS = {
-    "ball": (5.0, 4.0),
-    "door": (4.0, 3.0),
-    "drawer": (4.0, 4.0),
-    "fan": (4.0, 4.0),
-    "books": (4.0, 3.6),
-    "toy": (4.0, 3.4),
-}  # metres, width and depth; fmt: skip
 
 
 def middles(scene: Scene, times: Sequence[float] | F64) -> F64:

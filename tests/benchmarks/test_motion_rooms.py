@@ -32,7 +32,7 @@ def test_every_moving_row_is_of_the_thing_that_moves(ball):
 
 
 def test_the_mask_of_a_frame_covers_the_moved_thing(ball):
-    camera = films.standing("ball", 4, (64, 48))[1]
+    camera = films.standing(films.STAGES["ball"], 4, (64, 48))[1]
     frame = films.Clouds(ball).frame(camera, 2.0)
     pixel, depth = camera.project(at(ball, 2.0).cloud.means[ball.cloud.group == 9].double().mean(0).numpy()[None])
     assert depth[0] > 0 and frame.mask[int(pixel[0, 1]), int(pixel[0, 0])] and frame.mask.mean() < 0.1

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,53 @@ I64 = NDArray[np.int64]
 Columns = tuple[F32, F32, F32, F32, F32]
 
 
+@dataclass(frozen=True, eq=False)
+class Line:
+    """One axis on which all poses of a body lie.
+
+    Attributes:
+        kind: "hinge", a turn about the line through `pivot` along `axis`; "slide", a shift along `axis`.
+        axis: `[3]` unit.
+        pivot: `[3]` a point of the line of a hinge.
+        values: `[T]` radians or scene units at each time of the frames; the first is 0.
+    """
+
+    kind: Literal["hinge", "slide"]
+    axis: F64
+    pivot: F64
+    values: F64
+
+    def poses(self, values: F64, centre: F64) -> tuple[F64, F64]:
+        """Turns `[n, 4]` and offsets `[n, 3]` of a body with this pivot at values `[n]` on the axis."""
+        if self.kind == "slide":
+            return np.tile([1.0, 0.0, 0.0, 0.0], (len(values), 1)), values[:, None] * self.axis
+        turns = keys.about(self.axis, values)
+        arm = centre - self.pivot
+        return turns, keys.matrices(turns) @ arm - arm
+
+    def gradient(self, t: int, centre: F64, turn: F64, shift: F64) -> tuple[float, F64, F64]:
+        """Gradient by the value at a time, by a shift of the pivot and by a turn of the axis, both `[3]`.
+
+        Args:
+            centre: about which `turn` is taken.
+            turn, shift: gradient by a further turn and a further shift of the body at that time (`pose_gradient`).
+        """
+        value = float(self.values[t])
+        if self.kind == "slide":
+            return float(self.axis @ shift), np.zeros(3), value * np.cross(self.axis, shift)
+        about = turn + np.cross(centre - self.pivot, shift)  # the same turn, about the line
+        # A shift s of the pivot moves the body by (1 - R) s; a turn w of the axis turns it by (1 - R) w.
+        away = np.eye(3) - keys.matrices(keys.about(self.axis, np.array([value]))[0])
+        return float(self.axis @ about), away.T @ shift, away.T @ about
+
+    def stepped(self, times: slice, value: float, pivot: F64, axis: F64) -> Line:
+        """The line after steps: of the value at some times, of the pivot, and a turn of the axis."""
+        values = self.values.copy()
+        values[times] += value
+        tilted = self.axis + np.cross(axis, self.axis)
+        return replace(self, axis=tilted / np.linalg.norm(tilted), pivot=self.pivot + pivot, values=values)
+
+
 @dataclass(eq=False)
 class Body:
     """A rigid body: a point x of it is at `R(t) @ (x - pivot) + pivot + offset(t)`.
@@ -24,11 +72,13 @@ class Body:
         pivot: `[3]`.
         quats: `[T, 4]` wxyz, unit, at each time of the frames; the first is the identity.
         offsets: `[T, 3]` scene units; the first is 0.
+        line: the axis on which all poses lie, if the frames tell no more than that.
     """
 
     pivot: F64
     quats: F64
     offsets: F64
+    line: Line | None = None
 
     @classmethod
     def at_rest(cls, pivot: F64, times: int) -> Body:
@@ -38,6 +88,22 @@ class Body:
     def placed(self, t: int, means: F32, quats: F32) -> tuple[F32, F32]:
         """Means and quaternions of its Gaussians at a time."""
         return moved(means, quats, self.pivot, self.quats[t], self.offsets[t])
+
+    def on(self, line: Line) -> Body:
+        """The body with all poses on one axis."""
+        return Body(self.pivot, *line.poses(line.values, self.pivot), line)
+
+    @property
+    def runs(self) -> list[tuple[int, int]]:
+        """From which time to before which it has one pose: a body at rest has one for all of its rest."""
+        same = (self.quats[1:] == self.quats[:-1]).all(axis=1) & (self.offsets[1:] == self.offsets[:-1]).all(axis=1)
+        starts = [0, *(np.flatnonzero(~same) + 1).tolist()]
+        return list(zip(starts, [*starts[1:], len(self.offsets)], strict=True))
+
+    def seen_from(self, pivot: F64) -> Body:
+        """The same poses about another pivot."""
+        arm = pivot - self.pivot
+        return Body(pivot, self.quats, self.offsets + keys.matrices(self.quats) @ arm - arm, self.line)
 
 
 class Labelled(Parameters):

@@ -32,9 +32,11 @@ from ...fit.train import Schedule, Shot
 from ...scene import Scene
 from ..at import at
 from ..motion import Motion, Residual, Track
-from .bodies import Body, Labelled
+from .axes import line_of
+from .bodies import Body, Columns, Labelled
 from .footage import Footage
-from .seeds import gone, halves, seeds
+from .seeds import LEAST, Flags, gone, halves, seeds
+from .sharing import shared
 from .simplify import track_of
 from .start import trainer
 from .tracking import Tracker
@@ -48,6 +50,11 @@ EXPLAINS = 0.7  # of the difference without a body, to which its path must bring
 MOST_BODIES = 12
 ALIKE = 0.01  # of the radius of the cameras: bodies whose paths differ by less, on average, are one
 TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
+AS_WELL = 1.05  # times the difference with its own path, up to which a body follows another, or stands still
+TOGETHER = 0.6  # of the difference standing still, below which a body follows another without a search of its own
+RIGHT = 0.05  # root mean square difference of colours up to which what stands still is taken to be covered meanwhile
+SORTED = 10  # times at which that is measured
+SETTLED = 1  # rounds in which paths are mended and Gaussians assigned to bodies
 MORE = 1.2  # times the Gaussians of the start: greatest number at the end, for what was hidden at the start
 SINGLE = 0.15  # of the steps of all together, that displacements of single Gaussians are trained for
 GAIN = 0.05  # dB on held-out frames, for which displacements of single Gaussians are kept
@@ -155,31 +162,98 @@ class _Film:
     def _bodies(self, start: Parameters) -> tuple[Labelled, list[Body], int]:
         """What moves, by the number of its label, and its path."""
         columns, footage = start.columns(), self._footage
-        flags = np.zeros((len(start), len(footage.times)), bool)
-        if self._detail != "static":
-            flags = gone(columns, footage)
+        if self._detail == "static":
+            return Labelled.labelled(start, np.zeros(len(start), np.int32)), [], 0
+        labels, bodies, tried = self._found(columns, gone(columns, footage))
+        labelled = Labelled.labelled(start, labels)
+        if not bodies:
+            return labelled, bodies, tried
+        self._sort_out(labelled, bodies)
+        for _ in range(SETTLED):
+            self._follow(labelled, bodies)
+            self._settle(labelled, bodies)
+        self._sort_out(labelled, bodies)
+        self._follow(labelled, bodies)
+        return labelled, bodies, tried
+
+    def _found(self, columns: Columns, flags: Flags) -> tuple[NDArray[np.int32], list[Body], int]:
+        """Labels `[N]` of the seeds that a path explains, the paths, and how many were tried."""
+        footage, found = self._footage, list[tuple[NDArray[np.int64], Body]]()
         queue = seeds(columns, footage, flags)[:MOST_BODIES]
-        still = np.ones(len(start), bool)
+        still, tried = np.ones(len(flags), bool), 0
         for rows in queue:
             still[rows] = False
-        found, tried = list[tuple[NDArray[np.int64], Body]](), 0
         while queue:
             rows = queue.pop(0)
-            self._tell(math.nan, 0, START, len(start))
-            tracked = Tracker(columns, rows, still, footage, self._settings.seed + tried).track()
+            self._tell(math.nan, 0, START, len(flags))
+            tracker = Tracker(columns, rows, still, footage, self._settings.seed + tried, found)
+            if _covered(tracker, np.flatnonzero(flags[rows].any(axis=0))):
+                continue
+            if (path := _goes_with(tracker, [body for _, body in found])) is not None:
+                found.append((rows, path))
+                continue
+            tracked = tracker.track()
             tried += 1
             if tracked.gain < EXPLAINS:
                 found.append((rows, tracked.body))
             elif tried < 2 * MOST_BODIES:
                 queue = [*queue, *halves(rows, flags)]
-        labels, bodies = np.zeros(len(start), np.int32), list[Body]()
+        labels, bodies = np.zeros(len(flags), np.int32), list[Body]()
         for rows, body in found:
             same = next((k for k, b in enumerate(bodies) if _alike(b, body, columns[0][rows], footage.radius)), None)
             if same is None:
                 same = len(bodies)
                 bodies.append(body)
             labels[rows] = same + 1
-        return Labelled.labelled(start, labels), bodies, tried
+        return labels, bodies, tried
+
+    def _follow(self, labelled: Labelled, bodies: list[Body]) -> None:
+        """Mend the path of each body, and put it on one axis where the frames tell no more; in place."""
+        for k in range(len(bodies)):
+            tracker = self._tracker(labelled, bodies, k + 1)
+            body = bodies[k].seen_from(tracker.pivot)
+            line = line_of(tracker, body)
+            if line is None:
+                tracker.mend(body)
+            bodies[k] = body if line is None else body.on(line)
+
+    def _sort_out(self, labelled: Labelled, bodies: list[Body]) -> None:
+        """Let a body stand still, or join another, where that explains the frames about as well as its own path while
+        the others go theirs: what something passed before stands, and fragments of a thing are one; in place."""
+        for number in sorted(range(1, len(bodies) + 1), key=lambda k: int((labelled.labels == k).sum())):
+            tracker = self._tracker(labelled, bodies, number)
+            own = bodies[number - 1].seen_from(tracker.pivot)
+            others = [k for k in range(1, len(bodies) + 1) if k != number and (labelled.labels == k).any()]
+            paths = [
+                own,
+                Body.at_rest(own.pivot, len(own.offsets)),
+                *(bodies[k - 1].seen_from(own.pivot) for k in others),
+            ]
+            some = _some(sorted({t for path in paths for t, _ in path.runs[1:]}))
+            errors = np.sum([tracker.errors(t, [(p.quats[t], p.offsets[t]) for p in paths])[0] for t in some], axis=0)
+            best = int(errors[1:].argmin())
+            if errors[1 + best] <= AS_WELL * errors[0]:
+                labelled.labels[labelled.labels == number] = others[best - 1] if best else 0
+        self._renumber(labelled, bodies, labelled.labels)
+
+    def _settle(self, labelled: Labelled, bodies: list[Body]) -> None:
+        """Assign Gaussians to bodies by the frames, in place; a body that keeps too few is dropped."""
+        labels = shared(labelled.columns(), labelled.labels, bodies, self._footage, self._rng)
+        self._renumber(labelled, bodies, labels)
+
+    def _renumber(self, labelled: Labelled, bodies: list[Body], labels: NDArray[np.int32]) -> None:
+        """Take over labels, without bodies that have too few Gaussians; in place."""
+        kept = [k for k in range(1, len(bodies) + 1) if (labels == k).sum() >= LEAST]
+        number = np.zeros(len(bodies) + 1, np.int32)
+        number[kept] = np.arange(1, len(kept) + 1)
+        labelled.labels, bodies[:] = number[labels], [bodies[k - 1] for k in kept]
+
+    def _tracker(self, labelled: Labelled, bodies: list[Body], number: int) -> Tracker:
+        """For the path of a body while the paths of the others are known."""
+        labels = labelled.labels
+        others = [(np.flatnonzero(labels == k), b) for k, b in enumerate(bodies, 1) if k != number]
+        rows = np.flatnonzero(labels == number)
+        return Tracker(labelled.columns(), rows, labels == 0, self._footage, self._settings.seed, others)
 
     def _scene(self, labelled: Labelled, bodies: Sequence[Body], single: Single | None) -> Scene:
         """The scene, rows by body, with tracks of few keys."""
@@ -221,6 +295,35 @@ class _Film:
             self._told = now
             left = now * (1 / max(share, 1e-9) - 1)
             self._on_status(Status(steps, min(share, 1.0), self._loss, math.nan, gaussians, left))
+
+
+def _covered(tracker: Tracker, times: NDArray[np.int64]) -> bool:
+    """Whether what stands still looks right at times at which it is gone, since known bodies pass before it."""
+    if not tracker.moving:
+        return False
+    rest = Body.at_rest(tracker.pivot, 1)
+    each = [tracker.errors(t, [(rest.quats[0], rest.offsets[0])]) for t in _some(times.tolist())]
+    return sum(float(e[0]) for e, _ in each) < 3 * RIGHT**2 * sum(pixels for _, pixels in each)
+
+
+def _goes_with(tracker: Tracker, paths: Sequence[Body]) -> Body | None:
+    """The path of those that are known by which a body is explained much better than by standing still."""
+    best: tuple[float, Body | None] = (TOGETHER, None)
+    for path in paths:
+        body = path.seen_from(tracker.pivot)
+        rest = body.quats[0], body.offsets[0]
+        some = _some([t for t, _ in body.runs[1:]])
+        each = [tracker.errors(t, [(body.quats[t], body.offsets[t]), rest])[0] for t in some]
+        with_it, without = np.sum(each, axis=0) if each else (1.0, 1.0)
+        if with_it / max(without, 1e-9) < best[0]:
+            best = with_it / max(without, 1e-9), body
+    return best[1]
+
+
+def _some(times: Sequence[int]) -> list[int]:
+    """At most `SORTED` of some times, evenly chosen."""
+    chosen = np.unique(np.linspace(0, len(times) - 1, min(SORTED, len(times))).astype(int))
+    return [int(times[k]) for k in chosen]
 
 
 def _alike(a: Body, b: Body, means: NDArray[np.float32], radius: float) -> bool:

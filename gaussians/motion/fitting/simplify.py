@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .. import keys
 from ..motion import Track, poses
-from .bodies import Body
+from .bodies import Body, Line
 
 F64 = NDArray[np.float64]
 
@@ -32,7 +32,12 @@ def track_of(body: Body, ids: NDArray[np.int64], times: F64, size: float, tolera
         return None
     rested = _rested(body, size, tolerance)
     found = []
+    if body.line is not None:
+        rested = body.on(replace(body.line, values=_rested_values(body, size, tolerance)))
     for smooth in (True, False):
+        if rested.line is not None:
+            found.append(_fewest(_on_line(rested.line, ids, times, smooth), rested, times, size, tolerance))
+            continue
         for axial in (_slide, _hinge):
             if (track := axial(rested, ids, times, size, tolerance, smooth)) is not None:
                 found.append(_fewest(track, rested, times, size, AXIS_SLACK * tolerance))
@@ -59,6 +64,25 @@ def _rested(body: Body, size: float, tolerance: float) -> Body:
             quats[own], offsets[own] = [1.0, 0.0, 0.0, 0.0], 0.0
         start = t
     return Body(body.pivot, quats, offsets)
+
+
+def _rested_values(body: Body, size: float, tolerance: float) -> F64:
+    """Values of a body's line, where those that hardly differ from the one before are the mean of their run."""
+    assert body.line is not None
+    values, start = body.line.values.copy(), 0
+    for t in range(1, len(values) + 1):
+        if t < len(values) and _apart(body, t, start, size) < 0.5 * tolerance:
+            continue
+        values[start:t] = values[start:t].mean() if start else 0.0
+        start = t
+    return np.asarray(values)
+
+
+def _on_line(line: Line, ids: NDArray[np.int64], times: F64, smooth: bool) -> Track:
+    """The track with a key at every time of the frames."""
+    if line.kind == "slide":
+        return Track.slide(ids, times, line.values, line.axis, smooth)
+    return Track.hinge(ids, times, line.values, line.axis, line.pivot, smooth)
 
 
 def _apart(body: Body, a: int, b: int, size: float) -> float:

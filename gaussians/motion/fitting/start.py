@@ -7,6 +7,7 @@ import torch
 from scipy.spatial import cKDTree
 
 from ...cloud import GaussianCloud
+from ...errors import UserError
 from ...fit.densify import MCMCStrategy
 from ...fit.initialize import initial_cloud
 from ...fit.parameters import Parameters
@@ -22,7 +23,11 @@ ROOM = 1.1  # times the number of points: greatest number of Gaussians
 
 
 def start_points(shots: list[Shot], radius: float, most: int, rng: np.random.Generator) -> GaussianCloud:
-    """Gaussians at points whose depth pictures agree on; the best confirmed first, `most` at most."""
+    """Gaussians at points whose depth pictures agree on; the best confirmed first, `most` at most.
+
+    Raises:
+        UserError: pictures agree on the depth of fewer than two points.
+    """
     found = points_of([s.camera for s in shots], [s.colors for s in shots], radius)
     order = rng.permutation(len(found.means))
     order = order[np.argsort(-np.minimum(found.agreed[order], 4), kind="stable")]
@@ -30,6 +35,11 @@ def start_points(shots: list[Shot], radius: float, most: int, rng: np.random.Gen
     cells = np.floor(found.means[order] / (SPACING * radius / shots[0].camera.fx)).astype(np.int64)
     _, first = np.unique(cells, axis=0, return_index=True)
     rows = order[np.sort(first)][: min(most, len(found.means) // PIXELS)]
+    if len(rows) < 2:  # no distance to another one tells their size
+        raise UserError(
+            "the first frames of the film agree on no depths: check the poses, let the views of the cameras overlap, "
+            "or give surveyed points"
+        )
     means = found.means[rows]
     away, _ = cKDTree(means).query(means, k=min(4, len(means)))
     sizes = np.clip(np.sqrt((away[:, 1:] ** 2).mean(axis=1)), 1e-6 * radius, 0.1 * radius) * 0.7

@@ -1,8 +1,9 @@
 """The path of a body through the frames: searched by the colours of some of its points, then refined by rendering.
 
-From time to time: candidates around the pose that the last two times predict are scored by how well points of the body
-match the pictures where they would be seen, and the best are drawn around again (the cross-entropy method, Rubinstein
-1999). The best of all is refined by the gradient of the rendered difference, in pictures cropped to the body.
+From time to time (`track`): candidates around the pose that the last two times predict are scored by how well points
+of the body match the pictures where they would be seen, and the best are drawn around again (the cross-entropy method,
+Rubinstein 1999). The best of all is refined by the gradient of the rendered difference, in pictures cropped to the
+body. A known path is mended from both ends by what the times around a time tell (`mend`).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ...camera import Camera
+from ...fit.loss import BLACK
 from ...render.cpu import gradient
 from .. import keys
 from .bodies import Body, Columns, multiplied, pose_gradient, turned
@@ -31,12 +33,17 @@ CLIP = 0.35  # difference of a colour beyond which it does not matter
 TURN = 1.4  # radians: the largest turn about one of its own axes that is tried from one time to the next
 UNSEEN = CLIP  # the difference of a point outside a picture: as bad as the worst, or bodies would hide there
 VIEWS = 6  # cameras that a pose is refined in
-STEPS = 14  # of the refinement at each time
+STEPS, MEND_STEPS = 14, 8  # of the refinement at each time, while a path is searched and while it is mended
 MARGIN = 10  # pixels around a body that are rendered
 STILL = 0.004  # share of the pixels around a body that may change while it is taken to be at rest
 MATTERS = 0.03  # difference of a colour by which a body is seen
 HOPELESS = 4  # times at which it may be lost from the first on, before it is given up
 LOST = 0.7  # of the difference without the body, above which it was not found and is searched farther away
+SPINS = (0.7,)  # radians: turns about the world's axes that are tried where a body was found
+BETTER = 0.98  # of the difference with the present pose, below which another one replaces it
+APART = 0.02  # of the body's size: poses that are nearer are the same
+
+Pose = tuple[F64, F64]  # quaternion [4] and offset [3]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,17 +67,26 @@ class Tracker:
     Args:
         columns: all Gaussians at the start.
         rows: those of the body.
+        still: `[N]` those that stand still.
         footage: frames from cameras that stand.
         seed: of the search.
+        moving: the rows of other bodies whose path is known, and their paths.
     """
 
-    def __init__(self, columns: Columns, rows: I64, others: NDArray[np.bool_], footage: Footage, seed: int) -> None:
+    def __init__(
+        self, columns: Columns, rows: I64, still: NDArray[np.bool_], footage: Footage, seed: int,
+        moving: Sequence[tuple[I64, Body]] = (),
+    ) -> None:  # fmt: skip
         self._footage, self._rng = footage, np.random.default_rng([seed, len(rows)])
         self._own: Columns = tuple(np.ascontiguousarray(c[rows]) for c in columns)  # type: ignore[assignment]
-        self._rest: Columns = tuple(np.ascontiguousarray(c[others]) for c in columns)  # type: ignore[assignment]
+        self._rest: Columns = tuple(np.ascontiguousarray(c[still]) for c in columns)  # type: ignore[assignment]
+        self.moving: list[tuple[Columns, Body]] = [
+            (tuple(np.ascontiguousarray(c[r]) for c in columns), body)  # type: ignore[misc]
+            for r, body in moving
+        ]
         means, weight = self._own[0], self._own[3] * self._own[2].max(axis=1) ** 2
         self.pivot = np.average(means, axis=0, weights=weight).astype(np.float64)
-        self._size = float(np.sqrt(np.average(((means - self.pivot) ** 2).sum(axis=1), weights=weight)))
+        self.size = float(np.sqrt(np.average(((means - self.pivot) ** 2).sum(axis=1), weights=weight)))
         some = self._rng.choice(len(rows), min(SAMPLES, len(rows)), replace=False, p=weight / weight.sum())
         self._points = means[some].astype(np.float64) - self.pivot
         self._colors = (self._own[4][some, 0] * 0.28209479177387814 + 0.5).clip(0, 1)
@@ -88,18 +104,25 @@ class Tracker:
         times = len(self._footage.times)
         body, found, ratios = Body.at_rest(self.pivot, times), np.ones(times, bool), []
         speed, spin = np.zeros(3), np.zeros(3)
+        since = 0  # the time at which the body came to rest
         for t in range(1, times):
             step = self._footage.times[t] - self._footage.times[t - 1]
             body.quats[t], body.offsets[t] = body.quats[t - 1], body.offsets[t - 1]
-            views = self._views(body, t, speed * step)
-            if not views or self._rests(body, t, views):
+            here, _ = body.placed(t, self._own[0], self._own[1])
+            views = self._views(here, t, float(np.linalg.norm(speed * step)))
+            if not views or self._rests(t, since, views):
+                speed, spin = np.zeros(3), np.zeros(3)
+                continue
+            since = t
+            if self._rests(t, 0, self._views(self._own[0], t, 0.0)):  # it is back where it was at first
+                body.quats[t], body.offsets[t] = body.quats[0], body.offsets[0]
                 speed, spin = np.zeros(3), np.zeros(3)
                 continue
             body.offsets[t] += speed * step
             body.quats[t] = turned(body.quats[t], spin * step)
             self._search(body, t, wide=False)
             self._refine(body, t)
-            ratio = self._ratio(body, t)
+            ratio = self.ratio(body, t)
             if ratio > LOST:
                 ratio = self._elsewhere(body, t, ratio)
             found[t] = ratio < LOST
@@ -114,6 +137,79 @@ class Tracker:
         gain = float(np.mean(ratios)) if ratios else 1.0
         return Tracked(body, found, gain)
 
+    def mend(self, body: Body) -> None:
+        """Improve a known path in place: from the last time to the first and back, a pose is replaced by what the times
+        around tell where the pictures agree better, and refined. A body at rest has one pose."""
+        runs = body.runs
+        for again, order in enumerate((reversed(runs[1:]), runs[1:])):
+            for start, stop in order:
+                choices = self._around(body, start, stop)
+                if len(choices) > 1 and not again:
+                    choices += self._spins(choices[0])
+                errors, _ = self.errors(start, choices)
+                best = int(errors.argmin())
+                if best and errors[best] > BETTER * errors[0]:
+                    best = 0
+                body.quats[start], body.offsets[start] = choices[best]
+                if best or again:
+                    self._refine(body, start, MEND_STEPS)
+                body.quats[start:stop], body.offsets[start:stop] = body.quats[start], body.offsets[start]
+
+    def _around(self, body: Body, start: int, stop: int) -> list[Pose]:
+        """Poses to try from one time to before another: the present one, those of the times around, their middle, what
+        they lead to; the present one is the first, and no two are the same."""
+        last = len(body.offsets) - 1
+        seconds = self._footage.times
+
+        def at(t: int) -> Pose:
+            return body.quats[t], body.offsets[t]
+
+        found = [at(start), at(start - 1), at(0)]
+        if stop <= last:
+            share = (seconds[start] - seconds[start - 1]) / (seconds[stop] - seconds[start - 1])
+            found += [at(stop), led(at(start - 1), at(stop), share)]
+        if start >= 2:
+            share = (seconds[start] - seconds[start - 1]) / (seconds[start - 1] - seconds[start - 2])
+            found.append(led(at(start - 2), at(start - 1), 1 + share))
+        if stop + 1 <= last:
+            share = (seconds[stop] - seconds[start]) / (seconds[stop + 1] - seconds[stop])
+            found.append(led(at(stop + 1), at(stop), 1 + share))
+        kept: list[Pose] = []
+        for pose in found:
+            if all(self._apart(pose, other) > APART * self.size for other in kept):
+                kept.append(pose)
+        return kept
+
+    def _spins(self, pose: Pose) -> list[Pose]:
+        """A pose turned about each of the world's axes."""
+        return [(turned(pose[0], angle * axis), pose[1]) for s in SPINS for angle in (-s, s) for axis in np.eye(3)]
+
+    def _apart(self, a: Pose, b: Pose) -> float:
+        """How far two poses are apart, scene units."""
+        cosine = min(1.0, abs(float(a[0] @ b[0])))
+        return float(np.linalg.norm(a[1] - b[1])) + self.size * 2 * float(np.arccos(cosine))
+
+    def errors(self, t: int, choices: Sequence[Pose]) -> tuple[F64, int]:
+        """`[M]` squared difference of the rendered to the taken pictures of a time with the body at poses, all in the
+        same parts of the same pictures; and how many pixels these have."""
+        placed = [Body(self.pivot, q[None], o[None]).placed(0, self._own[0], self._own[1]) for q, o in choices]
+        found, pixels = np.zeros(len(choices)), 0
+        for view in self._views(np.concatenate([means for means, _ in placed]), t, 0.0):
+            pixels += view.photo.shape[0] * view.photo.shape[1]
+            for k, (means, quats) in enumerate(placed):
+                drawn = gradient.draw(_joined(view.rest, (means, quats, *self._own[2:])), view.camera, BLACK)
+                found[k] += float((unlike(drawn, view.photo) ** 2).sum())
+        return found, pixels
+
+    def slope(self, body: Body, t: int) -> tuple[F64, F64]:
+        """Gradient of the squared difference at a time by a further turn about the body's middle and by a shift."""
+        turn, shift = np.zeros(3), np.zeros(3)
+        means, quats = body.placed(t, self._own[0], self._own[1])
+        for view in self._views(means, t, 0.0):
+            _, by_turn, by_shift = self._slope(view, means, quats, body.pivot + body.offsets[t])
+            turn, shift = turn + by_turn, shift + by_shift
+        return turn, shift
+
     # --- the search ----------------------------------------------------------------------------------------------
 
     def _elsewhere(self, body: Body, t: int, ratio: float) -> float:
@@ -122,14 +218,14 @@ class Tracker:
         body.offsets[t], body.quats[t] = body.offsets[t - 1], body.quats[t - 1]
         self._search(body, t, wide=True)
         self._refine(body, t)
-        other = self._ratio(body, t)
+        other = self.ratio(body, t)
         if other >= ratio:
             body.quats[t], body.offsets[t] = kept
         return min(ratio, other)
 
     def _search(self, body: Body, t: int, wide: bool) -> None:
         """Candidates around the predicted pose, drawn ever closer around the best."""
-        mean, spread = np.zeros(6), np.r_[np.full(3, 0.6 * self._size), np.full(3, 0.25)]
+        mean, spread = np.zeros(6), np.r_[np.full(3, 0.6 * self.size), np.full(3, 0.25)]
         offset, quat = body.offsets[t].copy(), body.quats[t].copy()
         for k in range(ROUNDS):
             drawn = mean + spread * self._rng.standard_normal((CANDIDATES, 6))
@@ -149,8 +245,12 @@ class Tracker:
             best = drawn[np.argsort(scores, kind="stable")[:ELITE]]
             mean, spread = best.mean(axis=0), best.std(axis=0) + 1e-6
             if wide and k == 0:  # places may be far apart: go on around the best
-                mean, spread = best[0], np.r_[np.full(3, 0.6 * self._size), np.full(3, 0.4)]
-        body.offsets[t], body.quats[t] = offset + mean[:3], turned(quat, mean[3:])
+                mean, spread = best[0], np.r_[np.full(3, 0.6 * self.size), np.full(3, 0.4)]
+        middle = turned(quat, mean[3:]), offset + mean[:3]
+        nearest = turned(quat, best[0, 3:]), offset + best[0, :3]
+        known = [(body.quats[k], body.offsets[k]) for k in (t - 1, 0)]
+        choices = [middle, (quat, offset), nearest, *known]
+        body.quats[t], body.offsets[t] = choices[int(self.errors(t, choices)[0].argmin())]
 
     def _scores(self, turns: F64, offsets: F64, t: int, blur: float) -> F64:
         """`[M]` mean difference of colours of the body's points at poses, where cameras see them."""
@@ -200,40 +300,42 @@ class Tracker:
 
     # --- the refinement ------------------------------------------------------------------------------------------
 
-    def _refine(self, body: Body, t: int) -> None:
+    def _refine(self, body: Body, t: int, steps: int = STEPS) -> None:
         """Adam on the pose, by the squared difference of the rendered to the taken pictures."""
-        views = self._views(body, t, np.zeros(3))
+        views = self._views(body.placed(t, self._own[0], self._own[1])[0], t, 0.0)
         if not views:
             return
         first, second, best = np.zeros(6), np.zeros(6), (np.inf, body.quats[t], body.offsets[t])
-        for k in range(1, STEPS + 1):
+        for k in range(1, steps + 1):
             slope, loss = np.zeros(6), 0.0
             means, quats = body.placed(t, self._own[0], self._own[1])
             for view in views:
                 value, turn, shift = self._slope(view, means, quats, body.pivot + body.offsets[t])
-                slope, loss = slope + np.r_[shift, turn / self._size], loss + value
+                slope, loss = slope + np.r_[shift, turn / self.size], loss + value
             if loss < best[0]:
                 best = (loss, body.quats[t].copy(), body.offsets[t].copy())
             first, second = 0.7 * first + 0.3 * slope, 0.9 * second + 0.1 * slope**2
-            rate = 0.06 * self._size * 0.12 ** ((k - 1) / STEPS)
+            rate = 0.06 * self.size * 0.12 ** ((k - 1) / steps)
             move = rate * first / (1 - 0.7**k) / (np.sqrt(second / (1 - 0.9**k)) + 1e-12)
             body.offsets[t] -= move[:3]
-            body.quats[t] = turned(body.quats[t], -move[3:] / self._size)
+            body.quats[t] = turned(body.quats[t], -move[3:] / self.size)
         _, body.quats[t], body.offsets[t] = best
 
     def _slope(self, view: _View, means: F32, quats: F32, centre: F64) -> tuple[float, F64, F64]:
-        own = (means, quats, *self._own[2:])
-        columns = tuple(np.concatenate([a, b]) for a, b in zip(view.rest, own, strict=True))
-        drawn = gradient.draw(columns, view.camera, (0.0, 0.0, 0.0))
-        off = drawn.rgb - view.photo
-        found = gradient.draw_backward(drawn, 2 * off, np.zeros(off.shape[:2], np.float32))
+        columns = _joined(view.rest, (means, quats, *self._own[2:]))
+        drawn = gradient.draw(columns, view.camera, BLACK)
+        off = unlike(drawn, view.photo)
+        found = gradient.draw_backward(drawn, 2 * off, -2 * (off * view.photo).sum(axis=2))
         start = len(view.rest[0])
         turn, shift = pose_gradient(means, quats, centre, found.means[start:], found.quats[start:])
         return float((off**2).sum()), turn, shift
 
-    def _views(self, body: Body, t: int, ahead: F64) -> list[_View]:
-        """The pictures around a body at a time, those that show it largest; and what else is in them."""
-        means, _ = body.placed(t, self._own[0], self._own[1])
+    def _views(self, means: F32, t: int, ahead: float) -> list[_View]:
+        """The pictures around means at a time, those that show them largest; and what else is in them.
+
+        Args:
+            ahead: scene units that the body may have gone from there.
+        """
         found: list[tuple[float, int, tuple[int, int, int, int]]] = []
         for c, camera in enumerate(self._footage.cameras):
             if (c, t) not in self._footage.frames:
@@ -241,7 +343,7 @@ class Tracker:
             pixels, depth = camera.project(means)
             if not ((depth > 0.05) & camera.contains(pixels, depth)).mean() > 0.3:
                 continue
-            moves = float(np.linalg.norm(ahead)) * camera.fx / max(float(np.median(depth)), 1e-6)
+            moves = ahead * camera.fx / max(float(np.median(depth)), 1e-6)
             reach = MARGIN + min(0.5 * moves, 30.0)
             low = np.floor(np.clip(pixels[depth > 0.05].min(axis=0) - reach, 0, None)).astype(np.int64)
             high = np.ceil(pixels[depth > 0.05].max(axis=0) + reach).astype(np.int64)
@@ -259,14 +361,16 @@ class Tracker:
         inside &= (pixels < np.array([x1, y1]) + reach[:, None]).all(axis=1)
         part = replace(camera, cx=camera.cx - x0, cy=camera.cy - y0, width=x1 - x0, height=y1 - y0)
         rest: Columns = tuple(np.ascontiguousarray(col[inside]) for col in self._rest)  # type: ignore[assignment]
+        for own, body in self.moving:
+            rest = _joined(rest, (*body.placed(t, own[0], own[1]), *own[2:]))
         photo = self._footage.shots[self._footage.frames[c, t]].colors[y0:y1, x0:x1]
         return _View(c, part, rest, np.ascontiguousarray(photo), (x0, y0, x1, y1))
 
-    def _rests(self, body: Body, t: int, views: Sequence[_View]) -> bool:
-        """Whether nothing changes around a body since the time before."""
+    def _rests(self, t: int, since: int, views: Sequence[_View]) -> bool:
+        """Whether nothing changed around a body since a time."""
         changed = area = 0
         for view in views:
-            before = self._footage.frames.get((view.number, t - 1))
+            before = self._footage.frames.get((view.number, since))
             if before is None:
                 return False
             x0, y0, x1, y1 = view.window
@@ -274,14 +378,13 @@ class Tracker:
             changed, area = changed + int(off.sum()), area + off.size
         return changed <= STILL * area
 
-    def _ratio(self, body: Body, t: int) -> float:
+    def ratio(self, body: Body, t: int) -> float:
         """The difference to the pictures with the body, over that without it, where the body makes a difference."""
         with_it = without = 1e-6
         means, quats = body.placed(t, self._own[0], self._own[1])
-        for view in self._views(body, t, np.zeros(3)):
-            own = (means, quats, *self._own[2:])
-            both = tuple(np.concatenate([a, b]) for a, b in zip(view.rest, own, strict=True))
-            seen, bare = (gradient.draw(columns, view.camera, (0.0, 0.0, 0.0)).rgb for columns in (both, view.rest))
+        for view in self._views(means, t, 0.0):
+            both = _joined(view.rest, (means, quats, *self._own[2:]))
+            seen, bare = (gradient.draw(columns, view.camera, BLACK).rgb for columns in (both, view.rest))
             matters = np.abs(seen - bare).max(axis=2) > MATTERS
             with_it += float(((seen - view.photo) ** 2)[matters].sum())
             without += float(((bare - view.photo) ** 2)[matters].sum())
@@ -297,6 +400,23 @@ class _View:
     rest: Columns
     photo: F32
     window: tuple[int, int, int, int]
+
+
+def _joined(a: Columns, b: Columns) -> Columns:
+    """The columns of two sets of Gaussians."""
+    return tuple(np.concatenate([x, y]) for x, y in zip(a, b, strict=True))  # type: ignore[return-value]
+
+
+def unlike(drawn: gradient.Drawn, photo: F32) -> F32:
+    """`[H, W, 3]` difference of a render to a picture. What shows through where nothing is drawn counts as right: what
+    was hidden at the start is not known yet, and a body must not gain by covering it."""
+    return np.asarray(drawn.rgb - drawn.alpha[..., None] * photo, dtype=np.float32)
+
+
+def led(a: Pose, b: Pose, share: float) -> Pose:
+    """The pose on the way from one to another: 0 is the first, 1 the second, more is beyond it."""
+    step = _vector(multiplied(b[0], a[0] * [1, -1, -1, -1]))
+    return turned(a[0], share * step), a[1] + share * (b[1] - a[1])
 
 
 def _seen(columns: Columns, camera: Camera) -> tuple[F64, F64, F64]:

@@ -22,7 +22,7 @@ F64 = NDArray[np.float64]
 
 SSIM = 0.2
 OFFSETS_LR, TURNS_LR = 4e-4, 3e-3  # of poses: of the radius of the cameras, and radians
-SMOOTH = 0.03  # share by which a pose is drawn, at each of its steps, towards the middle of the two beside it
+LINE_LR = 0.3  # of a line's pivot and axis, of those of poses: they step at every frame
 SINGLE_LR = 2e-5  # of displacements of single Gaussians, of the radius of the cameras
 RANK = 3  # of those displacements: a drift, and a there and back
 GROWS_UNTIL = 0.7  # share of the training after which no Gaussians are added
@@ -31,11 +31,24 @@ WARM = 0.35  # the learning rate of means at the start, of that of a training fr
 
 @dataclass(eq=False)
 class _Moments:
-    """Adam's moments of the six numbers of each pose."""
+    """Adam's moments of the six numbers of each pose, or of the value of each time; and of the six of a line, last."""
 
     first: F64
     second: F64
     steps: NDArray[np.int64]
+
+    @classmethod
+    def none(cls, times: int) -> _Moments:
+        """No steps yet."""
+        return cls(np.zeros((times + 1, 6)), np.zeros((times + 1, 6)), np.zeros(times + 1, np.int64))
+
+    def direction(self, row: int, slope: F64) -> F64:
+        """The direction `[6]` of a step of a row by its gradient."""
+        self.steps[row] += 1
+        self.first[row] = 0.9 * self.first[row] + 0.1 * slope
+        self.second[row] = 0.99 * self.second[row] + 0.01 * slope**2
+        n = int(self.steps[row])
+        return np.asarray(self.first[row] / (1 - 0.9**n) / (np.sqrt(self.second[row] / (1 - 0.99**n)) + 1e-15))
 
 
 @dataclass(eq=False)
@@ -92,10 +105,8 @@ class Joint:
     ) -> None:  # fmt: skip
         self.parameters, self.bodies, self._footage, self._rng, self._single = parameters, bodies, footage, rng, single
         self._strategy = MCMCStrategy(budget, rng)
-        times = len(footage.times)
-        self._moments = [
-            _Moments(np.zeros((times, 6)), np.zeros((times, 6)), np.zeros(times, np.int64)) for _ in bodies
-        ]
+        self._moments = [_Moments.none(len(footage.times)) for _ in bodies]
+        self._runs = [{t: run for run in body.runs for t in range(*run)} for body in bodies]
         self._order: list[int] = []
         self.steps, self.seconds = 0, 0.0
 
@@ -143,20 +154,28 @@ class Joint:
             if not len(rows):
                 continue
             d_means, d_quats = found.means[rows], found.quats[rows]
-            if self._single is None and t > 0 and np.any(d_means):
+            if self._single is None and self._runs[number - 1][t][0] > 0 and np.any(d_means):
                 centre = body.pivot + body.offsets[t]
                 turn, shift = pose_gradient(columns[0][rows], columns[1][rows], centre, d_means, d_quats)
-                self._step_pose(number - 1, t, np.r_[shift, turn], rate)
+                self._step_pose(number - 1, t, turn, shift, rate)
             matrix = keys.matrices(body.quats[t])
             found.means[rows] = (d_means @ matrix).astype(np.float32)
             found.quats[rows] = (d_quats @ left(body.quats[t])).astype(np.float32)
 
-    def _step_pose(self, number: int, t: int, slope: F64, rate: float) -> None:
-        body, m = self.bodies[number], self._moments[number]
-        m.steps[t] += 1
-        m.first[t] = 0.9 * m.first[t] + 0.1 * slope
-        m.second[t] = 0.99 * m.second[t] + 0.01 * slope**2
-        n = int(m.steps[t])
-        move = m.first[t] / (1 - 0.9**n) / (np.sqrt(m.second[t] / (1 - 0.99**n)) + 1e-15)
-        body.offsets[t] -= OFFSETS_LR * self._footage.radius * rate / WARM * move[:3]
-        body.quats[t] = turned(body.quats[t], -TURNS_LR * rate / WARM * move[3:])
+    def _step_pose(self, number: int, t: int, turn: F64, shift: F64, rate: float) -> None:
+        """A step of the pose of a body at a time by its gradient, or of its place on its line and of the line.
+
+        The pose is the same at all times of a rest."""
+        body, moments = self.bodies[number], self._moments[number]
+        run = slice(*self._runs[number][t])
+        far, wide = OFFSETS_LR * self._footage.radius * rate / WARM, TURNS_LR * rate / WARM
+        if body.line is None:
+            move = moments.direction(run.start, np.r_[shift, turn])
+            body.offsets[run] -= far * move[:3]
+            body.quats[run] = turned(body.quats[run.start], -wide * move[3:])
+            return
+        value, pivot, axis = body.line.gradient(t, body.pivot + body.offsets[t], turn, shift)
+        unit = wide if body.line.kind == "hinge" else far
+        move = unit * moments.direction(run.start, np.r_[value, np.zeros(5)])
+        tilt = LINE_LR * moments.direction(len(self._footage.times), np.r_[pivot, axis])
+        self.bodies[number] = body.on(body.line.stepped(run, -float(move[0]), -far * tilt[:3], -wide * tilt[3:]))

@@ -9,10 +9,16 @@ from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import FileError, UserError
 from scenewright.gaussians.files.captures.capture import read_capture
 from scenewright.gaussians.fit.train import Shot
+from scenewright.gaussians.harmonics import SH_C0
 from scenewright.gaussians.motion import keys
-from scenewright.gaussians.motion.fitting.bodies import Body, moved, pose_gradient, turned
+from scenewright.gaussians.motion.fitting.axes import line_of
+from scenewright.gaussians.motion.fitting.bodies import Body, Line, moved, placed, pose_gradient, turned
 from scenewright.gaussians.motion.fitting.footage import Footage
+from scenewright.gaussians.motion.fitting.sharing import shared
 from scenewright.gaussians.motion.fitting.simplify import track_of
+from scenewright.gaussians.motion.fitting.start import start_points
+from scenewright.gaussians.motion.fitting.tracking import Tracker
+from scenewright.gaussians.render.cpu import gradient
 
 TIMES = np.linspace(0, 4, 21)
 IDS = np.arange(10)
@@ -48,6 +54,44 @@ def test_the_gradient_of_a_pose_is_that_of_finite_differences():
         assert (value(0, e) - value(0, -e)) / (2 * step) == pytest.approx(by_shift[k], abs=2e-3)
 
 
+@pytest.mark.parametrize("kind", ["hinge", "slide"])
+def test_the_gradient_of_a_line_is_that_of_finite_differences(kind):
+    rng = np.random.default_rng(2)
+    means, quats = rng.normal(size=(7, 3)).astype(np.float32), rng.normal(size=(7, 4)).astype(np.float32)
+    by_means, by_quats = rng.normal(size=(7, 3)).astype(np.float32), rng.normal(size=(7, 4)).astype(np.float32)
+    axis = rng.normal(size=3)
+    line = Line(kind, axis / np.linalg.norm(axis), rng.normal(size=3), np.array([0.0, 0.7]))
+    body = Body.at_rest(rng.normal(size=3), 2)
+
+    def value(step, pivot, tilt):
+        stepped = line.stepped(slice(1, 2), step, pivot, tilt)
+        at, q = body.on(stepped).placed(1, means.astype(np.float64), quats.astype(np.float64))
+        return float((at * by_means).sum() + (q * by_quats).sum())
+
+    on = body.on(line)
+    at, q = on.placed(1, means, quats)
+    turn, shift = pose_gradient(at, q, on.pivot + on.offsets[1], by_means, by_quats)
+    by_value, by_pivot, by_tilt = line.gradient(1, on.pivot + on.offsets[1], turn, shift)
+    step, none = 1e-2, np.zeros(3)  # `moved` returns float32
+    assert (value(step, none, none) - value(-step, none, none)) / (2 * step) == pytest.approx(by_value, abs=2e-3)
+    for k in range(3):
+        e = np.eye(3)[k] * step
+        assert (value(0, e, none) - value(0, -e, none)) / (2 * step) == pytest.approx(by_pivot[k], abs=2e-3)
+        # A turn about the axis itself leaves it as it is: the gradient is that across it.
+        across = by_tilt - line.axis * (line.axis @ by_tilt)
+        assert (value(0, none, e) - value(0, none, -e)) / (2 * step) == pytest.approx(across[k], abs=3e-3)
+
+
+def test_the_same_poses_about_another_pivot_move_points_alike():
+    rng = np.random.default_rng(3)
+    body = Body.at_rest(rng.normal(size=3), 2)
+    body.quats[1], body.offsets[1] = turned(body.quats[0], rng.normal(size=3)), rng.normal(size=3)
+    points, quats = rng.normal(size=(5, 3)), np.tile([1.0, 0, 0, 0], (5, 1))
+    other = body.seen_from(rng.normal(size=3))
+    assert np.allclose(body.placed(1, points, quats)[0], other.placed(1, points, quats)[0], atol=1e-5)
+    assert body.runs == [(0, 1), (1, 2)] and Body.at_rest(np.zeros(3), 4).runs == [(0, 4)]
+
+
 def hinged(angles: np.ndarray, noise: float = 0.0) -> Body:
     """A body that turns about the vertical through (1, 0, 0)."""
     rng, line = np.random.default_rng(1), np.array([1.0, 0.0, 0.0])
@@ -62,6 +106,67 @@ def test_a_door_becomes_a_hinge_of_few_keys():
     found = track_of(hinged(angles, 0.002), IDS, TIMES, 0.5, 0.02, "door")
     assert found.kind == "hinge" and len(found.times) <= 5
     assert abs(found.axis[2]) > 0.99 and np.hypot(found.pivot[0] - 1, found.pivot[1]) < 0.02
+
+
+@pytest.fixture(scope="module")
+def swinging():
+    """A leaf of many colours before a gray wall, which swings on a hinge: columns, labels, the true body, footage."""
+    rng, times = np.random.default_rng(5), np.linspace(0, 1, 6)
+    x, z = np.meshgrid(np.linspace(-0.5, 0.5, 11), np.linspace(-0.5, 0.5, 11))
+    leaf = np.stack([x, np.zeros_like(x), z], axis=-1).reshape(-1, 3)
+    x, z = np.meshgrid(np.linspace(-1.5, 1.5, 16), np.linspace(-1.5, 1.5, 16))
+    wall = np.stack([x, np.full_like(x, 0.6), z], axis=-1).reshape(-1, 3)
+    means, count = np.concatenate([leaf, wall]).astype(np.float32), len(leaf) + len(wall)
+    colors = np.concatenate([rng.uniform(0.1, 0.9, (len(leaf), 3)), np.full((len(wall), 3), 0.5)])
+    columns = (
+        means, np.tile(np.float32([1, 0, 0, 0]), (count, 1)),
+        np.repeat(np.r_[np.full(len(leaf), 0.05), np.full(len(wall), 0.12)], 3).reshape(-1, 3).astype(np.float32),
+        np.full(count, 0.9, np.float32), ((colors - 0.5) / SH_C0).astype(np.float32)[:, None],
+    )  # fmt: skip
+    labels = np.r_[np.ones(len(leaf)), np.zeros(len(wall))].astype(np.int32)
+    line = Line("hinge", np.array([0, 0, 1.0]), np.array([-0.5, 0, 0]), np.array([0, 0, -0.3, -0.6, -0.9, -0.9]))
+    body = Body.at_rest(np.zeros(3), 6).on(line)
+    cameras = [Camera.look_at((a, -2.4, 0.4), (0, 0, 0), (0, 0, 1), 40, 32, 60) for a in (-1.4, 0.0, 1.4)]
+    shots, seconds = [], []
+    for t in range(6):
+        for at in cameras:
+            drawn = gradient.draw(placed(columns, labels, [body], t), at, (0.0, 0.0, 0.0)).rgb
+            shots.append(Shot(at, (drawn.clip(0, 1) * 255).round().astype(np.uint8), times[t]))
+            seconds.append(times[t])
+    return columns, labels, body, Footage.of(shots, seconds)
+
+
+def test_shares_tell_which_gaussians_go_along(swinging):
+    columns, labels, body, footage = swinging
+    rough = labels.copy()
+    rough[np.flatnonzero(labels)[::2]] = 0  # half of the leaf is taken for standing
+    x, z = columns[0][:, 0], columns[0][:, 2]
+    rough[(labels == 0) & (x > 0.5) & (x < 1.2) & (np.abs(z) < 0.6)] = 1  # and some of the wall beside it for moving
+    kept, rng = rough.copy(), np.random.default_rng(0)
+    found = shared(columns, rough, [body], footage, rng)
+    assert (rough != labels).sum() > 70 and (found != labels).sum() <= 4  # those at its edge look alike
+    assert (rough == kept).all()
+
+
+def test_a_rough_path_of_a_door_is_put_on_its_hinge_and_a_free_one_stays_free(swinging):
+    columns, labels, body, footage = swinging
+    tracker = Tracker(columns, np.flatnonzero(labels), labels == 0, footage, 0)
+    rough = body.seen_from(tracker.pivot)
+    rough = Body(rough.pivot, rough.quats.copy(), rough.offsets.copy())
+    rough.offsets[3] += [0.15, 0.1, 0.0]  # one pose is missed
+    rough.quats[4:] = turned(rough.quats[4], np.array([0.05, 0.0, 0.1]))
+    line = line_of(tracker, rough)
+    assert line is not None and line.kind == "hinge" and abs(line.axis[2]) > 0.99
+    assert np.hypot(*(line.pivot - [-0.5, 0, 0])[:2]) < 0.06
+    assert np.abs(np.abs(line.values) - np.abs(body.line.values)).max() < 0.1  # radians
+    loose = Body(rough.pivot, rough.quats.copy(), rough.offsets + np.linspace(0, 1, 6)[:, None] * [0, 0, 1.0])
+    assert line_of(tracker, loose) is None
+
+
+def test_first_frames_without_depth_are_refused_in_words():
+    with pytest.raises(UserError, match="agree on no depths"):
+        start_points([Shot(camera(x), np.full((12, 16, 3), 9 * k, np.uint8)) for k, x in enumerate((0.0, 40.0))], 0.01,
+                     100, np.random.default_rng(0))  # fmt: skip
 
 
 def test_a_drawer_becomes_a_slide_and_a_thrown_thing_stays_rigid():
