@@ -241,3 +241,22 @@ def test_a_rolling_ball_is_found_and_followed():
     turns, shifts = poses(track, film.times)
     away = np.linalg.norm(turns @ middle[0] + shifts - middle, axis=1)
     assert away.mean() < 0.1 and len(track.times) < len(film.times)  # metres; the ball goes 4.3 m
+
+
+@pytest.mark.slow
+def test_two_fits_of_as_many_steps_give_the_same_bytes():
+    from scenewright.benchmarks._motion import films
+    from scenewright.gaussians.files.captures import colmap
+    from scenewright.gaussians.fit import Photos, Settings
+    from scenewright.gaussians.motion.fitting.fit import fit_film
+
+    film = films.film("toy", "12", (96, 72), fps=3, detail=0.3)
+    shots = tuple(Shot(f.camera, f.photo, f.time) for f in film.frames)
+    none = colmap.Points(np.zeros((0, 3)), np.zeros((0, 3)))
+    one, other = (fit_film(Photos(shots, (), none, 3.0), Settings(steps=240, degree=0)).scene for _ in range(2))
+    for name in ("means", "quats", "scales", "opacities", "sh", "group"):
+        assert getattr(one.cloud, name).numpy().tobytes() == getattr(other.cloud, name).numpy().tobytes()
+    assert one.motion is not None and len(one.motion.tracks) == len(other.motion.tracks) > 0
+    for a, b in zip(one.motion.tracks, other.motion.tracks, strict=True):
+        for name in ("runs", "times", "quats", "offsets", "pivot"):
+            assert getattr(a, name).tobytes() == getattr(b, name).tobytes()
