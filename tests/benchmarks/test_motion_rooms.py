@@ -60,3 +60,12 @@ def test_the_truth_is_judged_right_and_a_still_scene_wrong(ball):
     right, still = (fitted.judged(scene, made, 0.0) for scene in (truth, truth.replace(motion=None)))
     assert right.path < 1e-5 and right.found == 1 and right.overlap == 1 and right.whole > 60
     assert still.found == 0 and still.whole < right.whole
+
+
+def test_a_film_of_a_furnished_room_shows_two_things_that_move():
+    scene, stage = films.carried(11, 0.1)
+    assert [track.kind for track in scene.motion.tracks] == ["rigid", "hinge"]
+    path = films.middles(scene, [0.0, 4.0])[0]
+    assert np.linalg.norm(path[1] - path[0]) > 0.5  # metres
+    frame = films.Clouds(scene).frame(films.standing(stage, 12, (48, 36))[6], 1.0)
+    assert frame.mask.any() and frame.photo.any()
