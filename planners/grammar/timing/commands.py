@@ -254,7 +254,8 @@ def _stopped(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command
         yield _pace(target, "stop", needs=clause.ordered and _bare_name(clause))
     elif sense == "stop" and manner.at in _BESIDE and manner.only("goal", "at", "whom", "state"):
         during = {"state": "closest", "anchors": (manner.whom,), "part": "from"}
-        yield replace(_pace(target, "stop"), during=during)
+        spans = moment.start is not None and moment.stop is not None  # then it only says where it is
+        yield _pace(target, "stop") if spans else replace(_pace(target, "stop"), during=during)
     meant = clause.kept or sense != "be" or clause.aux != () or not moment.empty  # "the still ball" says nothing
     rests = sense in ("stay", "be", "continue") and manner.state == "still" and manner.only("state") and meant
     refrains = manner.refrains or (manner.doing != "" and clause.verb is not None and clause.verb.first != "keep")

@@ -29,6 +29,7 @@ from .commands import Command, Fields, commands
 from .happenings import IT, Happening
 from .manner import MOTION
 from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
+from .restated import restated
 from .verbs import SENSES, any_of, has_form
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
@@ -61,13 +62,17 @@ _REMARKS = re.compile(  # what goes without saying behind a time: "..., then bac
     rf"switch(?:es)?|returns?|"
     rf"bring|let|put|have) )*(?:back|return|again)+ (?:to )?{_NORMAL}(?: again| afterwards| after that)?|back(?: "
     rf"again)?|"
-    rf"(?:bring|put) it back|(?:it )?(?:comes?|reappears?|appears?|returns?|shows?)(?: back| again| up)*|normal(?: "
+    rf"(?:(?:bring|put|show|get|have|let) (?:it|him|her|them) )+(?:come )?(?:back|again|in again|return|reappear)"
+    rf"(?: (?:again|afterwards?|after that|later|then|on))*|(?:show|reveal|unhide) (?:it|him|her|them)|"
+    rf"(?:it )?(?:comes?|reappears?|appears?|returns?|shows?)(?: back| again| up)*|normal(?: "
     rf"again)?|"
     rf"(?:it |to |let it |i want it )*(?:stays?|remains?|holds?|keeps?|hold|keep|leave|stand|rest|lies?|waits?|"
     rf"stops?)(?: "
     rf"(?:it|there|"
     rf"still|so|open|shut|closed|like that|that way|in place|put|there for good|that))*|"
-    rf"(?:let it |it )?(?:opens?|goes?|moves?|rolls?|walks?|drives?|falls?|spins?|turns?|runs?)|"
+    rf"(?:only (?:then|afterwards) )?(?:(?:let it |let him |let her |it )?(?:opens?|goes?|moves?|rolls?|walks?|drives?|"
+    rf"falls?|spins?|turns?|runs?)(?: on)?|(?:let it |it )?(?:starts?|begins?) (?:to )?"
+    rf"{any_of(MOTION, 'plain', 'ing')})|"
     rf"not (?:close|open|shut|move|fall|go|start)(?: again| any ?more)?)"
     rf"|(?: ,)+ (?:and )?(?:not|instead of) (?:to )?{any_of(MOTION, 'plain', 'ing')}\b[^,]*"
     rf"|(?: ,)+ (?:(?:and |it )?(?:is |stays? |stand |be |keep it )?(?:still|stopped|not moving|at rest) "
@@ -412,6 +417,8 @@ class TimeReader:
             during = None
             if happening is not None:
                 target, during = _settled(target, happening.during)
+                if during.part in ("from", "after") and any(map(_AT_A_TIME.match, moment.said)):
+                    during = None  # "once it has opened, shut it at 3 s" is no 3 s later
                 op = {**op, **({"target": target} if target is not None else {})}
             when = _when(moment, during, kind, op)
             made.append({**op, **({"when": when} if when is not None else {})})
@@ -465,6 +472,7 @@ _SECONDS = re.compile(r"\b(?:\d\S* ?)(?:s|secs?|seconds?)\b")
 _THINGS = bag("sink mirror switch block swing slide paint light float lift step lead brake sail")  # names of verbs
 
 
+_AT_A_TIME = re.compile(r"at (?!once\b)")
 _COMES_BACK = re.compile(r"\b(?:back|returns?|comes?|again|normal|reappears?|appears?|shows?)\b")
 _GOES_ON = re.compile(
     r"\b(?:opens?|goes?|go|moves?|rolls?|walks?|drives?|falls?|spins?|turns?|runs?|not|continues?|"
@@ -479,7 +487,7 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
         ends: whether the time of the command has an end.
     """
     if _COMES_BACK.search(remark):
-        return command.kind == "look"
+        return command.kind == "look" and not command.inverse
     if re.search(r"\bstops?\b", remark):
         return command.kind == "path"
     changes = {op.get("change") for op in command.ops}
@@ -514,6 +522,7 @@ def _tidy(said: str) -> str:
     """What is written, in words that the readers know."""
     for _ in range(3):
         said = _NOISE.sub("", said).strip(" ,.!?\n")
+    said = restated(said)
     for pattern, plain in _RESTATED:
         said = pattern.sub(plain, said)
     said = re.sub(

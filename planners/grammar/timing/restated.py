@@ -1,0 +1,120 @@
+"""Turns of phrase about time and motion, and the same in words that the readers know.
+
+A rule covers a way of saying something, not a sentence: what it drops is said already by what it keeps.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from .manner import MOTION
+from .moments import DURATION
+from .verbs import SENSES, any_of, forms
+
+_PLAIN = any_of(MOTION, "plain")
+_ING = any_of((*MOTION, "stop"), "ing")
+_IT = "(?:it|he|she|they)"
+_EVENT = "(?:motion|movement|animation|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|move)"
+_BEGIN = "(?:sets? (?:off|out)|starts?|begins?|moves?(?: off)?|goes|gets? (?:going|moving))"
+_SHARE = "(?:a )?(?:half|quarter|third|double|triple|twice)(?: (?:of )?(?:the|its))?"
+_POINT = rf"(?:{DURATION}|\d+(?:\.\d+)?|one|two|three|four|five)"
+_PASTS = {past: verb for verbs in SENSES.values() for verb in verbs.split(", ") for past, form in forms(verb)
+          if form == "past" and " " not in verb}  # fmt: skip
+
+
+def _wished(found: re.Match[str]) -> str:
+    """ "(I would be pleased if) the robot turned": a wish, in the form of what was."""
+    verb = _PASTS.get(found["verb"])
+    return found[0] if verb is None else f"let {found['np']} {verb}{found['rest']}"
+
+
+def _between(found: re.Match[str]) -> str:
+    """ "beginning at two seconds and being fully open only at four"."""
+    before = found["before"]
+    if found["how"]:  # it moves already, at another pace
+        before = re.sub(rf" (?={_PLAIN}$)", " start to ", before)
+    ends = [end if re.search(r"\bs(?:ec|$)", end) else f"{end} seconds" for end in (found["a"], found["b"])]
+    return f"{before} from {ends[0]} to {ends[1]}"
+
+
+_RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
+    # who asks, and how
+    (rf"^do (?={any_of(tuple(SENSES), 'plain')} )", ""),  # "do hide it"
+    (r"^(?P<i>i|we) should (?:(?:rather|quite|very much|really|so) )*(?=like\b)", r"\g<i> would "),
+    (
+        r"^(?:i|we) (?:would|should|am|are) be (?:(?:very|so|most|rather|quite|really) )*(?:pleased|glad|happy|grateful|"
+        r"delighted|thankful|obliged) if (?:(?:you|we) (?:could|would|can|will) )?",
+        "it would be nice if ",
+    ),
+    (rf"^it would be nice if (?P<np>(?:the|my|our|every|all|both) [a-z ]+?) (?P<verb>{'|'.join(sorted(_PASTS))})"
+     r"(?P<rest>(?: .*)?)$", _wished),
+    (
+        r"^(?:i|we) (?:should|want to|would like to|must|wish to|need to) see (?P<np>the [a-z ]+?) "
+        rf"{_PLAIN} back\b[^;]*? (?:;|:|\.|,) (?:so )?(?:please )?(?:run|play) its (?P<event>{_EVENT}) "
+        r"(?:backwards?|in reverse)$",
+        r"play \g<np> 's \g<event> backwards",
+    ),
+    # how fast
+    (rf"^(?P<f>{_SHARE}) (?:speed|pace|tempo) (?:on|for) (?P<x>.+)$", r"play \g<x> at \g<f> speed"),
+    (rf"\bin slow ?motion ,? ?(?:at )?(?P<f>{_SHARE}) (?:speed|pace|tempo)\b", r"at \g<f> speed"),
+    # what it is not
+    (
+        rf"(?: ,)? (?:instead of|rather than) (?:it )?{_ING} (?:(?:at|after|by|until|from) (?:already )?{_POINT}"
+        r"|there|then|halfway|early|on)$",
+        "",
+    ),
+    # what it comes to
+    (rf"(?: ,)? so (?:that )?{_IT} (?:starts?|begins?|ends?|stops?|happens?|moves?|comes?) (?:later|earlier|sooner)"
+     r"(?: than (?:now|before|it does))?$", ""),
+    (
+        rf"(?P<b>\b(?:backwards?|in reverse|the other way(?: round| around)?)) ,? ?so (?:that )?{_IT} (?:starts?|begins?|"
+        rf"sets?)(?: out| off)? (?:at|from|by|on|in) [a-z ]+? and (?:finishes|ends|stops|arrives)(?: up)? (?:at |in )?"
+        r"where [a-z ]+$",
+        "backwards",
+    ),
+    (r" (?:,|-|–|—|;|and|then|so)(?: and| then)* (?:it |he |she )?(?:just |simply |then )*(?:stands?|stays?|remains?|"
+     r"rests?|waits?|lies?|sits?)(?: just| simply)*(?: (?:there|still|so|put))* from (?:then|there|that (?:point|moment|"
+     r"time)) on(?:wards?)?$", ""),
+    # when
+    (rf"^(?P<before>.+?)(?: (?P<how>more (?:gently|slowly)|slower|faster))?(?: ,)? (?:beginning|starting|setting off) "
+     rf"(?:only )?(?:at|from) (?P<a>{_POINT}) and (?:only )?(?:being|ending|finishing|stopping|coming to rest|done)"
+     rf"(?: (?:fully|completely|all the way|wide|open|closed|shut|done|there|finished|only|just))* (?:at|by) "
+     rf"(?P<b>{_POINT})$", _between),
+    (r"\b(?P<w>first|last|final) second and a half\b", r"\g<w> one and a half seconds"),
+    (r"\bfor (?:just|only) the (?=first|last|final)", "for the "),
+    (r"^might (?=(?:the|my|our|this|that|all|every|it) )", ""),
+    (rf"^not (?:before|until) (?P<d>{_POINT}) (?:should|must|may|shall|can) (?P<x>.+)$", r"\g<x> at \g<d>"),
+    (rf"(?: ,)? (?:but |and |though )?not (?:before|earlier than|sooner than|until) (?P<d>{DURATION})$", r" at \g<d>"),
+    (rf"\b(?P<e>{_EVENT})(?P<aux>(?: (?:to|should|must|shall))?) lasts? (?P<d>{DURATION})$",
+     r"\g<e>\g<aux> be over \g<d>"),
+    (rf"\b(?P<d>{DURATION}) of (?:stillness|standing still|rest|resting|waiting|doing nothing|quiet|silence)\b",
+     r"\g<d>"),
+    (rf"\b(?P<w>until|till|after|once|when) (?P<d>{DURATION}) (?:has|have|is|are) (?:gone(?: by)?|passed(?: by)?|"
+     rf"elapsed|over|up)\b", lambda m: f"{'after' if m['w'] in ('once', 'when') else m['w']} {m['d']}"),
+    (rf"\bfor the first (?P<d>{DURATION}|second) (?:before|and (?:only )?then|until) {_IT} {_BEGIN}"
+     rf"(?: (?:to )?(?:{_PLAIN}|{_ING}))?$",
+     r"for the first \g<d>"),
+    (r"\b(?:right |straight |on )?through (?:to|until|till) the (?:very )?end\b", "until the end"),
+    (r"\bat (?:exactly |just )?(?:the same|one and the same) (?:moment|instant)\b(?! (?:as|when)\b)",
+     "at the same time"),
+    # which
+    (rf"\bthe (?:whole|entire|complete) (?P<x>[a-z]+(?: 's)?) (?P<e>{_EVENT})\b", r"the \g<x> \g<e>"),
+    (rf"\b(?:cut|break) (?P<x>.+? (?:'s )?{_EVENT}) (?:off|short) (?=at|after|when|once)", r"stop \g<x> "),
+    (rf"\b(?P<det>the [a-z ]*?)(?P<noun>[a-z]+) (?P<rest>(?:(?:to|should|must|shall) )?{_PLAIN} (?:before|after|while) "
+     r"the [a-z]+) one (?P<do>does|do|did)$", r"\g<det>\g<noun> \g<rest> \g<noun> \g<do>"),
+    (rf"\b(?P<verb>{_PLAIN}) (?P<w>before|after|while) (?P<x>(?:the|my|our|both|all) [a-z ]+?) (?:does|do|did)$",
+     r"\g<verb> \g<w> \g<x> \g<verb>"),
+)  # fmt: skip
+_COMPILED = tuple((re.compile(pattern), plain) for pattern, plain in _RULES)
+
+
+def restated(said: str) -> str:
+    """An instruction in words that the readers know.
+
+    >>> restated("half speed on the fan")
+    'play the fan at half speed'
+    """
+    for pattern, plain in _COMPILED:
+        said = pattern.sub(plain, said)
+    return said.strip(" ,.;")
