@@ -43,8 +43,8 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"^do (?={any_of(tuple(SENSES), 'plain')} )", ""),  # "do hide it"
     (r"^(?P<i>i|we) should (?:(?:rather|quite|very much|really|so) )*(?=like\b)", r"\g<i> would "),
     (
-        r"^(?:i|we) (?:would|should|am|are) be (?:(?:very|so|most|rather|quite|really) )*(?:pleased|glad|happy|grateful|"
-        r"delighted|thankful|obliged) if (?:(?:you|we) (?:could|would|can|will) )?",
+        r"^(?:i|we) (?:would|should|am|are) be (?:(?:very|so|most|rather|quite|really) )*(?:pleased|glad|happy|"
+        r"grateful|delighted|thankful|obliged) if (?:(?:you|we) (?:could|would|can|will) )?",
         "it would be nice if ",
     ),
     (rf"^it would be nice if (?P<np>(?:the|my|our|every|all|both) [a-z ]+?) (?P<verb>{'|'.join(sorted(_PASTS))})"
@@ -68,14 +68,14 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"(?: ,)? so (?:that )?{_IT} (?:starts?|begins?|ends?|stops?|happens?|moves?|comes?) (?:later|earlier|sooner)"
      r"(?: than (?:now|before|it does))?$", ""),
     (
-        rf"(?P<b>\b(?:backwards?|in reverse|the other way(?: round| around)?)) ,? ?so (?:that )?{_IT} (?:starts?|begins?|"
-        rf"sets?)(?: out| off)? (?:at|from|by|on|in) [a-z ]+? and (?:finishes|ends|stops|arrives)(?: up)? (?:at |in )?"
+        rf"(?P<b>\b(?:backwards?|in reverse|the other way(?: round| around)?)) ,? ?so (?:that )?{_IT} (?:starts?|"
+        rf"begins?|sets?)(?: out| off)? (?:at|from|by|on|in) [a-z ]+? and (?:finishes|ends|stops|arrives)(?: up)? (?:at |in )?"
         r"where [a-z ]+$",
         "backwards",
     ),
     (r" (?:,|-|–|—|;|and|then|so)(?: and| then)* (?:it |he |she )?(?:just |simply |then )*(?:stands?|stays?|remains?|"
-     r"rests?|waits?|lies?|sits?)(?: just| simply)*(?: (?:there|still|so|put))* from (?:then|there|that (?:point|moment|"
-     r"time)) on(?:wards?)?$", ""),
+     r"rests?|waits?|lies?|sits?)(?: just| simply)*(?: (?:there|still|so|put))* from (?:then|there|that (?:point|"
+     r"moment|time)) on(?:wards?)?$", ""),
     # when
     (rf"^(?P<before>.+?)(?: (?P<how>more (?:gently|slowly)|slower|faster))?(?: ,)? (?:beginning|starting|setting off) "
      rf"(?:only )?(?:at|from) (?P<a>{_POINT}) and (?:only )?(?:being|ending|finishing|stopping|coming to rest|done)"
