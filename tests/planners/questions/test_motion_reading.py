@@ -178,6 +178,14 @@ def test_words_that_belong_to_nothing_are_not_passed_over(text: str) -> None:
         ("total time the drawer is in motion", "how long does the drawer move"),
         ("total path length of the robot?", "how far does the robot move?"),
         ("when does red land?", "when does the red thing land?"),
+        ("Would the drawer be open at 3 s, or not?", "is the drawer open at 3 s?"),
+        ("what moves at a second and a half?", "what moves at 1.5 s?"),
+        ("what moves at two seconds and a half?", "what moves at 2.5 s?"),
+        ("when does the robot stop for good?", "when does the robot stop for the last time?"),
+        ("when is the door halfway through its swing?", "when is the door half open?"),
+        ("from what height does the cup fall?", "how far does the cup fall?"),
+        ("at what timecode does it stop?", "at what time does it stop?"),
+        ("besides the fan, does anything else in the room move?", "does anything besides the fan move?"),
     ],
 )
 def test_what_people_say_is_read_as_what_is_asked_plainly(said: str, plain: str) -> None:

@@ -63,7 +63,8 @@ class Deed:
 _ROWS = """
 related - -: touching | [~be|~come|~get] in [direct|physical] (contact|touch) with | up against
 is_open quarter -: [STAY] ([a|one] quarter|25 %|25 percent) (open|opened|out|extended)
-is_open half -: [STAY] (half|halfway|half way|partly|50 %|50 percent) (open|opened|out|extended|closed|shut)
+is_open half -: [STAY] (half|halfway|half way|partly|50 %|50 percent) (open|opened|out|extended|closed|shut) | [STAY] \
+    (halfway|half way|midway) through ITS (opening|swing|travel)
 is_open full -: [STAY] FULL (open|opened|out|extended|pulled out|ajar) | open FULL | at [its] (widest|maximum \
     opening|full opening|[full|maximum] extension) | ~reach [its] (widest|maximum opening|full (opening|extension))
 is_open - -: [STAY] (open|opened|ajar|pulled out|extended|drawn out|out)

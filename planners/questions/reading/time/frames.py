@@ -55,8 +55,8 @@ class Frame:
 
 # -- what is asked ---------------------------------------------------------------------------------------------------
 
-_POINT = "([exact|precise|very|first|earliest] (time|second|seconds|moment|point|timestamp|instant|sec|frame|stage) \
-[in time|of time|mark|exactly|on])"
+_POINT = "([exact|precise|very|first|earliest] (time|second|seconds|moment|point|timestamp|timecode|instant|sec|\
+frame|stage) [in time|of time|mark|exactly|on])"
 _SPAN = "(duration|time span|timespan|period [of time]|length of time|amount of time|stretch of time)"
 _TOLD = "[~be|tell|give|name|state] [me]"
 _TAKES = "[(do|does|did|will|would|has|is|was) (it|that|this) [all] (~take|~need|~last|~require|be) [time|for]]"

@@ -111,7 +111,8 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
         (rf"\bt = {_A}(?: {SECONDS})?(?= |$)", _at),
         (rf"\b{_A} {SECONDS} (?:in|into it|into {_CLIP}|after the (?:start|beginning){_OF_CLIP}|later)(?= |$)", _at),
         (rf"\bat (?:the )?(?:half ?way(?: point| mark)?|midpoint|middle){_OF_CLIP}(?= |$)|"
-         rf"\bhalf ?way through(?: {_CLIP})?(?= |$)|\bin the middle of {_CLIP}(?= |$)", _plain("middle")),
+         rf"\bhalf ?way through(?: {_CLIP})?(?= (?!its |the |his |her )|$)|"
+         rf"\bin the middle of {_CLIP}(?= |$)", _plain("middle")),
         (rf"\b(?:right |just )?(?:at|in|from|on) (?:the )?(?:very )?(?:start|beginning|outset){_OF_CLIP}(?= |$)|"
          r"\b(?:initially|originally|to begin with|to start with|at first|in the first frame|immediately|right away|"
          r"straight away|(?<!all )at once|instantly)(?= |$)", _plain("start")),

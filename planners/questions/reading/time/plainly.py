@@ -10,6 +10,13 @@ from functools import cache
 
 _LINES = r"""
 ^whether =>
+(?: ,)? or not$ =>
+^(?:will|would|should|could|shall) (.+?) be\b => is \1
+\b(anything|something|else|anybody|nothing) in (?:the|this) (?:whole |entire )?(?:room|scene|clip|film)\b => \1
+\b(?:a|one) (?:second|sec) and a half\b => one and a half seconds
+\b(two|three|four) (?:seconds|secs) and a half\b => \1 and a half seconds
+(?: once and)? for good$ => for the last time
+^from (?:what|which|how great a) height (?:does|do|did) (.+?) (?:fall|drop|tumble|plunge)$ => how far does \1 fall
 ^would i be (?:right|correct)(?: (?:in|to) (?:saying|thinking|say|think))?(?: that)? =>
 (?: ,)? (?:when |as |if )?(?:seen|viewed|looking|looked at) (?:from above|from the top)$ =>
 \b(?:do|can|will|does) (?:we|you|i|one) (?:first )?(?:see|notice|observe|spot)\b =>
@@ -40,7 +47,8 @@ or the \w+(?: \w+)?$ => \1
 some time
 ^(?:is|are) there (?:still )?(?:any |some )?(?:movements?|motion)(?: in the room)?(?= |$) => does anything move
 ^(?:is )?(?:there )?anything (else )?(moving|turning|spinning|falling)\b => is anything \1\2
-^(does|is|did) anything (.*?)(?: (?:besides|except|apart from|other than|but)) (.+)$ => \1 anything besides \3 \2
+^(does|is|did) anything (?:else )?(.*?)\
+(?: (?:besides|except|apart from|other than|but)) (.+)$ => \1 anything besides \3 \2
 \b(anything|something) else (?:than|but|besides|except) => \1 besides
 ^(the [\w ]+?) (does|did|is|was|will|has) (?:it|he|she|they) (.+)$ => \2 \1 \3
 ^(the \w+(?: \w+)?) , ((?:when|how|where|what|which|does|is|at|until)\b.*)\b(?:it|they)\b(.*)$ => \2\1\3
