@@ -69,8 +69,8 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      r"(?: than (?:now|before|it does))?$", ""),
     (
         rf"(?P<b>\b(?:backwards?|in reverse|the other way(?: round| around)?)) ,? ?so (?:that )?{_IT} (?:starts?|"
-        rf"begins?|sets?)(?: out| off)? (?:at|from|by|on|in) [a-z ]+? and (?:finishes|ends|stops|arrives)(?: up)? (?:at |in )?"
-        r"where [a-z ]+$",
+        rf"begins?|sets?)(?: out| off)? (?:at|from|by|on|in) [a-z ]+? and (?:finishes|ends|stops|arrives)(?: up)? "
+        r"(?:at |in )?where [a-z ]+$",
         "backwards",
     ),
     (r" (?:,|-|–|—|;|and|then|so)(?: and| then)* (?:it |he |she )?(?:just |simply |then )*(?:stands?|stays?|remains?|"
