@@ -62,7 +62,7 @@ SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
         ("captures",), ("composed",), ("chart",), ("masks", "views"), ("floaters", "floor"),
         ("names", "thresholds", "finer"), ("attributes", "relations"), ("meshes", "vectors"),
     ),
-    "ask": (("geometry",), ("written", "stability", "routing", "views", "vision", "sight", "judge")),
+    "ask": (("geometry",), ("written",), ("stability",), ("routing", "views", "vision"), ("sight", "judge")),
     "plan": (("nouns",),),
     "edits": (("colour",), ("checks",)),
     "view": (("faults", "levels"),),
@@ -71,7 +71,18 @@ TIMED_PARTS: Mapping[str, tuple[str, ...]] = {
     "edits": (), "select": ("costs",), "ask": ("speed",), "plan": ("timed",), "view": ("browser", "beside", "words")
 }  # fmt: skip
 # The longest first, so that no core waits for a long job at the end.
-LONGEST = ("slim", "stability", "dream", "select captures", "fit_sizes", "ask geometry", "edits checks", "edits colour")
+LONGEST = (
+    "slim",
+    "stability",
+    "dream",
+    "select captures",
+    "ask written",
+    "ask stability",
+    "fit_sizes",
+    "ask geometry",
+    "edits checks",
+    "edits colour",
+)
 MOST_REPEATS = 3
 _STARTS = 5.0  # seconds that a process takes besides its measurement
 _CHANGED = "the source changed while it was measured; leave it alone until all is measured"
