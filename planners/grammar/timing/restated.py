@@ -19,6 +19,8 @@ _EVENT = "(?:motion|movement|animation|walk|roll|fall|drop|swing|ride|flight|tur
 _BEGIN = "(?:sets? (?:off|out)|starts?|begins?|moves?(?: off)?|goes|gets? (?:going|moving))"
 _SHARE = "(?:a )?(?:half|quarter|third|double|triple|twice)(?: (?:of )?(?:the|its))?"
 _POINT = rf"(?:{DURATION}|\d+(?:\.\d+)?|one|two|three|four|five)"
+_LENGTHS = "for over within in lasting by until till from between last first next the and"
+_NO_LENGTH = "".join(f"(?<!{w})" for w in _LENGTHS.split())  # behind one of these words it is no time after something
 _PASTS = {past: verb for verbs in SENSES.values() for verb in verbs.split(", ") for past, form in forms(verb)
           if form == "past" and " " not in verb}  # fmt: skip
 
@@ -38,6 +40,11 @@ def _between(found: re.Match[str]) -> str:
     return f"{before} from {ends[0]} to {ends[1]}"
 
 
+def _counted(found: re.Match[str]) -> str:
+    """The article before a unit as a number, so that it begins no name: "a second lamp"."""
+    return found[1] or "one "
+
+
 _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     # who asks, and how
     (rf"^do (?={any_of(tuple(SENSES), 'plain')} )", ""),  # "do hide it"
@@ -47,6 +54,7 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
         r"grateful|delighted|thankful|obliged) if (?:(?:you|we) (?:could|would|can|will) )?",
         "it would be nice if ",
     ),
+    (rf"^it would be nice if you (?P<verb>{'|'.join(sorted(_PASTS))})(?= )", lambda m: _PASTS[m["verb"]]),
     (rf"^it would be nice if (?P<np>(?:the|my|our|every|all|both) [a-z ]+?) (?P<verb>{'|'.join(sorted(_PASTS))})"
      r"(?P<rest>(?: .*)?)$", _wished),
     (
@@ -55,7 +63,12 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
         r"(?:backwards?|in reverse)$",
         r"play \g<np> 's \g<event> backwards",
     ),
+    (r"^be so (?:kind|good|nice) as to ", ""),
+    (rf"^(?:let|have|make) (?P<np>the [a-z ]+?) (?:run|play|do|make) its (?:{_EVENT}|path|way) "
+     r"(?:backwards?|in reverse)$", r"play \g<np> 's motion backwards"),
     # how fast
+    (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {_IT} (?:(?:does|do|is|are|did) )?"
+     r"(?:at present|at the moment|right now|currently|so far)\b", r"\g<a>"),
     (rf"^(?P<f>{_SHARE}) (?:speed|pace|tempo) (?:on|for) (?P<x>.+)$", r"play \g<x> at \g<f> speed"),
     (rf"\bin slow ?motion ,? ?(?:at )?(?P<f>{_SHARE}) (?:speed|pace|tempo)\b", r"at \g<f> speed"),
     # what it is not
@@ -81,6 +94,16 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      rf"(?:only )?(?:at|from) (?P<a>{_POINT}) and (?:only )?(?:being|ending|finishing|stopping|coming to rest|done)"
      rf"(?: (?:fully|completely|all the way|wide|open|closed|shut|done|there|finished|only|just))* (?:at|by) "
      rf"(?P<b>{_POINT})$", _between),
+    (r"(?: ,)? but (?:no|not any) longer(?: than that)?$| , and only then(?= ,)", ""),
+    (rf"^(?:let|have|make) (?P<np>(?:the|my|our) [a-z ]+?) wait (?:for )?(?P<d>{DURATION}) before {_IT} {_BEGIN}$",
+     r"keep \g<np> still for the first \g<d>"),
+    (rf"(?P<b>^|(?<!until)(?<!till)(?<!from)(?<!between)(?<!by) )(?:at )?(?P<d>{DURATION}) before the (?:very )?end\b",
+     r"\g<b>for the last \g<d>"),
+    (rf"(?P<b>^|{_NO_LENGTH} )(?:at )?(?P<d>{DURATION}) after (?=(?:the|my|our|all|both|it|he|she|they) )",
+     lambda m: f"{m['b']}after {re.sub(r'(half )?an? (?=second)', _counted, m['d'])} after "),
+    (rf"^only after (?P<d>{DURATION}) (?:should|must|may|shall|can) (?P<x>.+)$", r"\g<x> at \g<d>"),
+    (r"^only (?P<w>(?:when|once|after) (?:the|it|my|both|all) .+?) (?:should|must|may|shall|can) (?P<x>.+)$",
+     r"let \g<x> \g<w>"),
     (r"\b(?P<w>first|last|final) second and a half\b", r"\g<w> one and a half seconds"),
     (r"\bfor (?:just|only) the (?=first|last|final)", "for the "),
     (r"^might (?=(?:the|my|our|this|that|all|every|it) )", ""),
