@@ -65,7 +65,8 @@ def cuts(server: Server, log: Path, times: int, seed: int) -> dict[str, Any]:
             if rng.random() < 0.5:
                 page.send({"type": "operate", "id": 1, "ops": [_recolor(rng)]})
                 for _ in range(rng.randrange(3)):
-                    page.take()
+                    if page.take()["type"] == "error":  # nothing follows a refusal
+                        break
             page.cut()
             for _ in range(rng.randrange(3)):
                 other.ask("operate", ops=[_recolor(rng)]) if rng.random() < 0.7 else other.ask("undo")
