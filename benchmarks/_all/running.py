@@ -1,7 +1,7 @@
 """Runs every benchmark in processes of its own, and those that are timed again while time is left.
 
 A process of its own keeps what one benchmark compiles, caches or allocates out of the figures of the next, and the
-failure of one from the others. Whole runs divide long benchmarks into jobs by their parts. Each finished job is kept
+failure of one from the others. Long benchmarks are divided into jobs by their parts. Each finished job is kept
 until the revision changes, so that a run that was stopped, or in which one job failed, goes on with the others.
 """
 
@@ -56,7 +56,8 @@ ALONE = {
 LONG = frozenset({"dream", "edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure", "view"})
 # Parts that whole runs leave out, with the reason.
 LEFT_OUT = {"edits graded": "its pictures are graded by eye; `scenewright bench edits` makes them"}
-# How whole runs divide benchmarks: parts that share the cores, a job each, and parts that are timed by the clock.
+# How benchmarks are divided: parts that share the cores (in whole runs a job each, in quick ones all of them one), and
+# parts that are timed by the clock.
 SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "select": (
         ("captures",), ("composed",), ("chart",), ("masks", "views"), ("floaters", "floor"),
@@ -122,10 +123,11 @@ def jobs(names: Sequence[str], quick: bool) -> list[Job]:
     """What is run, in the order in which it starts: first jobs that are timed, then others, the longest first."""
     found = list[Job]()
     for name in names:
-        if quick or name not in SHARED_PARTS:
+        if name not in SHARED_PARTS:
             found.append(Job(name, (), name in TOGETHER))
             continue
-        found += [Job(name, parts, True) for parts in SHARED_PARTS[name]]
+        shared = SHARED_PARTS[name]
+        found += [Job(name, parts, True) for parts in ((sum(shared, ()),) if quick else shared)]
         if TIMED_PARTS[name]:
             found.append(Job(name, TIMED_PARTS[name]))
     last = len(LONGEST)
