@@ -35,7 +35,7 @@ class Answer:
         kind: kind of instruction.
         outcome: "right" (operations equal to the expected, or the expected verdict), "abstained" (no operations where
             some were expected, or the wrong reason for having none) or "wrong" (other operations than expected).
-        seconds: best of the repetitions.
+        seconds: of the processor, the best of the repetitions.
     """
 
     kind: str
@@ -57,14 +57,14 @@ def judge(plan: EditPlan, case: dict[str, Any]) -> Outcome:
 
 
 def measure(planner: Planner, todo: Iterable[dict[str, Any]], repeat: int = 3) -> list[Answer]:
-    """Every instruction planned `repeat` times; the fastest counts, as interruptions only ever slow down."""
+    """Every instruction planned `repeat` times; the fastest counts, as a busy machine only ever slows down."""
     answers = []
     for case in todo:
         best = float("inf")
         for _ in range(repeat):
-            started = time.perf_counter()
+            started = time.process_time()
             plan = planner.plan(case["text"], previous=case.get("previous"))
-            best = min(best, time.perf_counter() - started)
+            best = min(best, time.process_time() - started)
         answers.append(Answer(case["kind"], judge(plan, case), best))
     return answers
 
@@ -75,7 +75,7 @@ def share(answers: Sequence[Answer], outcome: Outcome) -> float:
 
 
 def metrics(answers: Sequence[Answer]) -> tuple[Metric, ...]:
-    """Shares right, abstained and wrong; right by kind; milliseconds an instruction."""
+    """Shares right, abstained and wrong; right by kind; milliseconds of the processor for an instruction."""
     found = [
         Metric("right", share(answers, "right"), "share", "higher"),
         Metric("abstained", share(answers, "abstained"), "share", "lower"),
@@ -91,10 +91,10 @@ def metrics(answers: Sequence[Answer]) -> tuple[Metric, ...]:
 
 
 def loading() -> float:
-    """Seconds from import to a planner that is ready, in a fresh interpreter, without the import of the tools."""
+    """Processor seconds from import to a ready planner, in a fresh interpreter, without the import of the tools."""
     code = (
-        "import time, scenewright.tools.registry; t = time.perf_counter(); "
-        "from scenewright.planners import load; load('grammar'); print(time.perf_counter() - t)"
+        "import time, scenewright.tools.registry; t = time.process_time(); "
+        "from scenewright.planners import load; load('grammar'); print(time.process_time() - t)"
     )
     return float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout)
 

@@ -30,6 +30,7 @@ QUICK_LIMIT, LIMIT = 150.0, 1500.0
 # Charted against bytes, timed in seconds of the processor, or without a chart of times: they share the cores.
 TOGETHER = frozenset(
     {
+        "compose",
         "dream",
         "edit",
         "edits",
@@ -39,6 +40,7 @@ TOGETHER = frozenset(
         "layout",
         "mcp",
         "mesh",
+        "plan",
         "restyle",
         "slim",
         "stability",
@@ -64,26 +66,29 @@ SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
         ("names", "thresholds", "finer"), ("attributes", "relations"), ("meshes", "vectors"),
     ),
     "ask": (("geometry",), ("written",), ("stability",), ("routing", "views", "vision"), ("sight", "judge")),
-    "plan": (("nouns",),),
     "edits": (("colour",), ("checks",)),
     "view": (("faults", "levels"),),
 }  # fmt: skip
 TIMED_PARTS: Mapping[str, tuple[str, ...]] = {
-    "edits": (), "select": ("costs",), "ask": ("speed",), "plan": ("timed",), "view": ("browser", "beside", "words")
+    "edits": (), "select": ("costs",), "ask": ("speed",), "view": ("browser", "beside", "words")
 }  # fmt: skip
 # The longest first, so that no core waits for a long job at the end.
 LONGEST = (
     "slim",
     "stability",
-    "dream",
+    "mesh",
     "select captures",
     "ask written",
     "ask stability",
     "fit_sizes",
-    "ask geometry",
+    "fill",
     "edits checks",
+    "select chart",
+    "dream",
+    "ask geometry",
     "edits colour",
 )
+QUICK_LONGEST = ("ask", "select", "slim", "mesh", "plan", "edit")
 MOST_REPEATS = 3
 _STARTS = 5.0  # seconds that a process takes besides its measurement
 _CHANGED = "the source changed while it was measured; leave it alone until all is measured"
@@ -130,8 +135,13 @@ def jobs(names: Sequence[str], quick: bool) -> list[Job]:
         found += [Job(name, parts, True) for parts in ((sum(shared, ()),) if quick else shared)]
         if TIMED_PARTS[name]:
             found.append(Job(name, TIMED_PARTS[name]))
-    last = len(LONGEST)
-    return sorted(found, key=lambda j: (j.shares, LONGEST.index(j.title) if j.title in LONGEST else last))
+    longest = QUICK_LONGEST if quick else LONGEST
+
+    def place(job: Job) -> int:
+        title = job.name if quick else job.title
+        return longest.index(title) if title in longest else len(longest)
+
+    return sorted(found, key=lambda job: (job.shares, place(job)))
 
 
 def prepare(say: Callable[[str], None]) -> None:

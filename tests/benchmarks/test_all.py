@@ -63,14 +63,14 @@ def test_spread_stands_in_the_table() -> None:
 
 @pytest.fixture
 def processes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
-    """Runs of benchmarks that end at once: "ask" fails, "fit" is of another revision, and "edit" prints no result."""
+    """Runs of benchmarks that end at once: "render" fails, "fit" is of another revision, "edit" prints no result."""
     ran: list[str] = []
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
     def run(command: list[str], **_: Any) -> subprocess.CompletedProcess[str]:
         name = command[4]
         ran.append(name)
-        if name == "ask":
+        if name == "render":
             return subprocess.CompletedProcess(command, 2, "", "warning\nscenewright: no captures\n")
         text = {"edit": "{}", "fit": replace(result(name="fit"), revision="other").to_json()}
         return subprocess.CompletedProcess(command, 0, text.get(name, result(name=name).to_json()), "")
@@ -81,18 +81,18 @@ def processes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
 
 
 def test_every_benchmark_runs_once_and_again_while_there_is_time(processes: list[str]) -> None:
-    once = running.measured(["plan", "ask"], True, lambda _: None, seconds=1e-9)
-    assert processes == ["plan", "ask"] and once.results[0].repeats == 1
+    once = running.measured(["relight", "render"], True, lambda _: None, seconds=1e-9)
+    assert processes == ["relight", "render"] and once.results[0].repeats == 1
     processes.clear()
-    thrice = running.measured(["plan", "ask"], True, lambda _: None, seconds=1e6)
-    assert processes == ["plan", "ask", "plan", "plan"] and thrice.results[0].repeats == 3
-    assert thrice.failed == {"ask": "no captures"}
+    thrice = running.measured(["relight", "render"], True, lambda _: None, seconds=1e6)
+    assert processes == ["relight", "render", "relight", "relight"] and thrice.results[0].repeats == 3
+    assert thrice.failed == {"render": "no captures"}
 
 
 def test_what_is_timed_runs_first_and_again(processes: list[str]) -> None:
-    found = running.measured(["plan", "slim"], True, lambda _: None, seconds=1e6)
-    assert processes == ["plan", "slim", "plan", "plan"]
-    assert [(r.name, r.repeats) for r in found.results] == [("plan", 3), ("slim", 1)]
+    found = running.measured(["slim", "relight"], True, lambda _: None, seconds=1e6)
+    assert processes == ["relight", "slim", "relight", "relight"]
+    assert [(r.name, r.repeats) for r in found.results] == [("slim", 1), ("relight", 3)]
     assert set(harness.names()) >= running.TOGETHER
 
 
@@ -101,24 +101,33 @@ def test_whole_runs_divide_long_benchmarks_into_parts_that_there_are(monkeypatch
         known = importlib.import_module(f"scenewright.benchmarks.{name}").PARTS
         left = [part for part in known if f"{name} {part}" in running.LEFT_OUT]
         assert sorted([*itertools.chain(*shared), *running.TIMED_PARTS[name], *left]) == sorted(known)
-    todo = running.jobs(["plan", "slim", "select"], False)
-    assert [job.title for job in todo if not job.shares] == ["plan timed", "select costs"]
+    todo = running.jobs(["relight", "slim", "select"], False)
+    assert [job.title for job in todo if not job.shares] == ["relight", "select costs"]
     assert [job.title for job in todo[2:4]] == ["slim", "select captures"]
-    assert running.jobs(["plan"], True) == [running.Job("plan")]
 
     def run(command: list[str], env: dict[str, str], **_: Any) -> subprocess.CompletedProcess[str]:
         part = command[command.index("--part") + 1]
-        assert ("OMP_NUM_THREADS" in env) == (part == "nouns")
-        if part == "timed":
+        assert ("OMP_NUM_THREADS" in env) == (part != "speed")
+        if part == "speed":
             return subprocess.CompletedProcess(command, 2, "", "scenewright: lost\n")
-        own = replace(result(), metrics=(Metric(part, 1, "share"),))
+        own = replace(result(name="ask"), metrics=(Metric(part, 1, "share"),))
         return subprocess.CompletedProcess(command, 0, own.to_json(), "")
 
     monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
     monkeypatch.setattr(running.subprocess, "run", run)
     monkeypatch.setattr(running._machine, "revision", lambda: "abc")
-    found = running.measured(["plan"], False, lambda _: None)
-    assert [m.key for r in found.results for m in r.metrics] == ["nouns"] and found.failed == {"plan timed": "lost"}
+    found = running.measured(["ask"], False, lambda _: None)
+    firsts = {parts[0] for parts in running.SHARED_PARTS["ask"]}
+    assert {m.key for r in found.results for m in r.metrics} == firsts and found.failed == {"ask speed": "lost"}
+
+
+def test_quick_runs_make_one_job_of_the_parts_that_share_the_cores() -> None:
+    timed, shared = running.jobs(["ask"], True)
+    assert timed == running.Job("ask", ("speed",)) and shared.shares
+    assert shared.parts == tuple(itertools.chain(*running.SHARED_PARTS["ask"]))
+    assert running.jobs(["relight"], True) == [running.Job("relight")]
+    names = [job.name for job in running.jobs(["fill", "mesh", "slim", "ask"], True)]
+    assert names == ["ask", "ask", "slim", "mesh", "fill"]
 
 
 def test_parts_are_joined_to_one_result() -> None:
@@ -134,9 +143,9 @@ def test_parts_are_joined_to_one_result() -> None:
 
 def test_finished_jobs_are_kept_until_the_revision_changes(processes: list[str], tmp_path: Path) -> None:
     for _ in range(2):
-        found = running.measured(["plan", "ask"], True, lambda _: None, seconds=1e-9, kept=tmp_path)
-        assert [r.name for r in found.results] == ["plan"] and found.failed == {"ask": "no captures"}
-    assert processes == ["plan", "ask", "ask"]  # what failed is measured again
+        found = running.measured(["relight", "render"], True, lambda _: None, seconds=1e-9, kept=tmp_path)
+        assert [r.name for r in found.results] == ["relight"] and found.failed == {"render": "no captures"}
+    assert processes == ["relight", "render", "render"]  # what failed is measured again
 
 
 def test_quick_and_whole_results_are_not_compared(tmp_path: Path) -> None:
@@ -157,8 +166,8 @@ def test_a_benchmark_that_takes_too_long_is_stopped_and_told(monkeypatch: pytest
 
 
 def test_what_is_of_another_revision_or_unreadable_is_a_failure(processes: list[str]) -> None:
-    found = running.measured(["plan", "fit", "edit"], True, lambda _: None, seconds=1e-9)
-    assert [r.name for r in found.results] == ["plan"]
+    found = running.measured(["relight", "fit", "edit"], True, lambda _: None, seconds=1e-9)
+    assert [r.name for r in found.results] == ["relight"]
     assert "changed" in found.failed["fit"] and "--json" in found.failed["edit"]
 
 
@@ -177,7 +186,7 @@ def test_the_command_writes_the_page_and_tells_what_is_worse(
     tmp_path: Path, processes: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr(harness, "names", lambda: ("plan", "select"))
+    monkeypatch.setattr(harness, "names", lambda: ("plan", "fill"))
     earlier = tmp_path / "earlier"
     earlier.mkdir()
     (earlier / "plan.json").write_text(result(3.0, quick=True).to_json())
@@ -188,10 +197,10 @@ def test_the_command_writes_the_page_and_tells_what_is_worse(
     assert told["page"] == str(tmp_path / "new" / "README.md") and len(told["results"]) == 2
     with pytest.raises(UserError, match="--force"):
         CliRunner().invoke(app, command, catch_exceptions=False)
-    monkeypatch.setattr(harness, "names", lambda: ("plan", "ask", "select"))
-    (tmp_path / "new" / "ask.json").write_text("stale")
-    assert CliRunner().invoke(app, [*command, "--force"]).exit_code == 1  # "ask" failed
-    assert not (tmp_path / "new" / "ask.json").exists()
+    monkeypatch.setattr(harness, "names", lambda: ("plan", "render", "fill"))
+    (tmp_path / "new" / "render.json").write_text("stale")
+    assert CliRunner().invoke(app, [*command, "--force"]).exit_code == 1  # "render" failed
+    assert not (tmp_path / "new" / "render.json").exists()
 
 
 def test_the_guard_tells_what_is_worse_and_what_is_gone_and_looks_at_no_times() -> None:
@@ -210,8 +219,8 @@ def test_the_guard_tells_what_is_worse_and_what_is_gone_and_looks_at_no_times() 
 def test_the_guard_measures_without_data_and_fails_with_a_benchmark(processes: list[str]) -> None:
     now = guard.measured(lambda _: None, ("plan", "select"))
     assert {m.key for m in now.metrics} == {"plan.right", "select.right"}
-    with pytest.raises(FileError, match="bench ask failed: no captures"):
-        guard.measured(lambda _: None, ("plan", "ask"))
+    with pytest.raises(FileError, match="bench render failed: no captures"):
+        guard.measured(lambda _: None, ("plan", "render"))
 
 
 def test_the_committed_baseline_holds_what_is_guarded() -> None:

@@ -102,6 +102,7 @@ def test_an_edit_a_refusal_and_a_question(place: Place, tmp_path: object) -> Non
     assert refused.outcome == "refused" and refused.said
 
 
+@pytest.mark.slow
 def test_only_a_committed_answer_to_this_very_question_is_given(place: Place) -> None:
     what = instruction("delete the thing")
     asked, shown = carrying.carry_out(what, place, {})

@@ -20,6 +20,7 @@ from scenewright.gaussians.language.field.store import save_field
 from scenewright.gaussians.scene import Scene
 
 
+@pytest.mark.slow
 def test_a_session_over_stdio(named_boxes: Scene, tmp_path: Path) -> None:
     """Five edits, an ambiguity by a form and told, a picture, hostile lines, undone to the same digest."""
     mcp = pytest.importorskip("mcp", reason="needs the extra `mcp`")
