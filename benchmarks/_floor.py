@@ -21,7 +21,7 @@ from ..gaussians import compiled
 from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.render import cpu, reference
-from ..gaussians.render.cpu import lanes, project, simd, touch
+from ..gaussians.render.cpu import lanes, layout, simd, touch
 from .harness import Metric
 
 STAGE = "draw"  # the kernel that blends
@@ -44,9 +44,9 @@ def measure(cloud: GaussianCloud, camera: Camera, key: str, raster: float) -> li
 
 def pair_seconds() -> float:
     """Seconds that one worker's block code takes for one pair, at best."""
-    records = np.zeros((touch.CHUNK, project.RECORD), np.float32)
-    records[:, project.SHIFT] = -math.log(ALPHA) / 8  # alpha = exp(-8 (0 + shift)) everywhere
-    records[:, project.RED : project.DEPTH + 1] = 0.5
+    records = np.zeros((touch.CHUNK, layout.RECORD), np.float32)
+    records[:, layout.SHIFT] = -math.log(ALPHA) / 8  # alpha = exp(-8 (0 + shift)) everywhere
+    records[:, layout.RED : layout.DEPTH + 1] = 0.5
     chunk, state, every = records.reshape(-1), np.zeros(simd.STATE, np.float32), np.uint64(2**touch.CHUNK - 1)
     _blend_often(chunk, every, state, cpu.LIMITS, 1)
     least = math.inf

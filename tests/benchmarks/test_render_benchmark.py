@@ -13,7 +13,7 @@ from scenewright.benchmarks import render as bench
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.render import cpu, reference
-from scenewright.gaussians.render.cpu import lanes, project, simd, touch
+from scenewright.gaussians.render.cpu import lanes, layout, simd, touch
 
 
 def layers(count: int, opacity: float) -> tuple[GaussianCloud, Camera]:
@@ -32,8 +32,8 @@ def test_pairs_are_what_pixels_blend(count: int, opacity: float, each: int) -> N
 
 
 def test_the_bare_block_blends_every_pair_that_is_counted() -> None:
-    chunk = np.zeros((touch.CHUNK, project.RECORD), np.float32)
-    chunk[:, project.SHIFT] = -np.log(_floor.ALPHA) / 8
+    chunk = np.zeros((touch.CHUNK, layout.RECORD), np.float32)
+    chunk[:, layout.SHIFT] = -np.log(_floor.ALPHA) / 8
     state = np.zeros(simd.STATE, np.float32)
     _floor._blend_often(chunk.reshape(-1), np.uint64(2**touch.CHUNK - 1), state, cpu.LIMITS, 3)
     left = (1 - _floor.ALPHA) ** touch.CHUNK

@@ -20,12 +20,12 @@ from ...camera import Camera, Render, Vec3
 from ...cloud import GaussianCloud
 from .. import convention
 from ..shares import Split, sum_pairs
-from . import blend, order, project, shares
+from . import blend, layout, order, project, shares
 from . import surface_depth as surface
 
 Array = NDArray[Any]
 
-LIMITS = (np.float32(convention.ALPHA_MAX), np.float32(convention.T_MIN), np.float32(project.Q_MAX))
+LIMITS = (np.float32(convention.ALPHA_MAX), np.float32(convention.T_MIN), np.float32(layout.Q_MAX))
 MAX_ENTRIES = 1 << 26  # (footprint, tile) pairs held at once (256 MB); an image with more is drawn in strips
 
 
@@ -36,7 +36,7 @@ class Bins:
     `view` is the camera they were projected with.
     """
 
-    view: project.View
+    view: layout.View
     records: Array
     first: Array
     entries: Array
@@ -147,7 +147,7 @@ def _strips(
     if bins is not None:
         yield top, bottom, bins
         return
-    middle = top + (bottom - top) // (2 * project.TILE) * project.TILE
+    middle = top + (bottom - top) // (2 * layout.TILE) * layout.TILE
     yield from _strips(columns, camera, count, top, middle)
     yield from _strips(columns, camera, count, middle, bottom)
 
@@ -155,17 +155,15 @@ def _strips(
 def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, bottom: int) -> Bins | None:
     """Project and sort for the image rows `top` to `bottom`; None if they need more than `MAX_ENTRIES` entries and can
     be divided."""
-    n, size = len(columns[0]), (camera.width, bottom - top)
-    chunks = -(-n // project.CHUNK)
-    records, spots = project.make_records(n), np.empty((n, 2), np.uint64)
-    visible, found = np.empty(n, np.uint64), np.empty(chunks, np.int32)
-    view = project.make_view(camera, convention.near_plane(columns[0]), top, bottom)
-    compiled.run(project.project, count, *columns, view, (records, spots, visible, found), _counter())
-
+    size = camera.width, bottom - top
+    view = layout.make_view(camera, convention.near_plane(columns[0]), top, bottom)
+    found = project.run(columns, view, count)
+    records, spots, n = found.records, found.spots, len(found.records)
     buffer, rows = np.empty(n, np.uint64), np.empty(n, np.int32)
     tally = np.zeros((order.DIGITS, order.BUCKETS), np.int64)
-    rows = rows[: compiled.run_alone(order.depth_order, visible, found, project.CHUNK, buffer, rows, tally)]
-    wide, high = (-(-side // project.TILE) for side in size)
+    packed = found.visible, found.found, project.CHUNK
+    rows = rows[: compiled.run_alone(order.depth_order, *packed, buffer, rows, tally)]
+    wide, high = (-(-side // layout.TILE) for side in size)
     places = np.zeros((count, wide * high + wide + 2), np.int64)
     compiled.run(order.count_tiles, count, rows, records, spots, view, wide, places)
     first = np.empty(wide * high + 1, np.int64)

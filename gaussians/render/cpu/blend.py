@@ -12,7 +12,7 @@ import numpy as np
 
 from ...compiled import fetch_add, helper, kernel
 from .lanes import LANES, lane_sum
-from .project import RECORD, TILE, Array
+from .layout import RECORD, TILE, Array
 from .simd import REST, STATE, WINNER, blend_block, store_block, weigh_block
 from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, copy_record, prefetch, slots_touching
 

@@ -12,7 +12,7 @@ import numpy as np
 from ...compiled import fetch_add, helper, kernel
 from .blend import _gather
 from .lanes import LANES
-from .project import HALF, L1, L2, L3, ONE, RECORD, TILE, ZERO, Array, X, Y, f4
+from .layout import HALF, L1, L2, L3, ONE, RECORD, TILE, ZERO, Array, X, Y, f4
 from .simd_backward import (
     STATE,
     SUM_BLUE,

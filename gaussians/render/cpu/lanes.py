@@ -92,6 +92,109 @@ class Lanes:
         low = self.b.bitcast(mask, ir.IntType(mask.type.count))
         return low if low.type == I64 else self.b.zext(low, I64)
 
+    def number(self, value: ir.Value | float) -> Number:
+        """A vector, or the same number in every lane."""
+        return Number(self, value if isinstance(value, ir.Value) else self.same(value))
+
+    def fused(self, x: ir.Value, y: ir.Value, z: ir.Value) -> ir.Value:
+        """`x * y + z`, rounded once where the processor has an instruction for it."""
+        kind = ir.FunctionType(x.type, [x.type] * 3)
+        function = cgutils.get_or_insert_function(self.b.module, kind, f"llvm.fmuladd.v{self.count}f32")  # type: ignore[no-untyped-call]
+        return self.b.call(function, [x, y, z])
+
+    def columns(self, base: ir.Value, row: ir.Value, width: int) -> list[Number]:
+        """The columns of as many rows as there are lanes, from `row` on, of a contiguous array `[N, width]`."""
+        start = self.b.mul(row, ir.Constant(I64, width))
+        loaded = [self.load(self.at(base, start, part * self.count)) for part in range(width)]
+        return [self.number(self._column(loaded, place)) for place in range(width)]
+
+    def _column(self, loaded: list[ir.Value], place: int) -> ir.Value:
+        """Every `len(loaded)`-th number of consecutive vectors, from `place` on."""
+        source = [divmod(lane * len(loaded) + place, self.count) for lane in range(self.count)]
+        found = self.pick(loaded[0], loaded[0], [at if part == 0 else 0 for part, at in source])
+        for number, vector in enumerate(loaded[1:], start=1):
+            lanes = [self.count + at if part == number else lane for lane, (part, at) in enumerate(source)]
+            found = self.pick(found, vector, lanes)
+        return found
+
+    def transpose(self, rows: list[ir.Value]) -> list[ir.Value]:
+        """As many vectors as there are lanes, such that lane i of the j-th becomes lane j of the i-th."""
+        step = 1
+        while step < self.count:
+            swapped = list(rows)
+            low = [lane if not lane & step else self.count + lane - step for lane in range(self.count)]
+            high = [lane + step if not lane & step else self.count + lane for lane in range(self.count)]
+            for place in range(self.count):
+                if not place & step:
+                    pair = rows[place], rows[place + step]
+                    swapped[place], swapped[place + step] = self.pick(*pair, low), self.pick(*pair, high)
+            rows, step = swapped, 2 * step
+        return rows
+
+
+class Number:
+    """A vector of float32 with the operators of Python; comparisons give masks.
+
+    In an `exact` kernel each operation is rounded once, in the order of the source.
+    """
+
+    def __init__(self, lanes: Lanes, value: ir.Value) -> None:
+        self.lanes, self.value = lanes, value
+
+    def _with(self, other: Number | float) -> ir.Value:
+        return other.value if isinstance(other, Number) else self.lanes.same(other)
+
+    def __add__(self, other: Number | float) -> Number:
+        return Number(self.lanes, self.lanes.add(self.value, self._with(other)))
+
+    def __sub__(self, other: Number | float) -> Number:
+        return Number(self.lanes, self.lanes.sub(self.value, self._with(other)))
+
+    def __mul__(self, other: Number | float) -> Number:
+        return Number(self.lanes, self.lanes.mul(self.value, self._with(other)))
+
+    def __truediv__(self, other: Number | float) -> Number:
+        return Number(self.lanes, self.lanes.b.fdiv(self.value, self._with(other)))
+
+    def __rtruediv__(self, other: float) -> Number:
+        return self.lanes.number(other) / self
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __neg__(self) -> Number:
+        return Number(self.lanes, self.lanes.b.fneg(self.value))
+
+    def __lt__(self, other: Number | float) -> ir.Value:
+        return self.lanes.less(self.value, self._with(other))
+
+    def __gt__(self, other: Number | float) -> ir.Value:
+        return self.lanes.less(self._with(other), self.value)
+
+
+def fused(x: Number, y: Number | float, z: Number | float) -> Number:
+    """`x * y + z`, rounded once where the processor can."""
+    return Number(x.lanes, x.lanes.fused(x.value, x._with(y), x._with(z)))
+
+
+def least(x: Number, y: Number | float) -> Number:
+    """The smaller one; y where either is not a number."""
+    return Number(x.lanes, x.lanes.min(x.value, x._with(y)))
+
+
+def most(x: Number, y: Number | float) -> Number:
+    """The larger one; x where either is not a number."""
+    return Number(x.lanes, x.lanes.max(x.value, x._with(y)))
+
+
+def root(x: Number) -> Number:
+    """The square root."""
+    return Number(x.lanes, x.lanes.sqrt(x.value))
+
+
+def where(mask: ir.Value, x: Number | float, y: Number) -> Number:
+    """x in the lanes of the mask, y in the others."""
+    return Number(y.lanes, y.lanes.b.select(mask, y._with(x), y.value))
+
 
 def pointer_to(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any, index: int) -> ir.Value:
     """Pointer to the first element of array argument `index`."""

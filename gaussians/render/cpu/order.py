@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import helper, kernel
-from .project import (
+from .layout import (
     CORNER_Y,
     EXTREME,
     KEY,

@@ -11,7 +11,7 @@ import math
 
 from ...compiled import fetch_add, helper, kernel
 from .blend_backward import D_L1, D_L2, D_L3, D_RED, D_SHIFT, D_X, D_Y
-from .project import FOUR, HALF, L1, L3, ONE, RED, SIXTEEN, SLOPE, TINY, TWO, ZERO, f4
+from .layout import FOUR, HALF, L1, L3, ONE, RED, SIXTEEN, SLOPE, TINY, TWO, ZERO, f4
 from .shade import C0, C1, C20, C21, C22, C30, C31, C32, C33, C34, THREE
 
 ROWS = 2048  # rows a worker takes at a time

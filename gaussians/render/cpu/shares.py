@@ -11,7 +11,7 @@ import numpy as np
 from ...compiled import fetch_add, helper, kernel
 from .blend import _begin, _gather, _weigh_chunk
 from .lanes import LANES, lane_sum
-from .project import BIT, TILE, Array
+from .layout import BIT, TILE, Array
 from .simd import weigh_block
 from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, lowest_bit, slots_touching
 

@@ -15,7 +15,7 @@ from numba import types
 
 from ...compiled import intrinsic
 from .lanes import F32, I32, I64, INTEGERS, LANES, Lanes, pointer_to
-from .project import BLUE, DEPTH, GREEN, GROUP, L1, L2, L3, RECORD, RED, SHIFT, X, Y
+from .layout import BLUE, DEPTH, GREEN, GROUP, L1, L2, L3, RECORD, RED, SHIFT, X, Y
 from .touch import BLOCK_HEIGHT, BLOCK_WIDTH
 
 # A block's state: running transmittance, red, green, blue, depth, final transmittance, largest weight and the bits of

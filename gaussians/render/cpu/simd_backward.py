@@ -15,7 +15,7 @@ from numba import types
 
 from ...compiled import intrinsic
 from .lanes import I32, I64, LANES, Lanes, pointer_to
-from .project import BLUE, GREEN, RECORD, RED
+from .layout import BLUE, GREEN, RECORD, RED
 from .simd import footprint, transmit
 
 # A block's state: transmittance, the remaining `g . colour` from behind, gradient of red, green and blue, and x and y

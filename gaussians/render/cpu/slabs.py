@@ -19,7 +19,8 @@ from . import LIMITS, MAX_ENTRIES, make_image
 from . import order as sorting
 from . import project as projecting
 from .blend import _begin, _draw_chunk, _finish, _gather, make_scratch
-from .project import CHUNK, DEPTH, RECORD, TILE
+from .layout import DEPTH, RECORD, TILE, make_view
+from .project import CHUNK
 from .simd import STATE
 from .touch import BLOCKS
 from .touch import CHUNK as SLOTS
@@ -53,7 +54,7 @@ class Canvas:
     """
 
     def __init__(self, camera: Camera, near: float, room: int) -> None:
-        self._view = projecting.make_view(camera, near, 0, camera.height)
+        self._view = make_view(camera, near, 0, camera.height)
         self._size = (camera.width, camera.height)
         self._tiles_wide, self._tiles_high = (-(-side // TILE) for side in self._size)
         tiles = self._tiles_wide * self._tiles_high
@@ -74,16 +75,14 @@ class Canvas:
         """Add the footprints of some rows that lie in the present slab; it ends earlier if they are too many.
 
         Args:
-            columns: means, quats, scales, opacities, sh, group, as `project.project` takes them.
+            columns: means, quats, scales, opacities, sh, group, as `project.run` takes them.
             ids: `[N]`, different in all rows that are ever added.
         """
-        n = len(ids)
-        records, spots = projecting.make_records(n), np.empty((n, 2), np.uint64)
-        visible, found = np.empty(n, np.uint64), np.empty(-(-n // CHUNK), np.int32)
-        out = records, spots, visible, found
-        compiled.run(projecting.project, compiled.workers(), *columns, self._view, out, np.zeros(1, np.int64))
+        found = projecting.run(columns, self._view, compiled.workers())
+        records, spots = found.records, found.spots
         rows = np.concatenate([np.zeros(0, np.int64), *(
-            (visible[c * CHUNK : c * CHUNK + k] & np.uint64(0xFFFFFFFF)).astype(np.int64) for c, k in enumerate(found)
+            (found.visible[c * CHUNK : c * CHUNK + k] & np.uint64(0xFFFFFFFF)).astype(np.int64)
+            for c, k in enumerate(found.found)
         )])  # fmt: skip
         rows = rows[~_before(self.begins, records[rows, DEPTH], ids[rows])]
         rows = rows[_before(self.ends, records[rows, DEPTH], ids[rows])]

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from ...compiled import fetch_add, helper, kernel
-from .project import L1, L2, L3, SHIFT, TILE, Array, X, Y
+from .layout import L1, L2, L3, SHIFT, TILE, Array, X, Y
 
 MOST = 48  # Gaussians of a ray that are sorted
 DARK = np.float32(0.02)  # light that is left when no more are: in the order of their centres others may follow

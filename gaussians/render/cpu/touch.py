@@ -12,7 +12,7 @@ from numba.core import cgutils
 
 from ...compiled import intrinsic
 from .lanes import F32, I16, I32, I64, LANES, Lanes, pointer_to
-from .project import EXTREME, L1, L2, L3, LIMIT, REACH_Y, RECORD, SLOPE, TILE, WIDTH, X, Y
+from .layout import EXTREME, L1, L2, L3, LIMIT, REACH_Y, RECORD, SLOPE, TILE, WIDTH, X, Y
 
 BLOCK_WIDTH, BLOCK_HEIGHT = 4, 4  # a square block leaves the fewest lanes idle under an ellipse
 BLOCKS_WIDE, BLOCKS_HIGH = TILE // BLOCK_WIDTH, TILE // BLOCK_HEIGHT
@@ -50,7 +50,7 @@ def copy_record(typing_context: Any, records: Any, row: Any, chunk: Any, slot: A
 
 
 def _touched(builder: ir.IRBuilder, x: ir.Value, y: ir.Value, field: Callable[[int], ir.Value]) -> ir.Value:
-    """Mask over a tile's blocks: whether the ellipse at (x, y) reaches the block's pixel centres (see `project.span`).
+    """Mask over a tile's blocks: whether the ellipse at (x, y) reaches the block's pixel centres (see `layout.span`).
 
     The right ends of its intervals, one for each row of blocks, and the left ends are computed as one vector.
     """

@@ -21,7 +21,7 @@ from scenewright.gaussians import compiled, files
 from scenewright.gaussians.camera import Camera, Render
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.render import backends, contributions, cpu, render
-from scenewright.gaussians.render.cpu import project, simd
+from scenewright.gaussians.render.cpu import layout, project, simd
 
 every_backend = pytest.mark.parametrize("backend", [b for b in backends() if b != "cuda"])  # test_cuda.py
 CAMERA = Camera.look_at([0, -3, 0.5], [0, 0, 0], [0, 0, 1], 37, 29)
@@ -182,7 +182,7 @@ def test_footprints_of_every_tile_span() -> None:
 
 
 def test_exponential_is_accurate_to_three_millionths() -> None:
-    q = np.linspace(0, project.Q_MAX, 100_001, dtype=np.float32)
+    q = np.linspace(0, layout.Q_MAX, 100_001, dtype=np.float32)
     value = np.full_like(q, np.float32(simd.EXP_COEFFICIENTS[-1]))
     for coefficient in simd.EXP_COEFFICIENTS[-2::-1]:
         value = value * q + np.float32(coefficient)
@@ -194,7 +194,7 @@ def test_exponential_is_accurate_to_three_millionths() -> None:
 @pytest.mark.parametrize("count", [0, 1, 7, 5000])
 def test_each_record_lies_on_one_cache_line(count: int) -> None:
     records = project.make_records(count)
-    assert records.shape == (count, project.RECORD) and records.flags.c_contiguous
+    assert records.shape == (count, layout.RECORD) and records.flags.c_contiguous
     assert records.ctypes.data % 64 == 0 or count == 0
 
 
