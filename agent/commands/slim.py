@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from ..options import Capture, Debug, Effort, Force, Json, SceneFile
+from ..options import Capture, Debug, Effort, Force, Json, Memory, SceneFile
 from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import terminal
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from ...gaussians.scene import Scene
     from ...gaussians.slim import Slimmed
 
-FORMATS = (".compressed.ply", ".ply", ".spz", ".sog", ".splat")  # longest first where one ends with another
+FORMATS = (".compressed.ply", ".ply", ".spz", ".sog", ".splat", ".tiles")  # longest first where one ends with another
 
 
 def command(
@@ -27,7 +30,7 @@ def command(
         typer.Option("--psnr", metavar="DB", help="PSNR that held-out views keep; 'inf' keeps every bit (.ply)."),
     ] = 40.0,
     format: Annotated[
-        Literal["ply", "compressed.ply", "spz", "sog", "splat"] | None,
+        Literal["ply", "compressed.ply", "spz", "sog", "splat", "tiles"] | None,
         typer.Option("--format", help="File format, if the name of OUT does not say it; sog is the smallest."),
     ] = None,
     capture: Capture = None,
@@ -47,6 +50,7 @@ def command(
         typer.Option("--ids", metavar="FILE", help="Write for each row of OUT its row number in SCENE (.npy)."),
     ] = None,
     effort: Effort = None,
+    memory: Memory = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
@@ -57,6 +61,9 @@ def command(
     strength is chosen by some views and the promise is measured from others: with --capture from the cameras of
     photographs, without it from computed views around and inside the scene, and from an orbit. A language field is
     kept: groups, names and vectors stay, and the field is written beside OUT.
+
+    A scene in tiles that does not fit into the memory is made smaller part by part, to tiles (-o NAME.tiles) or .ply.
+    Every part keeps the promise in views of it, which are drawn of the whole scene.
     """
     started = time.perf_counter()
     from ...gaussians.files.captures.capture import read_capture
@@ -64,43 +71,31 @@ def command(
     from ...gaussians.language.field.store import field_path
     from ...gaussians.slim import Settings, slim
     from ..output_files import refuse_existing, require_folder
+    from ..tiled_slim import described, refuse_whole, slim_by_parts, told, too_large
 
-    _require_memory(scene)
     dial = dialled(effort, started)
     target = named(output, format)
     settings = Settings(psnr, size, *_length(optimise))
     require_folder(target)
     refuse_existing([target, field_path(target), *([ids] if ids else [])], force)
-    loaded = load(scene)
     cameras = () if capture is None else read_capture(capture).cameras
-    done = slim(loaded, _suffix(target), settings, cameras, terminal.progress, effort=dial)
-    paths = _write(done, loaded, target, ids, force)
-    data = _data(done, loaded, scene, target, psnr) | paths | {"seconds": round(time.perf_counter() - started, 2)}
-    terminal.result(_text(data), data | reported(dial))
+    if (tiles := too_large(scene)) is not None:
+        refuse_whole(tiles, target, settings)
+        if dial is not None:
+            dial.choose("slim", len(tiles))
+        parted, field = slim_by_parts(tiles, target, settings, cameras, force)
+        kept = _write_ids(parted.ids, ids, force)
+        data = described(parted, tiles, target, psnr) | {"field": str(field) if field else None} | kept
+        text = told
+    else:
+        loaded = load(scene)
+        done = slim(loaded, _suffix(target), settings, cameras, terminal.progress, effort=dial)
+        paths = _write(done, target, ids, force)
+        data, text = _data(done, loaded, scene, target, psnr) | paths, _text
+    terminal.clear()
+    data |= {"seconds": round(time.perf_counter() - started, 2)}
+    terminal.result(text(data), data | reported(dial))
     tell(dial)
-
-
-def _require_memory(scene: Path) -> None:
-    """Check that a scene in tiles fits into the memory: what is promised is measured in views of all of it.
-
-    Raises:
-        UserError: it does not.
-    """
-    from ...gaussians.errors import UserError
-    from ...gaussians.tiles import window
-    from ...gaussians.tiles.budget import VARIABLE, memory
-    from ...gaussians.tiles.store import Tiles, is_tiles
-
-    if not is_tiles(scene):
-        return
-    tiles = Tiles.open(scene)
-    if not window.fits(tiles, len(tiles), memory()):
-        size = window.needed(tiles, len(tiles)) / 1e9
-        raise UserError(
-            f"slim measures its promise in views of the whole scene, which takes about {size:.0f} GB of memory here: "
-            f"allow it with {VARIABLE}={size + 1:.0f}GB, slim the files before they are tiled, or write levels of "
-            f"detail part by part: scenewright convert {scene} {scene.stem}.lod"
-        )
 
 
 def _length(text: str | None) -> tuple[int | None, float | None]:
@@ -144,46 +139,64 @@ def named(output: Path, format: str | None) -> Path:
 
 
 def _suffix(path: Path) -> str:
-    return next(suffix for suffix in FORMATS if path.name.lower().endswith(suffix))
+    """The format that is measured: tiles keep every bit, as .ply does."""
+    suffix = next(suffix for suffix in FORMATS if path.name.lower().endswith(suffix))
+    return ".ply" if suffix == ".tiles" else suffix
 
 
-def _write(done: Slimmed, loaded: Scene, target: Path, ids: Path | None, force: bool) -> dict[str, Any]:
+def _write(done: Slimmed, target: Path, ids: Path | None, force: bool) -> dict[str, Any]:
     """Write the scene, its language field, and the row numbers; returns the paths of the latter two."""
+    from ...gaussians.errors import UserError
+    from ...gaussians.files import writing
+    from ...gaussians.files.motion_file import save_motion
+    from ...gaussians.language.field.store import save_field
+    from ..tiled_slim import write_tiles
+
+    field = None
+    if target.name.lower().endswith(".tiles"):
+        if done.scene.motion is not None:
+            raise UserError("a scene in tiles stands still: it keeps no motion; write another format")
+        field = write_tiles(done.scene, done.data, target, force)
+    else:
+        with writing(target, force) as file:
+            file.write(done.data)
+        save_motion(done.scene, target)
+        field = None if done.scene.language is None else save_field(done.scene, target, packed=True)
+    return {"field": str(field) if field else None} | _write_ids(done.scene.cloud.ids.cpu().numpy(), ids, force)
+
+
+def _write_ids(rows: NDArray[np.int64], ids: Path | None, force: bool) -> dict[str, Any]:
+    """Write the row numbers if they are asked for."""
     import io
 
     import numpy as np
 
     from ...gaussians.files import writing
-    from ...gaussians.files.motion_file import save_motion
-    from ...gaussians.language.field.store import save_field
 
-    with writing(target, force) as file:
-        file.write(done.data)
-    save_motion(done.scene, target)
-    field = None if loaded.language is None else save_field(done.scene, target, packed=True)
     if ids is not None:
-        rows = io.BytesIO()
-        np.save(rows, done.scene.cloud.ids.cpu().numpy(), allow_pickle=False)
+        stored = io.BytesIO()
+        np.save(stored, rows, allow_pickle=False)
         with writing(ids, force) as file:
-            file.write(rows.getvalue())
-    return {"field": str(field) if field else None, "ids": str(ids) if ids else None}
+            file.write(stored.getvalue())
+    return {"ids": str(ids) if ids else None}
 
 
 def _data(done: Slimmed, loaded: Scene, scene: Path, target: Path, psnr: float) -> dict[str, Any]:
     from dataclasses import asdict
 
     from ...gaussians.slim.report import inria_bytes, things_left
+    from ..tiled_slim import size_of
 
-    plain = inria_bytes(loaded.cloud)
+    plain, size = inria_bytes(loaded.cloud), size_of(target)
     return {
         "path": str(target),
         "from": str(scene),
         "promised_psnr": psnr if psnr < float("inf") else None,
         "gaussians": len(done.scene.cloud),
         "gaussians_before": len(loaded.cloud),
-        "bytes": len(done.data),
+        "bytes": size,
         "bytes_as_ply": plain,
-        "times_smaller": round(plain / len(done.data), 2),
+        "times_smaller": round(plain / size, 2),
         "strength": asdict(done.strength) if done.strength else None,
         "held_out": asdict(done.held_out) if done.held_out else None,
         "choice": asdict(done.choice) if done.choice else None,

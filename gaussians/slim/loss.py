@@ -49,9 +49,18 @@ class Truth:
     def loss(self, cloud: GaussianCloud) -> Loss:
         """What `cloud` loses."""
         pairs = zip(self.views, self.pictures, strict=True)
-        errors = np.array([np.mean((picture(cloud, v) - p).astype(np.float64) ** 2) for v, p in pairs])
-        each = decibels(errors)
-        return Loss(float(decibels(errors.mean())), float(each.mean()), float(each.min()), len(errors))
+        return loss_of([squared_error(picture(cloud, view), known) for view, known in pairs])
+
+
+def squared_error(found: F32, known: F32) -> float:
+    """Mean squared error of a picture."""
+    return float(np.mean((found - known).astype(np.float64) ** 2))
+
+
+def loss_of(errors: Sequence[float]) -> Loss:
+    """The loss over some views, from the mean squared error of each."""
+    each = decibels(np.array(errors))
+    return Loss(float(decibels(float(np.mean(errors)))), float(each.mean()), float(each.min()), len(errors))
 
 
 def picture(cloud: GaussianCloud, view: View) -> F32:

@@ -64,7 +64,7 @@ class Reducer:
 
     def __init__(self, scene: Scene, order: I64, importance: Importance, suffix: str) -> None:
         self.scene, self.importance, self.suffix = scene, importance, suffix
-        self.order, self.least = _protected(scene, order)
+        self.order, self.least = protected(scene, order)
         self._kept_ids = scene.cloud.ids.numpy()[self.order[: self.least]]
         self._key: tuple[int, float, int] | None = None
         self._harmonics = scene.cloud.sh
@@ -169,7 +169,7 @@ def recounted(scene: Scene) -> Scene:
     return scene.replace(language=table)
 
 
-def _protected(scene: Scene, order: I64) -> tuple[I64, int]:
+def protected(scene: Scene, order: I64) -> tuple[I64, int]:
     """The order with the first rows of every group in front, and their number."""
     group = scene.cloud.group.cpu().numpy()[order]
     if scene.language is None or not (group != NO_GROUP).any():

@@ -16,8 +16,13 @@ SOLID = 0.5  # alpha from which a pixel shows a thing
 
 
 def inria_bytes(cloud: GaussianCloud) -> int:
-    """Bytes of a cloud's rows as INRIA .ply of its SH degree: 17 floats and the higher coefficients a Gaussian."""
-    return len(cloud) * 4 * (14 + 3 * int(cloud.sh.shape[1]))
+    """Bytes of a cloud's rows as INRIA .ply of its SH degree."""
+    return len(cloud) * row_bytes_of(cloud.degree)
+
+
+def row_bytes_of(degree: int) -> int:
+    """Bytes of a row of INRIA .ply: 17 floats and the higher coefficients."""
+    return 4 * (14 + 3 * (degree + 1) ** 2)
 
 
 def things_left(scene: Scene) -> tuple[int, int] | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from ..errors import CheckFailedError
 from ..files.formats.morton import morton_sorted
 from ..scene import Scene
+from .counting import Tried, next_count
 from .encoding import Files
 from .importance import Progress
 from .loss import Loss
@@ -18,11 +18,8 @@ from .preparing import Prepared, Settings
 from .reductions import Reducer, Strength
 
 CLOSE = 0.04  # dB above the target at which a number of Gaussians counts as found
-FINE = 1.005  # ratio of two numbers of Gaussians between which no further one is tried
-LEAST_SHARE = 0.02  # of the Gaussians, below which no number is tried
 TRIES = 9  # numbers of Gaussians tried for one setting
 EXPECTED = 25  # tries in all, for the progress
-SLOPE = 18.0  # dB gained by e times as many Gaussians, as far as nothing is known: 13 to 23 on captures
 ROUND = 0.95  # share of the Gaussians kept from one round of the optimisation to the next
 GAP = 1.2  # times what the held-out views lose more than the chosen ones, which optimised files must keep as well
 CHANCES = 2  # legs that a number of Gaussians is optimised for before it is given up
@@ -201,25 +198,7 @@ class Search:
 
     def _next(self, above: Found | None, below: Found | None, target: float) -> int | None:
         """The next number of Gaussians to try; None if there is none between those that were tried."""
-        count = len(self.scene.cloud)
-        least = min(count, max(self.reducer.least, round(LEAST_SHARE * count)))
-        if above is None:
-            assert below is not None
-            if below.strength.count >= count:
-                return None
-            more = math.exp(max((target - below.loss.psnr) / SLOPE, 0.01))
-            return min(count, math.ceil(below.strength.count * min(more * 1.02, 2.0)))
-        most = above.strength.count
-        if below is None:
-            fewer = math.exp(-(above.loss.psnr - target) / SLOPE)
-            return None if most <= least else max(least, round(most * min(max(fewer, 0.4), 0.98)))
-        few = below.strength.count
-        if most <= few * FINE + 1:
-            return None
-        share = (above.loss.psnr - target) / max(above.loss.psnr - below.loss.psnr, 1e-9)
-        share = min(max(share * 0.98, 0.05), 0.95)
-        wanted = round(math.exp((1 - share) * math.log(most) + share * math.log(few)))
-        return wanted if few < wanted < most else None
+        return next_count(_tried(above), _tried(below), target, len(self.scene.cloud), self.reducer.least)
 
     def _try(self, strength: Strength) -> Found:
         return self._measured(self.reducer.at(strength), strength)
@@ -234,3 +213,7 @@ class Search:
     def _whole(self) -> Found:
         """Everything kept: what the format alone loses, which was measured to keep the promise."""
         return self._try(Strength(len(self.scene.cloud), self.scene.cloud.degree))
+
+
+def _tried(found: Found | None) -> Tried | None:
+    return None if found is None else Tried(found.strength.count, found.loss.psnr)

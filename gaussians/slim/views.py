@@ -81,8 +81,8 @@ def choose_views(scene: Scene, cameras: Sequence[Camera] = (), size: int = SIZE)
     else:
         pool, source = candidates(scene.cloud, frame, size), "computed around and inside the scene"
     ring = choose_ring(scene.replace(frame=frame), own if len(own) >= MIN_CAMERAS else ())
-    orbit = [c for c in ring.cameras(RING, size, size) if _shows(scene, c)]
-    shown = [c for c in pool if _shows(scene, c)]
+    orbit = [c for c in ring.cameras(RING, size, size) if shows(scene, c)]
+    shown = [c for c in pool if shows(scene, c)]
     choice, held_out = _views(shown[::2]), _views(shown[1::2] + orbit)
     if not choice or not held_out:
         raise UserError("no view shows enough of this scene to measure what it loses; give its cameras with --capture")
@@ -113,7 +113,7 @@ def _even(count: int, most: int) -> list[int]:
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist()
 
 
-def _shows(scene: Scene, camera: Camera) -> bool:
+def shows(scene: Scene, camera: Camera) -> bool:
     """Whether a view shows more than empty space."""
     return float(render(scene.cloud, camera.resized(PROBE_SIZE, PROBE_SIZE)).alpha.mean()) > MIN_COVER
 

@@ -7,7 +7,7 @@ for instance, into parts that are some times as wide as the margin around them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -53,7 +53,7 @@ class Block:
     """A part and what lies around it.
 
     Attributes:
-        cloud: all of its rows and those around, ascending by id, without groups.
+        cloud: all of its rows and those around, ascending by id; without groups, unless it is a part alone.
         tile, row: `[N]` int32, where each row is stored.
         inside: `[N]` bool, whether it is of the part.
         margin: how far around the part it reaches at least, scene units.
@@ -92,29 +92,33 @@ def margin_of(clouds: list[GaussianCloud], metres_per_unit: float | None) -> flo
     return SHARE * float(np.median([np.sort(spread)[1] for spread in spreads]))
 
 
-def divided(tiles: Tiles, clouds: list[GaussianCloud], margin: float) -> Parts:
+def divided(
+    tiles: Tiles, clouds: list[GaussianCloud], margin: float, rows: int = ROWS, narrow: float = NARROW
+) -> Parts:
     """The parts of a scene.
 
     Args:
         clouds: a sample of each tile.
+        rows: about so many a part holds at most, unless it is narrow.
+        narrow: margins; a part is not divided across a side that is shorter.
 
     Raises:
         FileError: a tile is torn.
     """
     means = np.concatenate([cloud.means.numpy() for cloud in clouds])
-    most = max(1, ROWS * len(means) // max(len(tiles), 1))
+    most = max(1, rows * len(means) // max(len(tiles), 1))
     leaves = 0
 
-    def node(rows: NDArray[np.int64]) -> Node:
+    def node(own: NDArray[np.int64]) -> Node:
         nonlocal leaves
-        if len(rows) > most:
-            low, high = np.quantile(means[rows], [_TRIM, 1 - _TRIM], axis=0)
+        if len(own) > most:
+            low, high = np.quantile(means[own], [_TRIM, 1 - _TRIM], axis=0)
             axis = int(np.argmax(high - low))
-            if high[axis] - low[axis] > NARROW * margin:
-                position = _emptiest(means[rows, axis], margin)
-                below = means[rows, axis] < position
+            if high[axis] - low[axis] > narrow * margin:
+                position = _emptiest(means[own, axis], margin)
+                below = means[own, axis] < position
                 if below.any() and not below.all():
-                    return Node(axis, position, (node(rows[below]), node(rows[~below])))
+                    return Node(axis, position, (node(own[below]), node(own[~below])))
         leaves += 1
         return Node(leaf=leaves - 1)
 
@@ -158,14 +162,30 @@ def block_of(tiles: Tiles, parts: Parts, number: int, margin: float, most: int) 
                 f"a part of {tiles.folder} and what is around it are {rows:,} Gaussians, and only {most:,} at a time "
                 "fit into the memory; allow more with --memory"
             )
-    joined = concat([tiles.cloud(k, found) for k, (found, _) in taken.items()])
-    tile = np.repeat(np.array(list(taken), np.int32), [len(found) for found, _ in taken.values()])
-    row = np.concatenate([found for found, _ in taken.values()]).astype(np.int32)
     inside = np.concatenate([own for _, own in taken.values()])
+    found = _gathered(tiles, {k: own for k, (own, _) in taken.items()}, inside, margin)
+    return replace(found, cloud=found.cloud.replace(group=torch.full_like(found.cloud.group, NO_GROUP)))
+
+
+def part_of(tiles: Tiles, parts: Parts, number: int) -> Block:
+    """A part alone, with its groups.
+
+    Raises:
+        FileError: a tile is torn.
+    """
+    taken = {}
+    for k in np.flatnonzero(parts.held[:, number]).tolist():
+        taken[k] = np.flatnonzero(parts.tree.leaf_of(np.asarray(tiles.column(k, "means"))) == number)
+    return _gathered(tiles, taken, np.ones(sum(map(len, taken.values())), bool), 0.0)
+
+
+def _gathered(tiles: Tiles, taken: dict[int, NDArray[np.int64]], inside: NDArray[np.bool_], margin: float) -> Block:
+    """Some rows of some tiles, ascending by id."""
+    joined = concat([tiles.cloud(k, rows) for k, rows in taken.items()])
+    tile = np.repeat(np.array(list(taken), np.int32), [len(rows) for rows in taken.values()])
+    row = np.concatenate(list(taken.values())).astype(np.int32)
     order = np.argsort(joined.ids.numpy(), kind="stable")
-    cloud = joined[torch.from_numpy(order)]
-    bare = cloud.replace(group=torch.full_like(cloud.group, NO_GROUP))
-    return Block(bare, tile[order], row[order], inside[order], margin)
+    return Block(joined[torch.from_numpy(order)], tile[order], row[order], inside[order], margin)
 
 
 def _taken(

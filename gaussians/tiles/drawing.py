@@ -48,40 +48,65 @@ class Drawing:
         )
 
 
+class Album:
+    """Pictures of one scene in tiles, whose near plane is measured and whose tiles are compared with their hashes once.
+
+    Args:
+        memory: bytes that footprints and tiles may take, roughly.
+    """
+
+    def __init__(self, tiles: Tiles, memory: int = 4 << 30) -> None:
+        from ..render.cpu.slabs import BYTES
+
+        self.tiles = tiles
+        self._room = int(np.clip(memory // (_SHARE * BYTES), _LEAST, _MOST))
+        self._near = near_plane(tiles)
+        self._checked: set[int] = set()
+
+    def draw(
+        self,
+        camera: Camera,
+        background: Vec3 = (0.0, 0.0, 0.0),
+        progress: Progress = lambda stage, share: None,
+    ) -> Drawing:
+        """Render the scene as `gaussians.render.render` would render all of it at once.
+
+        Raises:
+            FileError: a tile in the view is torn.
+        """
+        from ..render.cpu.slabs import Canvas
+
+        tiles, checked = self.tiles, self._checked
+        canvas = Canvas(camera, self._near, min(self._room, max(len(tiles), 1)))
+        waiting = sorted(_in_view(tiles, camera, self._near))
+        seen, read = len(waiting), 0
+        while waiting and not canvas.finished:
+            for nearest, _, number in waiting:
+                if nearest > canvas.ends[0]:
+                    break
+                progress("drawing", 1 - len(waiting) / max(seen, 1))
+                columns = [tiles.column(number, name, number not in checked) for name in (*_COLUMNS, "ids")]
+                checked.add(number)
+                *shown, ids = (np.array(column) for column in columns)  # kernels are compiled for what can be written
+                canvas.add(tuple(shown), ids)
+                read += 1
+            canvas.draw()
+            waiting = [tile for tile in waiting if tile[1] >= canvas.begins[0]]
+        out = canvas.picture(background, camera)
+        render = Render(*map(torch.from_numpy, out))
+        return Drawing(render, seen, len(tiles.state.tiles), canvas.drawn, canvas.slabs, read)
+
+
 def draw(
     tiles: Tiles, camera: Camera, background: Vec3 = (0.0, 0.0, 0.0), *, memory: int = 4 << 30,
     progress: Progress = lambda stage, share: None,
 ) -> Drawing:  # fmt: skip
-    """Render a scene in tiles as `gaussians.render.render` would render all of it at once.
-
-    Args:
-        memory: bytes that footprints and tiles may take, roughly.
+    """One picture of a scene in tiles; see `Album`.
 
     Raises:
         FileError: a tile in the view is torn.
     """
-    from ..render.cpu.slabs import BYTES, Canvas
-
-    room = int(np.clip(memory // (_SHARE * BYTES), _LEAST, _MOST))
-    near = near_plane(tiles)
-    canvas = Canvas(camera, near, room)
-    waiting = sorted(_in_view(tiles, camera, near))
-    checked: set[int] = set()
-    seen, read = len(waiting), 0
-    while waiting and not canvas.finished:
-        for nearest, _, number in waiting:
-            if nearest > canvas.ends[0]:
-                break
-            progress("drawing", 1 - len(waiting) / max(seen, 1))
-            columns = [tiles.column(number, name, number not in checked) for name in (*_COLUMNS, "ids")]
-            checked.add(number)
-            *shown, ids = (np.array(column) for column in columns)  # kernels are compiled for what can be written
-            canvas.add(tuple(shown), ids)
-            read += 1
-        canvas.draw()
-        waiting = [tile for tile in waiting if tile[1] >= canvas.begins[0]]
-    out = canvas.picture(background, camera)
-    return Drawing(Render(*map(torch.from_numpy, out)), seen, len(tiles.state.tiles), canvas.drawn, canvas.slabs, read)
+    return Album(tiles, memory).draw(camera, background, progress)
 
 
 def near_plane(tiles: Tiles) -> float:

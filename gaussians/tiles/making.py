@@ -96,12 +96,9 @@ def make(
     """
     sources = [open_source(path) for path in paths]
     degree = max(source.degree for source in sources)
-    _require_room(output, sum(source.rows for source in sources) * (row_bytes(degree) + 8))
+    require_room(output, sum(source.rows for source in sources) * (row_bytes(degree) + 8))
     starts, untold = common_table(sources)
-    earlier = locked(output) if force and is_tiles(output) else contextlib.nullcontext()
-    with earlier, writing_folder(output, force, _ours) as folder:
-        for part in (STATES, TILES, TABLES):
-            (folder / part).mkdir()
+    with new_folder(output, force) as folder:
         progress("dividing space", 0.0)
         grid = _divided(sources, min(AIM, most * 4 // 5))
         filling = _Filling(folder / TILES, degree, len(grid.starts) + 1, min(max(memory // 8, _LEAST), _MOST))
@@ -118,12 +115,22 @@ def make(
     return Tiles.open(output)
 
 
+@contextlib.contextmanager
+def new_folder(output: Path, force: bool) -> Iterator[Path]:
+    """A folder for tiles, which has the name `output` when the block succeeds; see `files.atomic.writing_folder`."""
+    earlier = locked(output) if force and is_tiles(output) else contextlib.nullcontext()
+    with earlier, writing_folder(output, force, _ours) as folder:
+        for part in (STATES, TILES, TABLES):
+            (folder / part).mkdir()
+        yield folder
+
+
 def _ours(path: Path) -> bool:
     """Whether a file of a folder is of those that are written here."""
     return str(path) in (HEAD, LOCK) or path.parts[0] in (STATES, TILES, TABLES, PIECES)
 
 
-def _require_room(output: Path, wanted: int) -> None:
+def require_room(output: Path, wanted: int) -> None:
     """Check that the disk has room for the tiles. Raises FileError."""
     if not output.absolute().parent.is_dir():
         return  # told when it is written
@@ -292,6 +299,17 @@ def _state(
 ) -> State:  # fmt: skip
     """The first state of a folder whose tiles are written."""
     listed = sum(source.rows for source in sources)
+    return State(
+        degree=degree, first_free=listed, listed=listed,
+        homes=written_homes(folder, tiles, listed),
+        gone=files.write(folder / TABLES, "gone.0", gone.astype("<i8")), missing=len(gone),
+        tiles=tuple(tiles), table=_table(folder, sources), comments=comments.describe(sources[0].scene),
+        notes=tuple(notes),
+    )  # fmt: skip
+
+
+def written_homes(folder: Path, tiles: Sequence[Tile], listed: int) -> Stored:
+    """A new file with the tile of each of so many ids, in a folder whose tiles are written."""
     homes = files.allocated(folder / TABLES / "homes.0", np.dtype("<u4"), (listed,))
     for number, tile in enumerate(tiles):
         homes[files.mapped(folder / TILES, tile.columns["ids"], np.dtype("<i8"), (tile.rows,), checked=False)] = number
@@ -300,13 +318,7 @@ def _state(
     digest = hashlib.sha256()
     for start in range(0, listed, BLOCK_ROWS):
         digest.update(np.ascontiguousarray(homes[start : start + BLOCK_ROWS]).view(np.uint8).data)
-    return State(
-        degree=degree, first_free=listed, listed=listed,
-        homes=Stored(file="homes.0", sha256=digest.hexdigest()),
-        gone=files.write(folder / TABLES, "gone.0", gone.astype("<i8")), missing=len(gone),
-        tiles=tuple(tiles), table=_table(folder, sources), comments=comments.describe(sources[0].scene),
-        notes=tuple(notes),
-    )  # fmt: skip
+    return Stored(file="homes.0", sha256=digest.hexdigest())
 
 
 def _table(folder: Path, sources: Sequence[Source]) -> Table | None:
