@@ -1,5 +1,5 @@
-"""bench scale: scenes in tiles from one to a hundred million Gaussians: seconds, memory, and what an edit touches; and
-rooms embedded by blocks.
+"""bench scale: scenes in tiles from one to a hundred million Gaussians: seconds, memory, and what an edit touches;
+rooms embedded by blocks; and a scene that is made smaller part by part.
 
 Copies of a composed room stand on a grid; one room is different, and its piano and its bicycle are the only ones. The
 files lie in a temporary folder (TMPDIR chooses the disk: 22 GB for a hundred million) and are removed.
@@ -19,15 +19,18 @@ from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language.field.loading import load
 from ..gaussians.render import render
 from ..gaussians.tiles.drawing import draw
+from ..gaussians.tiles.records import row_bytes
 from ..gaussians.tiles.store import Tiles
-from ._scale import blocks
+from ..gaussians.tiles.window import WORKING
+from ._scale import blocks, slimming
 from ._scale import grid as grids
 from ._scale.grid import DELETED, RECOLORED, Grid
 from ._scale.measured import Run, command, size_of
 from .harness import Metric, Point, Result
 
 EMBED = "embed"
-PARTS = ("1M", "2M", "10M", "100M", EMBED)
+SLIM = "slim"
+PARTS = ("1M", "2M", "10M", "100M", EMBED, SLIM)
 SIZES = {"1M": 10**6, "2M": 2 * 10**6, "10M": 10**7, "100M": 10**8}
 QUICK = 3 * 10**5
 COMPARED = "2M"  # edited and drawn in memory too
@@ -41,12 +44,15 @@ EDITS = {"recolor": f"make the {RECOLORED} teal", "delete": f"delete the {DELETE
 def run(quick: bool, parts: Sequence[str] = ()) -> Result:
     """Measure every size, or some of them."""
     wanted = parts or PARTS
-    sizes = {"300k": QUICK} if quick else {name: SIZES[name] for name in wanted if name != EMBED}
+    sizes = {"300k": QUICK} if quick else {name: SIZES[name] for name in wanted if name in SIZES}
     metrics: list[Metric] = []
     points: list[Point] = []
     if EMBED in wanted:
         with tempfile.TemporaryDirectory(prefix="scenewright-scale-") as place:
             metrics += blocks.measured(Path(place), blocks.SEEDS[:1] if quick else blocks.SEEDS)
+    if SLIM in wanted:
+        with tempfile.TemporaryDirectory(prefix="scenewright-scale-") as place:
+            metrics += slimming.measured(QUICK if quick else SIZES["1M"], row_bytes(0) * WORKING, Path(place))
     for name, rows in sizes.items():
         with tempfile.TemporaryDirectory(prefix="scenewright-scale-") as place:
             found, curve = _size(name, rows, Path(place), quick or name == COMPARED)

@@ -121,10 +121,9 @@ class Check:
         solid = (old.alpha > SOLID).numpy()
         depth = old.depth.numpy()[solid].astype(np.float64)
         y, x = np.nonzero(solid)
-        local = np.stack(
-            [(x + 0.5 - camera.cx) / camera.fx, (y + 0.5 - camera.cy) / camera.fy, np.ones(len(x))], axis=1
-        )
-        places = camera.position + (local * depth[:, None]) @ camera.world_to_camera[:3, :3]
+        across, down = (x + 0.5 - camera.cx) / camera.fx, (y + 0.5 - camera.cy) / camera.fy
+        local = np.stack([across * depth, down * depth, depth], axis=1)
+        places = camera.position + local @ camera.world_to_camera[:3, :3]
         parts = self._work.parts.tree.leaf_of(places.astype(np.float32))
         errors = np.bincount(parts, error[solid], len(self._parts))
         pixels = np.bincount(parts, minlength=len(self._parts))

@@ -100,9 +100,53 @@ def test_what_needs_all_of_a_scene_that_does_not_fit_says_what_to_do(
     monkeypatch.setattr(window, "WORKING", 10**6)
     answer = call("embed", folder, "--masks", "pictures")
     assert answer.code == 2 and "when the files are embedded" in answer.err
-    answer = call("slim", folder, "-o", tmp_path / "less.sog")
-    assert answer.code == 2 and "part by part: scenewright convert" in answer.err
+    refused = (("less.sog",), "encoded as a whole"), (("less.ply", "--psnr", "inf"), "write it as it is"), (
+        ("less.tiles", "--optimise", "1steps"), "needs the whole scene",
+    )  # fmt: skip
+    for (name, *more), said in refused:
+        answer = call("slim", folder, "-o", tmp_path / name, *more)
+        assert answer.code == 2 and said in answer.err
     answer = call("convert", folder, tmp_path / "out.lod", "--levels", "2", "--json")
     assert answer.code == 0 and [level["gaussians"] for level in answer.data["levels"]] == [1173, 293], answer.err
     assert answer.data["notes"][1] == "levels of detail hold no names"
     assert call("embed", folder, "--json").data["was_there"]
+
+
+SLIM = ("--psnr", 30, "--pixels", 64, "--json")
+
+
+@pytest.mark.slow
+def test_tiles_are_slimmed_by_parts_to_tiles_and_to_ply(
+    call: Any, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(window, "WORKING", 10**6)
+    smaller, ids = tmp_path / "less.tiles", tmp_path / "ids.npy"
+    answer = call("slim", folder, "-o", smaller, "--ids", ids, *SLIM)
+    assert answer.code == 0, answer.err
+    before, after, kept = load(folder), load(smaller), np.load(ids)
+    assert answer.data["gaussians"] == len(after.cloud) == len(kept) < answer.data["gaussians_before"] == 1173
+    assert answer.data["held_out"]["psnr"] >= 30 and [part["psnr"] >= 30 for part in answer.data["parts"]] == [True]
+    assert answer.data["bytes"] == sum(p.stat().st_size for p in smaller.rglob("*") if p.is_file())
+    assert torch.equal(after.cloud.means, before.cloud.means[kept])
+    answer = call("slim", folder, "-o", tmp_path / "less.ply", *SLIM)
+    assert answer.code == 0 and answer.data["gaussians"] == len(kept), answer.err
+    written = load(tmp_path / "less.ply")
+    assert written.cloud.digest() == after.cloud.digest()
+    assert written.language is not None and after.language is not None
+    assert written.language.groups == after.language.groups
+    assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".")] == []
+    monkeypatch.undo()
+    found = [call("select", scene, "the green thing", "--json").data["groups"] for scene in (folder, smaller)]
+    assert found[0] == found[1]
+
+
+@pytest.mark.slow
+def test_tiles_that_fit_are_slimmed_as_their_file_is(call: Any, room: Path, folder: Path, tmp_path: Path) -> None:
+    for scene, name in ((room, "a.ply"), (folder, "b.ply"), (folder, "c.tiles"), (room, "d.tiles")):
+        assert call("slim", scene, "-o", tmp_path / name, *SLIM).code == 0
+    assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
+    known = load(tmp_path / "a.ply")
+    for name in ("c.tiles", "d.tiles"):
+        found = load(tmp_path / name)
+        assert found.cloud.digest() == known.cloud.digest() and found.language is not None
+        assert known.language is not None and found.language.groups == known.language.groups

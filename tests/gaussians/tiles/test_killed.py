@@ -42,6 +42,19 @@ for k in range(1000):
 """
 
 
+SLIMS = """
+import sys
+from pathlib import Path
+from scenewright.gaussians.slim import Settings
+from scenewright.gaussians.tiles.slimming import slim_tiles, slimming
+from scenewright.gaussians.tiles.store import Tiles
+slimming.ROWS = 6000
+tiles, out = Tiles.open(Path(sys.argv[1])), Path(sys.argv[2])
+print("ready", flush=True)
+slim_tiles(tiles, out, Settings(60.0, 256), 1 << 30)
+"""
+
+
 def killed_after(script: str, seconds: float, *arguments: Path) -> None:
     """Run a script and kill it so many seconds after it began its work."""
     process = subprocess.Popen([sys.executable, "-c", script, *map(str, arguments)], stdout=subprocess.PIPE)
@@ -84,3 +97,12 @@ def test_a_kill_while_tiling_leaves_whole_folders_or_none(tmp_path: Path) -> Non
         killed_after(TILES, moments.uniform(0.1, 0.8), source, out)
         for folder in out.glob("[0-9]*.tiles"):
             assert is_tiles(folder) and Tiles.open(folder).digest() == good
+
+
+@pytest.mark.slow
+def test_a_kill_while_a_scene_is_made_smaller_leaves_it_and_no_other(tmp_path: Path) -> None:
+    tiles = make([saved_street(tmp_path)], tmp_path / "a.tiles", most=1000)
+    known = tiles.digest()
+    for seconds in (0.5, 4.0):
+        killed_after(SLIMS, seconds, tiles.folder, tmp_path / "b.tiles")
+        assert Tiles.open(tiles.folder).digest() == known and not (tmp_path / "b.tiles").exists()
