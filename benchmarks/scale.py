@@ -44,7 +44,9 @@ EDITS = {"recolor": f"make the {RECOLORED} teal", "delete": f"delete the {DELETE
 def run(quick: bool, parts: Sequence[str] = ()) -> Result:
     """Measure every size, or some of them."""
     wanted = parts or PARTS
-    sizes = {"300k": QUICK} if quick else {name: SIZES[name] for name in wanted if name in SIZES}
+    sizes = {name: SIZES[name] for name in wanted if name in SIZES}
+    if quick and sizes:
+        sizes = {"300k": QUICK}
     metrics: list[Metric] = []
     points: list[Point] = []
     if EMBED in wanted:
