@@ -93,20 +93,21 @@ def margin_of(clouds: list[GaussianCloud], metres_per_unit: float | None) -> flo
 
 
 def divided(
-    tiles: Tiles, clouds: list[GaussianCloud], margin: float, rows: int = ROWS, narrow: float = NARROW
+    tiles: Tiles, clouds: list[GaussianCloud], margin: float, rows: int | None = None, narrow: float | None = None
 ) -> Parts:
     """The parts of a scene.
 
     Args:
         clouds: a sample of each tile.
-        rows: about so many a part holds at most, unless it is narrow.
-        narrow: margins; a part is not divided across a side that is shorter.
+        rows: about so many a part holds at most, unless it is narrow; `ROWS` without.
+        narrow: margins; a part is not divided across a side that is shorter; `NARROW` without.
 
     Raises:
         FileError: a tile is torn.
     """
     means = np.concatenate([cloud.means.numpy() for cloud in clouds])
-    most = max(1, rows * len(means) // max(len(tiles), 1))
+    most = max(1, (ROWS if rows is None else rows) * len(means) // max(len(tiles), 1))
+    least = (NARROW if narrow is None else narrow) * margin
     leaves = 0
 
     def node(own: NDArray[np.int64]) -> Node:
@@ -114,7 +115,7 @@ def divided(
         if len(own) > most:
             low, high = np.quantile(means[own], [_TRIM, 1 - _TRIM], axis=0)
             axis = int(np.argmax(high - low))
-            if high[axis] - low[axis] > narrow * margin:
+            if high[axis] - low[axis] > least:
                 position = _emptiest(means[own, axis], margin)
                 below = means[own, axis] < position
                 if below.any() and not below.all():

@@ -77,10 +77,10 @@ class Check:
         needs = dict[int, float]()
         for k in lacking:
             total = sum(error for error, _ in self._blame[k].values())
-            for part, (error, pixels) in self._blame[k].items():
+            for number, (error, pixels) in self._blame[k].items():
                 need = self._work.psnr - float(decibels(error / pixels))
-                if need > 0 and error > SHARE * total and not self._parts[part].whole:
-                    needs[part] = max(needs.get(part, 0.0), min(need, MOST))
+                if need > 0 and error > SHARE * total and not self._parts[number].whole:
+                    needs[number] = max(needs.get(number, 0.0), min(need, MOST))
         if not needs:  # nothing that shows is to blame
             needs = {k: MOST for k, part in enumerate(self._parts) if not part.whole}
         for k, need in needs.items():
