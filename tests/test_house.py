@@ -160,9 +160,10 @@ def test_exported_members_are_declared_for_type_checkers() -> None:
     assert declared == scenewright._HOME
 
 
-def _loaded_by(code: str) -> set[str]:
-    """Top-level modules in a fresh interpreter after `code`."""
-    report = "; import sys, json; print(json.dumps(sorted({m.split('.')[0] for m in sys.modules})), file=sys.stderr)"
+def _loaded_by(code: str, whole: bool = False) -> set[str]:
+    """Modules in a fresh interpreter after `code`: the top-level ones, or all by their whole names."""
+    name = "m" if whole else "m.split('.')[0]"
+    report = f"; import sys, json; print(json.dumps(sorted({{{name} for m in sys.modules}})), file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code + report], capture_output=True, text=True, check=True)
     return set(json.loads(done.stderr.strip().splitlines()[-1]))
 
@@ -182,23 +183,55 @@ def test_help_loads_nothing_heavy() -> None:
     assert not _loaded_by(code) & (HEAVY | {"pydantic"})
 
 
-@pytest.mark.slow
-def test_select_on_a_saved_field_loads_no_compiler(tmp_path: Path) -> None:
-    room = tmp_path / "room.ply"
+@pytest.fixture(scope="module")
+def room(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A room with a saved language field, and the name of a thing in it."""
+    path = tmp_path_factory.mktemp("start") / "room.ply"
     made = f"""
 from pathlib import Path
 import scenewright as sw
 from scenewright.gaussians.language.field.store import save_field
-path = Path({str(room)!r})
+path = Path({str(path)!r})
 sw.save(sw.furnish(3, objects=3, detail=0.25).scene, path)
 from scenewright.gaussians.language import encoders
-save_field(sw.embed(sw.load(path), encoders.load()), path)
+scene = sw.embed(sw.load(path), encoders.load())
+save_field(scene, path)
+print(max(scene.language.objects(), key=lambda g: g.label_score).label)
 """
-    subprocess.run([sys.executable, "-c", made], check=True, capture_output=True)
-    code = (
+    done = subprocess.run([sys.executable, "-c", made], check=True, capture_output=True, text=True)
+    return path, done.stdout.strip()
+
+
+def _loaded_by_command(*arguments: str) -> set[str]:
+    return _loaded_by(
         "from scenewright.agent.cli import main\n"
-        f"try: main(['select', {str(room)!r}, 'everything'])\nexcept SystemExit as end: assert not end.code\nTrue"
+        f"try: main({list(arguments)!r})\nexcept SystemExit as end: assert not end.code, end.code\nTrue",
+        whole=True,
     )
-    loaded = _loaded_by(code)
-    assert "torch" in loaded  # the command has run
-    assert not loaded & {"numba", "llvmlite", "trimesh", "matplotlib", "prompt_toolkit"}
+
+
+# Of no use to a command that selects or recolours a thing by its name: 0.05 s or more each, most of it scipy.
+UNUSED = {
+    "trimesh", "matplotlib", "prompt_toolkit", "rich", "scipy.sparse", "scipy.optimize", "scipy.stats",
+    "scenewright.gaussians.assets", "scenewright.gaussians.fit", "scenewright.planners.questions",
+    "scenewright.planners.compose", "scenewright.planners.layout", "scenewright.planners.model.prompt",
+    "scenewright.tools.harmony.form",
+}  # fmt: skip
+
+
+@pytest.mark.slow
+def test_select_on_a_saved_field_loads_only_what_it_uses(room: tuple[Path, str]) -> None:
+    loaded = _loaded_by_command("select", str(room[0]), f"every {room[1]}")
+    assert {"torch", "scenewright.gaussians.language.query.resolve"} <= loaded  # the command has run
+    assert not loaded & (UNUSED | {"numba", "llvmlite", "scipy.ndimage", "scipy.spatial", "scipy.special"})
+    assert not {m for m in loaded if m.startswith("scenewright.agent.commands.")} - {
+        "scenewright.agent.commands.select"
+    }
+
+
+@pytest.mark.slow
+def test_edit_on_a_saved_field_loads_only_what_it_uses(room: tuple[Path, str], tmp_path: Path) -> None:
+    words = f"recolor every {room[1]} teal"
+    loaded = _loaded_by_command("edit", str(room[0]), words, "-o", str(tmp_path / "out.ply"))
+    assert (tmp_path / "out.ply").is_file() and "scenewright.tools.coloring.repaint" in loaded
+    assert not loaded & UNUSED

@@ -31,7 +31,7 @@ def _commands() -> list[list[str]]:
 def test_commands_and_their_options_exist(words: list[str]) -> None:
     verb = words[0]
     assert verb in cli.VERBS
-    known = {option for p in typer.main.get_command(cli.app).commands[verb].params for option in p.opts}  # type: ignore[attr-defined]
+    known = {option for p in typer.main.get_command(cli.command_line()).commands[verb].params for option in p.opts}  # type: ignore[attr-defined]
     assert {w for w in words if w.startswith("-")} <= known
 
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ..gaussians.color import rgb_to_lab
 from ..gaussians.harmonics import dc_to_color
@@ -104,7 +104,7 @@ def borders(scene: Scene, selection: Selection) -> list[Border]:
     inner, outer = inner[::step], outer[::step]
     told = palette(scene, inner)
     where, lab = (np.concatenate(pair) for pair in zip(_placed(scene, inner), _placed(scene, outer), strict=True))
-    beside = cKDTree(where).query(where[: len(inner)], k=min(NEAREST + 1, len(where)))[1][:, 1:]
+    beside = scipy.spatial.cKDTree(where).query(where[: len(inner)], k=min(NEAREST + 1, len(where)))[1][:, 1:]
     out = beside >= len(inner)
     at = out.sum(axis=1) >= 2
     alike = out & (np.linalg.norm(lab[beside] - lab[: len(inner), None], axis=2) <= ALIKE)
@@ -127,5 +127,5 @@ def _placed(scene: Scene, rows: I64) -> tuple[F64, F64]:
     if not len(rows):
         return points, rgb
     count = min(AVERAGED, len(rows))
-    near = cKDTree(points).query(points, k=count)[1].reshape(len(rows), count)
+    near = scipy.spatial.cKDTree(points).query(points, k=count)[1].reshape(len(rows), count)
     return points, rgb_to_lab(torch.from_numpy(rgb[near].mean(axis=1))).numpy()

@@ -39,16 +39,22 @@ def with_doubt(scene: Scene, selection: Selection) -> Selection:
         return selection
     if any(field.groups[g].level == "structure" for g in selection.groups):
         return selection
-    unity = core_of(scene.cloud, rows_of(scene.cloud, selection.ids)).unity
-    why = f"only {unity:.0%} of it is in one piece" if unity < _UNITY and scene.frame.metres_per_unit is None else ""
-    why = why or _too_large(scene, field, selection, unity)
+    why = ""
+    if scene.frame.metres_per_unit is None and (unity := _unity(scene, selection)) < _UNITY:
+        why = f"only {unity:.0%} of it is in one piece"
+    why = why or _too_large(scene, field, selection)
     if not why:
         return selection
     reason = f"what was found for {query.describe()} may be more than one thing: {why}"
     return replace(selection, verdict="unconfirmed").noting(reason)
 
 
-def _too_large(scene: Scene, field: LanguageField, selection: Selection, unity: float) -> str:
+def _unity(scene: Scene, selection: Selection) -> float:
+    """The share of a selection that is in its heaviest connected piece, in [0, 1]."""
+    return core_of(scene.cloud, rows_of(scene.cloud, selection.ids)).unity
+
+
+def _too_large(scene: Scene, field: LanguageField, selection: Selection) -> str:
     """Why a selection is too large for its kind; "" if it is not, or nothing is known of the kind.
 
     It is measured in metres, if the scale is known or other things tell it, else by the extent of the scene.
@@ -63,6 +69,9 @@ def _too_large(scene: Scene, field: LanguageField, selection: Selection, unity: 
     if scale is not None:
         (width, depth, tallest), (*level, height) = (high for _, high in kind.size), group.box.size
         times = max(max(level) / max(width, depth), height / tallest) * scale
+        if times <= _LARGER:  # it is told for no unity
+            return ""
+        unity = _unity(scene, selection)
         limit = _LARGER if unity < _APART else _FAR_LARGER
         return (
             f"it is {times:.1f} times as large as the largest {kind.name}" if times > limit and unity < _WHOLE else ""

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy
 import torch
 from numpy.typing import NDArray
-from scipy import ndimage
 from torch import Tensor
 
 from ..gaussians.language.field.measure import reach
@@ -118,7 +118,7 @@ def _sides_of(points: F64) -> tuple[F64, float, NDArray[np.int8]] | None:
     low = low - cell
     filled = np.zeros(tuple(shape), dtype=bool)
     filled[tuple(np.minimum(((points - low) / cell).astype(np.int64), shape - 2).T)] = True
-    filled = ndimage.binary_closing(filled)  # a gap of one voxel in a surface lets nothing out
+    filled = scipy.ndimage.binary_closing(filled)  # a gap of one voxel in a surface lets nothing out
     sides = np.zeros(filled.shape, dtype=np.int8)
     for axis in range(3):
         for turned in (False, True):
@@ -126,7 +126,7 @@ def _sides_of(points: F64) -> tuple[F64, float, NDArray[np.int8]] | None:
             beyond = np.roll(np.logical_or.accumulate(ordered, axis=axis), 1, axis=axis)  # the last voxel is empty
             beyond[(slice(None),) * axis + (0,)] = False
             sides += np.flip(beyond, axis) if turned else beyond
-    sides[ndimage.binary_closing(sides >= _SIDES) & (sides < _SIDES)] = _SIDES  # a line that slips through a gap
+    sides[scipy.ndimage.binary_closing(sides >= _SIDES) & (sides < _SIDES)] = _SIDES  # a line that slips through a gap
     return low, cell, sides
 
 

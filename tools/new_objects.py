@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
@@ -21,7 +22,6 @@ from ..gaussians.world.person import HUNG_AT
 from . import field_update
 from .cloud_diff import fresh_ids, joined
 from .field_update import NewObject
-from .harmony.form import Pigment
 from .operation import Affine, AssetSource, Context, Length, Placement
 from .placement.bodies import Array, Body, as_vec, contact_box, heading
 from .placement.occupancy import obstacle_points
@@ -30,6 +30,9 @@ from .placement.place import Spot, anchors_of, free_spot, hanging_spot
 from .placement.seen_surface import seen_height
 from .placement.surroundings import FLOOR_WORDS, Surroundings
 from .transform import transformed
+
+if TYPE_CHECKING:
+    from .harmony.form import Pigment
 
 _ASSUMED_WIDTH = 4.5  # metres, assumed width of a scene that gives no other hint of its scale
 _EYES = 1.35  # metres above the floor at which people hold a camera that they point at a room
@@ -185,6 +188,8 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
     Raises:
         UserError: the library has no such kind, or the colour is unknown.
     """
+    from .harmony.form import Pigment
+
     made, told = request.own.natural(request.kind, request.color) if request.own is not None else (None, ())
     owned = made is not None
     if made is None:

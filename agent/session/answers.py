@@ -5,8 +5,7 @@ Says also which texts are nothing but such an answer, so that they edit nothing 
 
 from __future__ import annotations
 
-import re
-
+from ...gaussians import late_re as re
 from ...planners.grammar.vocabulary.quantities import NUMBERS, ORDINALS
 
 _CARDINALS = {word: number for word, number in NUMBERS.items() if 1 <= number <= 10}

@@ -5,10 +5,10 @@ Nothing here looks at a scene. What names no move of the camera gives None, so t
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import Literal
 
+from ...gaussians import late_re as re
 from .answers import plain
 
 Kind = Literal["side", "nearer", "orbit", "turn", "home", "thing"]

@@ -6,12 +6,12 @@ What the words mean in the scene is found by `gaussians.language.query.portions`
 from __future__ import annotations
 
 import functools
-import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ...gaussians import late_re as re
 from ...gaussians.color import shade_of
 from ...gaussians.errors import UserError
 from ...gaussians.language.field.apart import set_apart

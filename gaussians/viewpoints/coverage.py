@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 import torch
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from ..camera import Camera
 from ..cloud import GaussianCloud
@@ -142,7 +142,7 @@ def _inside(local: F64, low: F64, high: F64, frame: Frame, size: int) -> list[Ca
     index = np.clip(((local[body, :2] - low[:2]) / cell).astype(int), 0, PLAN_CELLS - 1)
     taken = np.zeros((PLAN_CELLS, PLAN_CELLS), bool)
     taken[index[:, 0], index[:, 1]] = True
-    clear = ndimage.distance_transform_edt(np.pad(~taken, 1))[1:-1, 1:-1]
+    clear = scipy.ndimage.distance_transform_edt(np.pad(~taken, 1))[1:-1, 1:-1]
     basis, cameras = frame.basis(), []
     for spot in range(5):
         i, j = np.unravel_index(int(np.argmax(clear)), clear.shape)

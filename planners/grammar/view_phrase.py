@@ -5,10 +5,10 @@ The things in it stay words; the session resolves them as it resolves every noun
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from ...gaussians import late_re as re
 from ...gaussians.errors import UserError
 
 Side = Literal["front", "behind", "left", "right", "above", "below"]

@@ -7,11 +7,11 @@ text ──reading──► Asked ──kinds──► Answer     (source "none"
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ...gaussians import late_re as re
 from ...gaussians.language.query.nested import with_queries
 from ...gaussians.language.query.query import Query
 from ..grammar.tagging.words import bag

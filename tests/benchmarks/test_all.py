@@ -15,12 +15,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from scenewright.agent.cli import app
+from scenewright.agent.cli import command_line
 from scenewright.benchmarks import harness
 from scenewright.benchmarks._all import guard, page, running
 from scenewright.benchmarks._all.repeats import joined, merged
 from scenewright.benchmarks.harness import Metric, Point, Result
 from scenewright.gaussians.errors import FileError, UserError
+
+BENCH = command_line(["bench"])
 
 
 def result(value: float = 2.0, name: str = "plan", **fields: Any) -> Result:
@@ -153,7 +155,7 @@ def test_quick_and_whole_results_are_not_compared(tmp_path: Path) -> None:
     for command in (["all", "-o", str(tmp_path / "new")], ["plan"]):
         earlier = tmp_path if command[0] == "all" else tmp_path / "plan.json"
         with pytest.raises(UserError, match=r"whole run .* leave out --quick"):
-            CliRunner().invoke(app, ["bench", *command, "--quick", "--against", str(earlier)], catch_exceptions=False)
+            CliRunner().invoke(BENCH, ["bench", *command, "--quick", "--against", str(earlier)], catch_exceptions=False)
 
 
 def test_a_benchmark_that_takes_too_long_is_stopped_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -191,15 +193,15 @@ def test_the_command_writes_the_page_and_tells_what_is_worse(
     earlier.mkdir()
     (earlier / "plan.json").write_text(result(3.0, quick=True).to_json())
     command = ["bench", "all", "--quick", "-o", str(tmp_path / "new"), "--json"]
-    done = CliRunner().invoke(app, [*command, "--against", str(earlier)])
+    done = CliRunner().invoke(BENCH, [*command, "--against", str(earlier)])
     assert done.exit_code == 3 and "worse: plan: right: 3 -> 2 share" in done.stderr
     told = json.loads(done.stdout)
     assert told["page"] == str(tmp_path / "new" / "README.md") and len(told["results"]) == 2
     with pytest.raises(UserError, match="--force"):
-        CliRunner().invoke(app, command, catch_exceptions=False)
+        CliRunner().invoke(BENCH, command, catch_exceptions=False)
     monkeypatch.setattr(harness, "names", lambda: ("plan", "render", "fill"))
     (tmp_path / "new" / "render.json").write_text("stale")
-    assert CliRunner().invoke(app, [*command, "--force"]).exit_code == 1  # "render" failed
+    assert CliRunner().invoke(BENCH, [*command, "--force"]).exit_code == 1  # "render" failed
     assert not (tmp_path / "new" / "render.json").exists()
 
 

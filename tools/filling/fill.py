@@ -13,8 +13,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 import torch
-from scipy import ndimage
 from torch import Tensor
 
 from ...gaussians.camera import Camera
@@ -279,7 +279,7 @@ def _patch(
         hole = (was & (filled > 0.5)) | _gaps(was, empty, covered, within)
         hole &= ~beyond(hole, covered, within)
         hole = _large(hole & ~there, _LEAST * size**2 / chart.cell**2)
-        rim = ndimage.binary_dilation(hole, iterations=2) & ~hole
+        rim = scipy.ndimage.binary_dilation(hole, iterations=2) & ~hole
         told = (covered | open_) & rim if plane.last or plane.carries else rim
         support = float((covered & rim).sum()) / max(int(told.sum()), 0.2 * int(rim.sum()), 1)
     shadow = _shadow(thing, surface, within, size)
@@ -376,7 +376,7 @@ def _filled(scene: Scene, surface: Surface, hole: Mask, support: float) -> Patch
     result: Continued = continued(shown.rgb, known, hole)
     solid = known & (shown.alpha > 0.9) if (known & (shown.alpha > 0.9)).any() else known
     height = harmonic(shown.height[..., None], solid, hole | (known & ~solid))[..., 0]
-    edge = ndimage.binary_dilation(hole) & known & (shown.alpha < 0.9)
+    edge = scipy.ndimage.binary_dilation(hole) & known & (shown.alpha < 0.9)
     cells = hole | (edge if surface.made is None else edge & ~surface.made)
     points = torch.from_numpy(chart.points(height)[cells].astype(np.float32))
     look = Look(points, result.picture[cells], _groups(shown, known)[cells], gaze(scene.cameras, plane, points))
@@ -386,7 +386,7 @@ def _filled(scene: Scene, surface: Surface, hole: Mask, support: float) -> Patch
 
 def _groups(shown: Seen, known: Mask) -> np.ndarray:
     """`[H, W]` group of the nearest known cell."""
-    at = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
+    at = scipy.ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
     return np.asarray(shown.group[tuple(at)])
 
 
@@ -425,7 +425,7 @@ def gaze(cameras: Sequence[Camera], plane: Plane, points: Tensor) -> Tensor:
 
 def _same(shown: Seen, known: Mask, place: Mask) -> Mask:
     """The known cells of the groups that are in or near a place: a picture on the wall beside it is left out."""
-    near = known & ndimage.binary_dilation(place, iterations=_NEAR)
+    near = known & scipy.ndimage.binary_dilation(place, iterations=_NEAR)
     if not near.any():
         return known
     names, count = np.unique(shown.group[near], return_counts=True)
@@ -454,7 +454,7 @@ def _hidden_cells(
         lowest = float(np.quantile(plane.height(points_of(thing, torch.arange(len(thing)))), _LOWEST))
         stands = plane.carries and lowest > -_SUNK * size
         lay = seen(chart, thing).alpha > COVERED if stands else touched
-        empty = empty & ndimage.binary_dilation(lay, iterations=max(1, round(_BESIDE * size / chart.cell)))
+        empty = empty & scipy.ndimage.binary_dilation(lay, iterations=max(1, round(_BESIDE * size / chart.cell)))
         if not empty.any():
             return empty, empty
     least, most = np.minimum(flat.min(axis=0), low), np.maximum(flat.max(axis=0), high)
@@ -466,11 +466,11 @@ def _hidden_cells(
     stride = max(1, int(np.ceil(np.sqrt(empty.sum() / 1600))))
     asked = np.zeros_like(empty)
     asked[::stride, ::stride] = True
-    coarse = asked & ndimage.binary_dilation(empty, iterations=stride)
+    coarse = asked & scipy.ndimage.binary_dilation(empty, iterations=stride)
     was, free = np.zeros_like(empty), np.zeros_like(empty)
     was[coarse], free[coarse] = hidden(points[coarse], plane.normal, space, scene.cameras, scene.frame.up_vector)
     if stride > 1:
-        at = ndimage.distance_transform_edt(~coarse, return_distances=False, return_indices=True)
+        at = scipy.ndimage.distance_transform_edt(~coarse, return_distances=False, return_indices=True)
         was, free = was[tuple(at)], free[tuple(at)]
     was = (was | touched) & empty
     return was, free & empty & ~was
@@ -490,15 +490,15 @@ def _gaps(was: Mask, empty: Mask, covered: Mask, within: Mask) -> Mask:
         was: the empty cells that the thing hid.
         within: where the surface may be.
     """
-    area, _ = ndimage.label(empty)
+    area, _ = scipy.ndimage.label(empty)
     out = np.zeros_like(empty)
-    for k, place in enumerate(ndimage.find_objects(area), start=1):
+    for k, place in enumerate(scipy.ndimage.find_objects(area), start=1):
         gap = area[place] == k
         if (was[place] & gap).sum() < _PART * gap.sum():
             continue
         wide = tuple(slice(max(0, p.start - 1), p.stop + 1) for p in place)
         gap = area[wide] == k
-        rim = ndimage.binary_dilation(gap) & ~gap & within[wide]
+        rim = scipy.ndimage.binary_dilation(gap) & ~gap & within[wide]
         if (covered[wide] & rim).sum() >= _ENCLOSED * rim.sum() > 0:
             out[wide] |= gap
     return out
@@ -512,11 +512,11 @@ def beyond(hole: Mask, covered: Mask, within: Mask) -> Mask:
         within: where the surface may be, before other surfaces.
     """
     outside = hole & ~_hull(covered)
-    area, count = ndimage.label(outside)
+    area, count = scipy.ndimage.label(outside)
     out = np.zeros_like(hole)
     for k in range(1, count + 1):
         part = area == k
-        rim = ndimage.binary_dilation(part, iterations=2) & ~hole
+        rim = scipy.ndimage.binary_dilation(part, iterations=2) & ~hole
         ends = rim & ~covered
         if (ends & ~within).sum() < _ENDED * ends.sum():
             out |= part
@@ -527,7 +527,7 @@ def _hull(cells: Mask) -> Mask:
     """The convex hull of some cells of `[H, W]`; none where they span no area."""
     from scipy.spatial import Delaunay, QhullError
 
-    at = np.argwhere(cells & ~ndimage.binary_erosion(cells))  # the border spans the hull
+    at = np.argwhere(cells & ~scipy.ndimage.binary_erosion(cells))  # the border spans the hull
     try:
         hull = Delaunay(at[np.unique(np.linspace(0, len(at) - 1, min(len(at), 4096)).astype(int))])
     except (QhullError, ValueError):
@@ -538,7 +538,7 @@ def _hull(cells: Mask) -> Mask:
 
 def _large(hole: Mask, least: float) -> Mask:
     """The hole without specks of fewer than `least` cells."""
-    area, count = ndimage.label(hole)
+    area, count = scipy.ndimage.label(hole)
     if not count:
         return hole
     size = np.bincount(area.ravel())

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from ...gaussians.camera import Camera
 from .planes import F64, Mask
@@ -63,7 +63,7 @@ def space_of(thing: F64, kept: F64, low: F64, high: F64) -> Space:
         np.add.at(count, tuple(cell.T), 1)
         full = count > 0
         if name == GONE:  # a body seen from outside is hollow, and its surface has gaps of a voxel
-            full = ndimage.binary_closing(np.pad(full, 2), iterations=2)[2:-2, 2:-2, 2:-2]
+            full = scipy.ndimage.binary_closing(np.pad(full, 2), iterations=2)[2:-2, 2:-2, 2:-2]
         what[full] = name
     return Space(low, voxel, what)
 

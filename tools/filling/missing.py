@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 import torch
-from scipy import ndimage
 from torch import Tensor
 
 from ...gaussians.scene import Scene
@@ -66,13 +66,13 @@ def _inside(scene: Scene) -> F64:
 
 def _holes(covered: Mask, empty: Mask) -> list[tuple[Mask, float]]:
     """The gaps that are holes, each with the share of its border that is of the surface."""
-    area, count = ndimage.label(empty)
+    area, count = scipy.ndimage.label(empty)
     found = []
     for k in range(1, count + 1):
         hole = area == k
         if not _FEWEST <= hole.sum() <= _LARGEST * covered.sum():
             continue
-        rim = ndimage.binary_dilation(hole, iterations=2) & ~hole
+        rim = scipy.ndimage.binary_dilation(hole, iterations=2) & ~hole
         support = float((covered & rim).sum()) / max(int(rim.sum()), 1)
         if support >= _RIM:
             found.append((np.asarray(hole), support))

@@ -12,7 +12,7 @@ import functools
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import ndimage
+import scipy
 
 from .charts import Chart
 from .planes import F64, Mask
@@ -73,10 +73,10 @@ class Blocked:
             for layer, height in zip(self.filled, heights, strict=True):
                 one |= moved(layer, round(float(height * way[1])), round(float(height * way[0])))
             hit += one
-        return np.asarray(ndimage.gaussian_filter(hit / rays, _SOFT) * self._faded())
+        return np.asarray(scipy.ndimage.gaussian_filter(hit / rays, _SOFT) * self._faded())
 
     def _faded(self) -> F64:
-        away = ndimage.distance_transform_edt(~self.footprint) * self.chart.cell
+        away = scipy.ndimage.distance_transform_edt(~self.footprint) * self.chart.cell
         return np.asarray(np.clip((self.reach - away) / max(_FADES * self.reach, 1e-12), 0.0, 1.0))
 
 
@@ -95,7 +95,7 @@ def blocked(points: F64, chart: Chart, reach: float) -> Blocked:
     local = chart.plane.local(points)
     layers, edges = _layers(local, chart)
     heights = (np.concatenate([[0.0], edges[:-1]]) + edges) / 2
-    footprint = ndimage.binary_closing(np.pad(layers.any(axis=0), 2), iterations=2)[2:-2, 2:-2]
+    footprint = scipy.ndimage.binary_closing(np.pad(layers.any(axis=0), 2), iterations=2)[2:-2, 2:-2]
     shares = np.zeros((LOBES, *chart.shape))
     weights = np.zeros(LOBES)
     for tangent, turn, lean in _directions():
@@ -105,7 +105,7 @@ def blocked(points: F64, chart: Chart, reach: float) -> Blocked:
             hit |= moved(layer, round(step * float(np.sin(turn))), round(step * float(np.cos(turn))))
         shares += lean[:, None, None] * hit
         weights += lean
-    shares = ndimage.gaussian_filter(shares / weights[:, None, None], (0, _SOFT, _SOFT))
+    shares = scipy.ndimage.gaussian_filter(shares / weights[:, None, None], (0, _SOFT, _SOFT))
     found = Blocked(chart, footprint, layers[0], shares, reach, layers, edges)
     return replace(found, shares=shares * found._faded())
 
@@ -143,6 +143,6 @@ def _layers(local: F64, chart: Chart) -> tuple[Mask, F64]:
     filled[layer[inside], index[inside, 1], index[inside, 0]] = True
     for k in range(_LAYERS):
         if filled[k].any():
-            closed = ndimage.binary_closing(np.pad(filled[k], 2), iterations=1)[2:-2, 2:-2]
-            filled[k] = ndimage.binary_fill_holes(closed | filled[k])
+            closed = scipy.ndimage.binary_closing(np.pad(filled[k], 2), iterations=1)[2:-2, 2:-2]
+            filled[k] = scipy.ndimage.binary_fill_holes(closed | filled[k])
     return filled, edges

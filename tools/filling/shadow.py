@@ -7,8 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import torch
-from scipy import ndimage
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
@@ -65,7 +65,7 @@ def zone_of(footprint: Mask, chart: Chart, size: float) -> Mask:
     """
     # What is spread thin, as grass, casts no wide shadow for its extent.
     reach = REACH * min(size, _COMPACT * float(np.sqrt(footprint.sum())) * chart.cell)
-    return np.asarray(ndimage.distance_transform_edt(~footprint) * chart.cell <= reach)
+    return np.asarray(scipy.ndimage.distance_transform_edt(~footprint) * chart.cell <= reach)
 
 
 def most_even(rgb: F64, known: Mask, footprint: Mask, zone: Mask, shade: Blocked) -> Shadow | None:
@@ -79,7 +79,7 @@ def most_even(rgb: F64, known: Mask, footprint: Mask, zone: Mask, shade: Blocked
         shade: the light that the thing takes from the surface; the others as in `estimated`.
     """
     near = known & (shade.shares[0] > _NONE)
-    around = near | (known & ndimage.binary_dilation(shade.shares[0] > _NONE, iterations=_BESIDE))
+    around = near | (known & scipy.ndimage.binary_dilation(shade.shares[0] > _NONE, iterations=_BESIDE))
     smooth, shaped = estimated(rgb, known, footprint, zone), modelled(rgb, known, shade)
     if near.sum() < _FEWEST or (around & ~near).sum() < _FEWEST:
         return smooth or shaped
@@ -197,7 +197,7 @@ def estimated(rgb: F64, known: Mask, footprint: Mask, zone: Mask) -> Shadow | No
     outside = _alike(rgb, known & ~zone, inside)
     if outside.sum() < 0.5 * inside.sum() or inside.sum() < 20:
         return None
-    away = ndimage.distance_transform_edt(~footprint)
+    away = scipy.ndimage.distance_transform_edt(~footprint)
     end = float(away[zone].max())
     clear = continued_far(rgb, outside, zone)
     ratio = _ratio(rgb, np.minimum(clear, _brightest(rgb, outside)), inside, _SMOOTH + min(_COARSE * end, _COARSEST))
@@ -244,7 +244,7 @@ def _alike(rgb: F64, outside: Mask, inside: Mask) -> Mask:
 
 def _grey(rgb: F64, clear: F64) -> Mask:
     """Where a picture has the hue that it would have without the shadow."""
-    soft = [ndimage.gaussian_filter(p, (_SMOOTH, _SMOOTH, 0)) for p in (rgb, clear)]
+    soft = [scipy.ndimage.gaussian_filter(p, (_SMOOTH, _SMOOTH, 0)) for p in (rgb, clear)]
     tints = [p / np.maximum(p.mean(axis=2, keepdims=True), 0.02) for p in soft]
     return np.asarray(np.abs(tints[0] - tints[1]).max(axis=2) < _TINT)
 
@@ -259,7 +259,7 @@ def _ratio(rgb: F64, clear: F64, inside: Mask, sigma: float) -> F64:
     weight = inside.astype(np.float64)
 
     def smooth(values: F64) -> F64:
-        return np.asarray(ndimage.gaussian_filter(values * weight, sigma, mode="constant"))
+        return np.asarray(scipy.ndimage.gaussian_filter(values * weight, sigma, mode="constant"))
 
     both, own = (rgb * clear).sum(axis=2), (clear * clear).sum(axis=2)
     return np.where(inside, smooth(both) / np.maximum(smooth(own), 1e-9), 1.0)
@@ -274,7 +274,7 @@ def rows_and_factors(cloud: GaussianCloud, rows: Tensor, chart: Chart, factor: F
     """
     points = chart.plane.local(cloud.means[rows].to(torch.float64).cpu().numpy())[:, :2]
     at = (points - chart.low) / chart.cell - 0.5
-    values = ndimage.map_coordinates(factor, at[:, ::-1].T, order=1, mode="nearest")
+    values = scipy.ndimage.map_coordinates(factor, at[:, ::-1].T, order=1, mode="nearest")
     changed = torch.from_numpy(np.abs(values - 1) > 1e-3)
     return rows[changed.to(rows.device)], torch.from_numpy(values.astype(np.float32))[changed].to(rows.device)
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 F64 = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -58,15 +58,15 @@ def harmonic(values: F64, known: Mask, unknown: Mask) -> F64:
 
 def _reached(known: Mask, unknown: Mask) -> Mask:
     """The unknown cells of areas that touch a known cell."""
-    area, _ = ndimage.label(unknown)
-    touched = np.unique(area[ndimage.binary_dilation(known) & unknown])
+    area, _ = scipy.ndimage.label(unknown)
+    touched = np.unique(area[scipy.ndimage.binary_dilation(known) & unknown])
     return np.asarray(np.isin(area, touched[touched > 0]) & unknown)
 
 
 def averaged(values: F64, weight: F64, sigma: float) -> F64:
     """Gaussian averages `[H, W, C]` of values `[H, W, C]` with weights `[H, W]`; where no weight is near, the mean."""
-    total = ndimage.gaussian_filter(weight, sigma, mode="nearest")
-    filled = np.stack([ndimage.gaussian_filter(values[..., c] * weight, sigma, mode="nearest")
+    total = scipy.ndimage.gaussian_filter(weight, sigma, mode="nearest")
+    filled = np.stack([scipy.ndimage.gaussian_filter(values[..., c] * weight, sigma, mode="nearest")
                        for c in range(values.shape[2])], axis=2)  # fmt: skip
     mean = (values * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-12)
     return np.asarray(np.where(total[..., None] > 1e-6, filled / np.maximum(total, 1e-6)[..., None], mean))

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from .smooth import F64, Mask, averaged, harmonic
 
@@ -65,8 +65,8 @@ def continued(picture: F64, known: Mask, hole: Mask) -> Continued:
         known: `[H, W]`.
         hole: `[H, W]`, disjoint from `known`.
     """
-    depth = max(1.0, float(ndimage.distance_transform_edt(hole).max()))
-    ring = ndimage.binary_dilation(hole, iterations=int(np.clip(depth / 2, 2, _RING))) & known
+    depth = max(1.0, float(scipy.ndimage.distance_transform_edt(hole).max()))
+    ring = scipy.ndimage.binary_dilation(hole, iterations=int(np.clip(depth / 2, 2, _RING))) & known
     logs = np.log(np.maximum(picture, 0.0) + _DARK)
     spread = float(picture[ring].std(axis=0).mean()) if ring.any() else 0.0
     broad = float(np.clip(max(depth, _WIDE * min(hole.shape)), 4.0, 24.0))
@@ -86,7 +86,7 @@ def continued(picture: F64, known: Mask, hole: Mask) -> Continued:
 def continued_far(picture: F64, known: Mask, hole: Mask) -> F64:
     """The picture with a large hole filled by its texture alone, `[H, W, C]`: what to compare a shadow with."""
     logs = np.log(np.maximum(picture, 0.0) + _DARK)
-    depth = max(1.0, float(ndimage.distance_transform_edt(hole).max()))
+    depth = max(1.0, float(scipy.ndimage.distance_transform_edt(hole).max()))
     broad = float(np.clip(max(depth, _WIDE * min(hole.shape)), 4.0, 24.0))
     return _shown(picture, _filled(logs, known, hole, _Way(broad, True)), hole)
 
@@ -104,8 +104,8 @@ def _filled(logs: F64, known: Mask, hole: Mask, way: _Way) -> F64:
     if not way.copies:
         return out
     detail = np.where(known[..., None], logs - low, 0.0)
-    depth = max(1.0, float(ndimage.distance_transform_edt(hole).max()))
-    border = ndimage.binary_dilation(hole, iterations=max(4, int(depth))) & known
+    depth = max(1.0, float(scipy.ndimage.distance_transform_edt(hole).max()))
+    border = scipy.ndimage.binary_dilation(hole, iterations=max(4, int(depth))) & known
     out[hole] += _copied(detail, known, hole, border)[hole]
     return out
 
@@ -119,7 +119,7 @@ def _copied(detail: F64, known: Mask, hole: Mask, border: Mask) -> F64:
     taken = np.zeros_like(detail)
     if not len(shifts):
         return taken
-    width = max(2.0, float(ndimage.distance_transform_edt(hole).max()) * 0.7)
+    width = max(2.0, float(scipy.ndimage.distance_transform_edt(hole).max()) * 0.7)
     prices = np.stack([_price(detail, known, hole, border, shift, width) for shift in shifts])  # [S, H, W]
     left = hole.copy()
     for _ in range(_MOST):
@@ -141,8 +141,8 @@ def _price(detail: F64, known: Mask, hole: Mask, border: Mask, shift: tuple[int,
     valid = moved(known, *shift)
     both = border & valid
     wrong = ((detail - moved(detail, *shift)) ** 2).mean(axis=2) * both
-    near = ndimage.gaussian_filter(wrong, width, mode="constant", truncate=_CUT)
-    share = ndimage.gaussian_filter(both.astype(np.float64), width, mode="constant", truncate=_CUT)
+    near = scipy.ndimage.gaussian_filter(wrong, width, mode="constant", truncate=_CUT)
+    share = scipy.ndimage.gaussian_filter(both.astype(np.float64), width, mode="constant", truncate=_CUT)
     # A shift that only a few border cells speak for is worth less.
     return np.where(hole & valid, (near + 1e-5) / np.maximum(share, 1e-9), np.inf)
 
@@ -186,7 +186,7 @@ def _shifts(detail: F64, known: Mask, hole: Mask, border: Mask) -> list[tuple[in
     fits &= covers > 0.02 * hole.sum()
     fits &= np.maximum(np.abs(dy)[:, None], np.abs(dx)[None, :]) > 3
     mean = np.where(fits, np.maximum(error, 0) / np.maximum(count, 1.0), np.inf)
-    lowest = mean <= ndimage.minimum_filter(mean, 2 * _APART + 1, mode="wrap")
+    lowest = mean <= scipy.ndimage.minimum_filter(mean, 2 * _APART + 1, mode="wrap")
     covered = np.clip(covers / max(int(hole.sum()), 1), 0.0, 1.0)
     found: list[tuple[int, int]] = []
     for table in (np.where(lowest, mean, np.inf), np.where(lowest, mean / (0.05 + covered**2), np.inf)):

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from ..color_map import LUMA
 from ..filling.smooth import F64, Mask, averaged
@@ -158,7 +158,9 @@ def exemplar_of(picture: Picture) -> Exemplar:
     contrast = float(tile.std(axis=(0, 1)).mean())
     levels = [tile]
     for blur in _blurs()[1:]:
-        levels.append(np.stack([ndimage.gaussian_filter(tile[..., c], blur, mode="wrap") for c in range(3)], axis=2))
+        levels.append(
+            np.stack([scipy.ndimage.gaussian_filter(tile[..., c], blur, mode="wrap") for c in range(3)], axis=2)
+        )
     period = (found.across and found.across * picture.cell, found.up and found.up * picture.cell)
     return Exemplar(np.stack(levels).astype(np.float32), cell, period, picture.lies, contrast)
 
@@ -193,7 +195,7 @@ def _low(values: F64, sigma: float, repeats: Periods | None = None) -> F64:
     for axis, period in enumerate((repeats.up, repeats.across)) if repeats is not None else ():
         size = round(period) if period is not None else 0
         if 1 < size < 0.6 * values.shape[axis]:
-            values = ndimage.uniform_filter1d(values, size, axis=axis, mode="nearest")
+            values = scipy.ndimage.uniform_filter1d(values, size, axis=axis, mode="nearest")
             index = np.arange(values.shape[axis])
             inside = (index >= size // 2) & (index < values.shape[axis] - size // 2)
             valid *= inside[:, None] if axis == 0 else inside[None, :]
@@ -267,7 +269,7 @@ def _healed(tile: F64, axes: list[int]) -> F64:
         own, later = kept[:wide], turned[-wide:]
         cut = _cheapest_path(((own - later) ** 2).sum(axis=2))
         own_side = (np.arange(wide)[:, None] > cut[None]).astype(np.float64)
-        share = ndimage.gaussian_filter1d(own_side, _SOFT, axis=0, mode="nearest")[..., None]
+        share = scipy.ndimage.gaussian_filter1d(own_side, _SOFT, axis=0, mode="nearest")[..., None]
         kept[:wide] = share * own + (1 - share) * later
         tile = np.moveaxis(kept, 0, axis)
     return tile

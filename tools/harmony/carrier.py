@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import torch
 from numpy.typing import NDArray
-from scipy import ndimage
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
@@ -63,7 +63,7 @@ class Carried:
         """`[M]` likewise, at points `[M, 3]` (world)."""
         chart = self.shade.chart
         at = (chart.plane.local(points.to(torch.float64).cpu().numpy())[:, :2] - chart.low) / chart.cell - 0.5
-        return np.asarray(ndimage.map_coordinates(self.table, at[:, ::-1].T, order=1, mode="nearest"))
+        return np.asarray(scipy.ndimage.map_coordinates(self.table, at[:, ::-1].T, order=1, mode="nearest"))
 
 
 def carried(
@@ -199,11 +199,11 @@ def _averaged(shade: Blocked, table: F64, cloud: GaussianCloud) -> F64:
     centre = cloud.means.to(torch.float64).cpu().numpy()
     wide = cloud.scales.amax(dim=1).to(torch.float64).cpu().numpy() / chart.cell
     at = (chart.plane.local(centre)[:, :2] - chart.low) / chart.cell - 0.5
-    found = np.asarray(ndimage.map_coordinates(table, at[:, ::-1].T, order=1, mode="nearest"))
+    found = np.asarray(scipy.ndimage.map_coordinates(table, at[:, ::-1].T, order=1, mode="nearest"))
     large = wide > 1
     total = found[large]
     for step in ((1, 0), (-1, 0), (0, 1), (0, -1)):
         place = (at[large] + np.array(step) * wide[large, None])[:, ::-1].T
-        total = total + ndimage.map_coordinates(table, place, order=1, mode="nearest")
+        total = total + scipy.ndimage.map_coordinates(table, place, order=1, mode="nearest")
     found[large] = total / 5
     return found

@@ -10,10 +10,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy
 import torch
 from numpy.typing import NDArray
-from scipy.ndimage import label as connected
-from scipy.spatial import cKDTree
 from torch import Tensor
 
 from ...gaussians.cloud import NO_GROUP, GaussianCloud
@@ -100,7 +99,7 @@ def _left_of(case: Case, rows: Tensor) -> Tensor:
 def _spacing(points: Points) -> float:
     """Median distance of points `[M, 3]` to their nearest neighbour."""
     sample = points[:: max(1, len(points) // 1000)]
-    return float(np.median(cKDTree(points, balanced_tree=False).query(sample, k=2)[0][:, 1]))
+    return float(np.median(scipy.spatial.cKDTree(points, balanced_tree=False).query(sample, k=2)[0][:, 1]))
 
 
 def _stayed_around(case: Case, box: Box, near: float) -> Tensor:
@@ -122,8 +121,8 @@ def _touching(points: Points, own: Points, kept: Points, voxel: float, near: flo
     A point that is near the thing, and nearer to it than to anything kept, is a seed; its whole cluster follows,
     without what is close to something kept.
     """
-    mine = cKDTree(own).query(points, distance_upper_bound=4 * near)[0]
-    others = cKDTree(kept).query(points)[0] if len(kept) else np.full(len(points), np.inf)
+    mine = scipy.spatial.cKDTree(own).query(points, distance_upper_bound=4 * near)[0]
+    others = scipy.spatial.cKDTree(kept).query(points)[0] if len(kept) else np.full(len(points), np.inf)
     seeds = (mine < near) & (mine < others)
     clusters = _clusters(points, voxel)
     return np.asarray(np.isin(clusters, np.unique(clusters[seeds])) & (others > voxel / 4) | seeds)
@@ -141,7 +140,7 @@ def _clusters(points: Points, voxel: float) -> NDArray[np.int64]:
         return np.arange(len(points), dtype=np.int64)
     grid = np.zeros(shape, bool)
     grid[tuple(cells.T)] = True
-    numbers, _ = connected(grid, structure=np.ones((3, 3, 3)))
+    numbers, _ = scipy.ndimage.label(grid, structure=np.ones((3, 3, 3)))
     return np.asarray(numbers[tuple(cells.T)], dtype=np.int64)
 
 
@@ -167,11 +166,11 @@ def _fragments(case: Case, owner: int, here: Tensor, thing: Tensor, voxel: float
     labels = _clusters(points, max(voxel, _SPACINGS[2] * _spacing(points)))
     count = np.bincount(labels)
     small = (count > 0) & (count <= _FRAGMENT * len(rows)) & (np.arange(len(count)) != int(count.argmax()))
-    tree, loose = cKDTree(cloud.means[thing].to(torch.float64).cpu().numpy()), np.zeros(len(rows), bool)
+    tree, loose = scipy.spatial.cKDTree(cloud.means[thing].to(torch.float64).cpu().numpy()), np.zeros(len(rows), bool)
     for number in np.intersect1d(np.flatnonzero(small), np.unique(labels[_in(rows, here)])).tolist():
         part = labels == number
         to_thing = float(tree.query(points[part])[0].min())
-        to_rest = float(cKDTree(points[~part]).query(points[part])[0].min())
+        to_rest = float(scipy.spatial.cKDTree(points[~part]).query(points[part])[0].min())
         loose[part] = to_rest > 2 * to_thing + voxel / 4 and _alike(cloud, rows[torch.from_numpy(part)], thing)
     return _in(here, rows[torch.from_numpy(loose)])
 
@@ -187,13 +186,13 @@ def _other_colored(case: Case, here: Tensor, mine: Flags, thing: Tensor, voxel: 
         return found
     means, lab = cloud.means[rows].to(torch.float64).cpu().numpy(), _lab(cloud, rows).cpu().numpy()
     own, own_lab = cloud.means[thing].to(torch.float64).cpu().numpy(), _lab(cloud, thing).cpu().numpy()
-    away, nearest = cKDTree(own).query(means)
+    away, nearest = scipy.spatial.cKDTree(own).query(means)
     like = np.linalg.norm(lab - own_lab[nearest], axis=1) < _SAME_COLOR
     if not like.any() or like.all():
         return found
     places = np.flatnonzero(like)
     numbers = _clusters(means[places], voxel)
-    rest = cKDTree(means[~like])
+    rest = scipy.spatial.cKDTree(means[~like])
     for number in np.unique(numbers[away[places] < voxel / 2]).tolist():
         patch = places[numbers == number]
         if len(patch) > _FRAGMENT * len(rows) or _is_part(cloud, rows[torch.from_numpy(patch)]):
@@ -214,7 +213,7 @@ def _is_part(cloud: GaussianCloud, rows: Tensor) -> bool:
 
 def _alike(cloud: GaussianCloud, part: Tensor, thing: Tensor) -> bool:
     """Whether a part (rows) has the colour of a thing (rows) where they meet: a thing ends where its colour does."""
-    tree = cKDTree(cloud.means[thing].to(torch.float64).cpu().numpy())
+    tree = scipy.spatial.cKDTree(cloud.means[thing].to(torch.float64).cpu().numpy())
     away, nearest = tree.query(cloud.means[part].to(torch.float64).cpu().numpy())
     meet = np.argsort(away, kind="stable")[:_CONTACTS]
     near = thing[torch.from_numpy(nearest[meet])]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import scipy
 import torch
-from scipy.spatial import cKDTree
 from torch import Tensor
 
 from ...gaussians.language.query.selection import Selection, mask_of
@@ -22,7 +22,7 @@ def refiled(scene: Scene, selection: Selection, residue: Tensor) -> Scene | None
     rows = rows_where(mask_of(cloud, residue))
     if scene.language is None or not selection.groups or not len(own) or not len(rows):
         return None
-    tree = cKDTree(cloud.means[own].to(torch.float64).cpu().numpy())
+    tree = scipy.spatial.cKDTree(cloud.means[own].to(torch.float64).cpu().numpy())
     nearest = torch.from_numpy(tree.query(cloud.means[rows].to(torch.float64).cpu().numpy())[1])
     group = cloud.group.clone()
     touched = torch.cat([cloud.ids[rows], cloud.ids[own]])

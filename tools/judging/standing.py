@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import scipy
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from torch import Tensor
 
 from ...gaussians.language.field.language_field import Group
@@ -107,7 +107,7 @@ def _nearest(points: Array, others: NDArray[np.float32]) -> float:
     if not len(near):
         return math.inf
     sample = points[:: max(1, len(points) // 2000)]
-    distance = cKDTree(near).query(sample)[0]
+    distance = scipy.spatial.cKDTree(near).query(sample)[0]
     return float(np.quantile(distance, 0.01))
 
 

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from ...gaussians.camera import Camera
 from .bodies import Array
@@ -64,8 +64,8 @@ def _depths(camera: Camera, points: Array) -> Array:
     np.minimum.at(found, (pixel[:, 1], pixel[:, 0]), depth[inside])
     # Walls are few large Gaussians: between their points nothing is seen through.
     for size in (3, 5, 5):
-        found = np.where(np.isfinite(found), found, ndimage.minimum_filter(found, size, mode="nearest"))
-    return np.asarray(ndimage.median_filter(found, 3, mode="nearest"))
+        found = np.where(np.isfinite(found), found, scipy.ndimage.minimum_filter(found, size, mode="nearest"))
+    return np.asarray(scipy.ndimage.median_filter(found, 3, mode="nearest"))
 
 
 def _shown(camera: Camera, depths: Array, points: Array) -> Array:

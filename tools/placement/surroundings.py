@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 from torch import Tensor
 
 from ...gaussians.camera import Vec3
@@ -113,7 +113,7 @@ class Surroundings:
         index = index[((index >= 0) & (index < _FLOOR_CELLS)).all(axis=1)]
         counts = np.bincount(index[:, 0] * _FLOOR_CELLS + index[:, 1], minlength=_FLOOR_CELLS**2)
         usual = float(np.median(counts[counts > 0]))
-        names, _ = ndimage.label(counts.reshape(_FLOOR_CELLS, -1) >= _FLOOR_SPARSE * usual)
+        names, _ = scipy.ndimage.label(counts.reshape(_FLOOR_CELLS, -1) >= _FLOOR_SPARSE * usual)
         widest = int(np.bincount(names.ravel())[1:].argmax()) + 1
         at = np.argwhere(names == widest)
         return low + at.min(axis=0) * cell, low + (at.max(axis=0) + 1) * cell, usual / cell**2

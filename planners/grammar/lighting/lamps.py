@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds
 from ....gaussians.world.words import singular

@@ -6,10 +6,10 @@ named as a place ("the corner", "the sofa area", "only"): "make the sofa brighte
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds
 from ....gaussians.world.words import singular

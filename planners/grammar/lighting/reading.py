@@ -7,11 +7,11 @@ a time of day is not about light ("make it darker" is about a thing).
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from ....gaussians import late_re as re
 from ..tagging.words import bag, phrases
 from ..vocabulary import quantities
 from .tokens import Token, tokens_of

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice, pairwise
 from typing import Any
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ..restating.speech.frames import is_reported, unframed, without_asides
 from ..tagging.words import Word, bag, split

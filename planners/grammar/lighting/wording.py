@@ -6,8 +6,7 @@ the words as they were said.
 
 from __future__ import annotations
 
-import re
-
+from ....gaussians import late_re as re
 from ....gaussians.world.spelling import best_slip, nearest
 from ..tagging.spelling import is_word
 from ..tagging.words import bag, split

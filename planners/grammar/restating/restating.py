@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
+from ....gaussians import late_re as re
 from ..tagging.words import bag
 from .changes.continuing import continued, following
 from .changes.materials import in_materials

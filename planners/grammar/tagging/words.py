@@ -6,11 +6,11 @@ position in the text, so that a refusal can quote the original.
 
 from __future__ import annotations
 
-import re
 import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ....gaussians import late_re as re
 from ....gaussians.errors import UserError
 from ....gaussians.world.everyday_names import PEOPLE
 from ....gaussians.world.words import singular

@@ -6,10 +6,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ..tagging.words import bag
 from .manner import MOTION, Thing

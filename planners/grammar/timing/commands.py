@@ -5,11 +5,11 @@ Each rule takes a clause only if it accounts for all that is said beside the ver
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....gaussians.world.words import head, singular
 from ..tagging.words import bag

@@ -5,11 +5,11 @@ A clause is cut out of the words of a sentence if the whole of it says that some
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....gaussians.world.words import plural
 from ....tools.when import During, Part

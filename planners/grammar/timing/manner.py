@@ -5,11 +5,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....tools.operation import Length
 from ..vocabulary import quantities

@@ -5,11 +5,11 @@ A phrase is cut out of the words of a sentence; what it says is kept as a `Momen
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from ....gaussians import late_re as re
 from ..vocabulary.quantities import NUMBERS
 
 End = float | Literal["middle", "end"]  # seconds, or a place in the time of the scene

@@ -6,13 +6,13 @@ What it says of time is cut out (`moments`, `happenings`); the rest is a command
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
 from pydantic import BaseModel, ValidationError
 
+from ....gaussians import late_re as re
 from ....gaussians.errors import UserError
 from ....gaussians.language.query.nested import queries, with_queries
 from ....gaussians.language.query.query import Query

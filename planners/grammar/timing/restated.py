@@ -5,9 +5,9 @@ A rule covers a way of saying something, not a sentence: what it drops is said a
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
+from ....gaussians import late_re as re
 from .manner import MOTION
 from .moments import DURATION
 from .verbs import SENSES, any_of, forms

@@ -9,9 +9,9 @@ thing that is named behind it.
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
+from ....gaussians import late_re as re
 from ....gaussians.world.finishes import said as finish_said
 from ....gaussians.world.lengths import UNITS
 from ..tagging.words import bag

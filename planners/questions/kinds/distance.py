@@ -6,10 +6,10 @@ To walls, the floor and the ceiling it runs to their surface, to a person as see
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from ....gaussians import late_re as re
 from ..answer import Answer, Evidence
 from ..candidates import Case, agreed, joined, meant, unknown
 from ..kind import Asked, Kind

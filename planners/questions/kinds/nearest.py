@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds
 from ....gaussians.world.support import is_stepped_on

@@ -6,11 +6,11 @@ sat on the sofa, would the lamp be on my right?" from there.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from ....gaussians import late_re as re
 from ....gaussians.world import relations
 from ....gaussians.world.support import is_stepped_on
 from ..answer import Answer, AnswerType, Evidence

@@ -6,9 +6,9 @@ all other kinds, so that "is the piano in tune" is not taken for a question abou
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
+from ....gaussians import late_re as re
 from ..answer import AnswerType
 from ..kind import Asked, Kind, Undecided
 from ..reading.phrase_templates import templates

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from functools import lru_cache
 
+from ....gaussians import late_re as re
 from ....gaussians.world.person import ACTIVITIES
 from .item import Item, read_item
 from .phrase_templates import Words

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import Literal
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....gaussians.world.lengths import IN_METRES, UNITS
 from ....gaussians.world.person import SHOULDERS

@@ -6,11 +6,11 @@ are not stated are those of the kind as sold.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
 
+from ....gaussians import late_re as re
 from ....gaussians.world import kinds
 from ....gaussians.world.lengths import METRES
 from ....gaussians.world.words import singular

@@ -6,9 +6,9 @@ furniture", "the lamp which stands by the bed". Words that name no thing ("tune"
 
 from __future__ import annotations
 
-import re
 from functools import cache, lru_cache
 
+from ....gaussians import late_re as re
 from ....gaussians.errors import UserError
 from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds

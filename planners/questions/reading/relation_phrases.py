@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from functools import cache
 
+from ....gaussians import late_re as re
 from ....gaussians.world import relations
 from .phrase_templates import Words
 

@@ -7,11 +7,11 @@ A question is restated only if hardly a word of it is left over, so that nothing
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
+from ....gaussians import late_re as re
 from ....gaussians.world import kinds
 from ....gaussians.world.words import is_plural, normalise, plural, singular
 from ...grammar.tagging.words import bag

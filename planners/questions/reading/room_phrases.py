@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-
+from ....gaussians import late_re as re
 from .phrase_templates import Words
 
 _WAY = (

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
+from ....gaussians import late_re as re
 from .phrase_templates import Words
 
 SIDES = {"in front": 0.0, "right": 90.0, "behind": 180.0, "left": -90.0}

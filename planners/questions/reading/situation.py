@@ -6,12 +6,12 @@ chair on my left. What is behind me?".
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Literal
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ...grammar.tagging.words import bag
 from . import noun_phrase

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
+from ....gaussians import late_re as re
 from ....gaussians.world.lengths import IN_METRES, METRES, SQUARE_METRES, UNITS, in_metres
 from ...grammar.vocabulary import quantities
 from ..answer import Answer, AnswerType

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import Literal
 
+from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from . import noun_phrase
 from .phrase_templates import Words

@@ -6,9 +6,9 @@ window". Marks between clauses become commas, and "in this bedroom" becomes "in 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
+from ....gaussians import late_re as re
 from ....gaussians.errors import UserError
 from ...grammar.tagging.words import bag, clean, split
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ....gaussians import late_re as re
 from ...grammar.tagging.words import bag
 from ..kind import Asked
 from ..reading.time.deeds import Deed, said_in

@@ -5,9 +5,9 @@ What is said of the change before ("too far", "wrong way") is left out; an amoun
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 
+from .....gaussians import late_re as re
 from ...tagging.lookahead import Lookahead, color_at, is_hue
 from ...vocabulary import quantities
 from ..chunks import is_thing

@@ -6,11 +6,11 @@ nothing here. The command becomes one about a new colour: "paint the floor #tile
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import NamedTuple
 
+from .....gaussians import late_re as re
 from .....gaussians.color import QUALIFIERS
 from .....gaussians.world import kinds
 from .....gaussians.world.finishes import described, single_words

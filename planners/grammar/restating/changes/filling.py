@@ -4,8 +4,9 @@ leave the hole". Such words are taken out before the rest is read. What names th
 
 from __future__ import annotations
 
-import re
 from typing import NamedTuple
+
+from .....gaussians import late_re as re
 
 _POLITE = r"(?:(?:please|pls|now|then|also|just|and|can you|could you|would you|can we|could we|i want you to) )*"
 _FILL = (

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from itertools import pairwise
 
+from .....gaussians import late_re as re
 from ...tagging.lookahead import Lookahead
 from ...tagging.words import bag
 from ...vocabulary import doings

@@ -6,10 +6,10 @@ They become sentences about a new colour: "paint the sofa like~material the curt
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from functools import cache
 
+from .....gaussians import late_re as re
 from .....gaussians.world import kinds
 from .....gaussians.world.finishes import said as finish_said
 from .....gaussians.world.finishes import words as finish_words

@@ -5,11 +5,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from functools import cache
 
 from .....gaussians import color as colors
+from .....gaussians import late_re as re
 from .....gaussians.world.finishes import words
 from .....gaussians.world.lengths import UNITS
 from ...vocabulary.materials import COLORS_TOO, THINGS_TOO, mark

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+from .....gaussians import late_re as re
 
 _HUE = "red|blue|green|yellow|orange|purple|pink|brown|white|black|gr[ea]y|teal|turquoise"
 _SIZED = r"(?P<size>big|large|tall|high|wide|long|deep|broad)"

@@ -6,9 +6,9 @@ is selected.
 
 from __future__ import annotations
 
-import re
 from typing import Literal, NamedTuple
 
+from .....gaussians import late_re as re
 from ..speech.frames import is_reported, unframed
 
 Change = Literal["remove", "cast", "darker", "lighter"]

@@ -5,9 +5,9 @@ They become sentences about a new colour: "paint everything #style~rustic" (see 
 
 from __future__ import annotations
 
-import re
 from functools import cache
 
+from .....gaussians import late_re as re
 from .....gaussians.world import styles
 from ...vocabulary.materials import STYLE, mark
 from ..chunks import is_thing

@@ -6,10 +6,10 @@ table to glass", "the cabinet was wood, I want steel" "the cabinet in steel".
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from functools import cache
 
+from .....gaussians import late_re as re
 from .....gaussians.world import kinds, styles
 from .....gaussians.world.finishes import said as finish_said
 from ...tagging.words import bag

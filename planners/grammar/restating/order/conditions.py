@@ -6,9 +6,9 @@ Plans hold no conditions, so an instruction with one is refused: without its con
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
+from .....gaussians import late_re as re
 from ...tagging.lookahead import Lookahead, color_at
 from ..chunks import is_thing
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 
+from .....gaussians import late_re as re
 from .....gaussians.world.words import singular
 from ...tagging.lookahead import Lookahead, color_at, match
 from ...tagging.words import bag

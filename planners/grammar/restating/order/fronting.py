@@ -6,9 +6,9 @@ one out, "of the two palms, delete the shorter" picks among them, and "20 cm to 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 
+from .....gaussians import late_re as re
 from ...tagging.lookahead import Lookahead, color_at, is_hue, match
 from ...vocabulary import lexicon, quantities
 from ..chunks import is_thing

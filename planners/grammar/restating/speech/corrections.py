@@ -6,9 +6,9 @@ thing a thing, an amount an amount. A command of its own replaces the command be
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 
+from .....gaussians import late_re as re
 from ...tagging.lookahead import Lookahead, match
 from ...vocabulary import lexicon
 from ..chunks import Chunk, chunks, last_of

@@ -6,9 +6,9 @@ by the part that knows the words of the wish.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 
+from .....gaussians import late_re as re
 from ...tagging.words import bag
 
 _COURTESY = (

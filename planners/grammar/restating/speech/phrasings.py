@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
+
+from .....gaussians import late_re as re
 
 _PLACE = (
     r"(?P<place>(?:on|onto|next to|beside|near|by|behind|under|below|between|against|in front of|opposite|"

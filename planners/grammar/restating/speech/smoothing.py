@@ -6,9 +6,9 @@ removed: what is dropped is a closed class ("er", "if you don't mind") or begins
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
+from .....gaussians import late_re as re
 from .....gaussians.world.words import singular
 from ...tagging.lookahead import Lookahead, color_at, is_hue
 from ...tagging.words import Word, bag

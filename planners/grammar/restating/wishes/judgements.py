@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
+
+from .....gaussians import late_re as re
 
 _JUDGED = re.compile(
     r"^(?:(?:hmm|oh|no|nah|nope|oops|whoops|wait|sorry|well|it is|that is|they are|still|now|it looks|looks|bit|a bit|"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 
+from .....gaussians import late_re as re
 from ...tagging.lookahead import Lookahead, color_at
 from ...tagging.words import bag
 from ...vocabulary import quantities

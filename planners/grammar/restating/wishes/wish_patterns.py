@@ -6,7 +6,7 @@ a pattern yields counts only if the planner understands the whole of it.
 
 from __future__ import annotations
 
-import re
+from .....gaussians import late_re as re
 
 SPEAKER = r"(?:i|we|you|he|she|they|everyone|everybody|my (?:wife|husband|mum|mom|dad|boss|partner|girlfriend|"\
           r"boyfriend|"\

@@ -6,9 +6,9 @@ only if the whole of it is understood, so that a pattern may be generous about w
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 
+from .....gaussians import late_re as re
 from ...tagging.lookahead import Lookahead, color_at, is_hue
 from ...vocabulary import quantities
 from ..chunks import is_thing

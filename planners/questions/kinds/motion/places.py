@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 
+from .....gaussians import late_re as re
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from .....gaussians.world.support import is_sheet

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import replace
 
 import numpy as np
 
+from .....gaussians import late_re as re
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from .....gaussians.world.lengths import METRES

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from .....gaussians import late_re as re
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...candidates import is_plural

@@ -6,12 +6,12 @@ is put together from the rows, so that a new row is known in all of these.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Literal
 
+from .....gaussians import late_re as re
 from .....gaussians.world.words import singular
 from .notation import pattern, verb_forms
 

@@ -6,12 +6,12 @@ and a happening. Each is taken out in turn; what is left must be read as a happe
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import Literal
 
+from .....gaussians import late_re as re
 from .....gaussians.world.words import singular
 from ..noun_phrase import is_color_word
 from .deeds import STATES, Deed, Kind, as_noun

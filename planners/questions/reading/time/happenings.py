@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
 
+from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
 from .....gaussians.world import kinds
 from ....grammar.tagging.words import bag

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
+
+from .....gaussians import late_re as re
 
 Kind = Literal["at", "span", "in", "after", "last", "start", "end", "middle", "always", "ever", "clause"]
 

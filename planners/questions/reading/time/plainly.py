@@ -5,8 +5,9 @@ Each line is a pattern and what takes its place, tried in their order on the wor
 
 from __future__ import annotations
 
-import re
 from functools import cache
+
+from .....gaussians import late_re as re
 
 _LINES = r"""
 ^whether =>
