@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+from contextlib import suppress
 from functools import reduce
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, get_args
@@ -53,6 +54,9 @@ def parse(data: dict[str, Any] | str | bytes) -> EditOp:
     Raises:
         UserError: the data are no valid operation; the message names the field and what it allows.
     """
+    if isinstance(data, dict) and (kind := OPS.get(str(data.get("op")))) is not None:
+        with suppress(ValidationError):  # the union tells what is wrong, and names the operation
+            return kind.model_validate(data)
     try:
         return _ONE.validate_json(data) if isinstance(data, str | bytes) else _ONE.validate_python(data)
     except ValidationError as error:

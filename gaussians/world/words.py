@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import lru_cache
 
 PROMPT = "a photo of a {}"  # prompt for encoders that were trained on captions of photographs
 
@@ -144,6 +145,7 @@ def head(phrase: str) -> str:
     return words[_head(words)]
 
 
+@lru_cache(maxsize=1 << 14)  # tables of names ask for the same phrases two and three times
 def normalise(text: str) -> tuple[str, ...]:
     """The words that carry meaning, lower-case and singular: "A photo of the red Couches" to `("red", "couch")`."""
     plain = " ".join(_WORD.findall(text.lower().replace("'s", " ")))
@@ -161,6 +163,7 @@ def _at_head(phrase: str, changed: Callable[[str], str]) -> str:
     return " ".join([*words[:at], changed(words[at]), *words[at + 1 :]])
 
 
+@lru_cache(maxsize=1 << 14)
 def _singular(word: str) -> str:
     if word in _UNCHANGED or word in _SINGULAR_S:
         return word

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from scenewright.planners.grammar.planner import GrammarPlanner
+from scenewright.planners.grammar.restating.changes import filling
 from scenewright.planners.plan import EditPlan
 
 
@@ -98,3 +99,10 @@ def test_filling_that_comes_with_a_deletion_is_no_step_of_its_own(text: str) -> 
 )
 def test_other_things_are_not_filled(text: str) -> None:
     assert all(op.op != "infill" for op in plan(text).ops)
+
+
+def test_each_form_mends_or_names_a_hole() -> None:
+    told = (filling._TOLD, filling._STATED, filling._HAS, filling._LACKS, filling._VANISH, filling._ANYWHERE)
+    asked = (filling._SURFACE, filling._REQUEST, filling._LACK, filling._SURFACE_ONCE, filling._WITH_SURFACE)
+    for form in (*told, *asked):  # they are tried only where one of these is said
+        assert any(part in form.pattern for part in (filling._FILL, filling._FILLED, filling._KIND))

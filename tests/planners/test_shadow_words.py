@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from scenewright.planners.grammar.planner import GrammarPlanner
+from scenewright.planners.grammar.restating.changes import shadows
 from scenewright.planners.plan import EditPlan
 
 
@@ -75,3 +76,8 @@ def test_new_things_are_fitted_unless_that_is_said() -> None:
 @pytest.mark.parametrize("text", ["make the shadow corner darker", "delete the dark chair", "add a shadow box"])
 def test_other_things_have_their_own_names(text: str) -> None:
     assert all(op.op != "shadow" for op in plan(text).ops)
+
+
+def test_each_form_names_a_shadow() -> None:
+    for _, form in shadows._FORMS:  # they are tried only where a shadow is named
+        assert shadows._SHADE in form.pattern or shadows._PATCH in form.pattern

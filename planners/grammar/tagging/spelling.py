@@ -60,7 +60,7 @@ def correct_spelling(words: Sequence[Word], freely: bool = False) -> tuple[tuple
 def _correction(texts: Sequence[str], i: int) -> str:
     """The correction of an unknown word; "" if the word is known or may be a noun, or if several words are as near."""
     text = texts[i]
-    if text in _known_words() or _noun_expected(texts, i):
+    if is_word(text) or _noun_expected(texts, i):
         return ""
     near = likely_slips(text, _verbs()) if _verb_expected(texts, i) else likely_slips(text, _closed_words())
     near = frozenset(w for w in near if not text.startswith(w))  # "nicer" is a form of nice, not an error
@@ -72,7 +72,7 @@ def _correction(texts: Sequence[str], i: int) -> str:
 def _free_correction(texts: Sequence[str], i: int) -> str:
     """The most probable word of the closed vocabulary for an unknown word; a verb where one is expected."""
     text = texts[i]
-    if text in _known_words():
+    if is_word(text):
         return ""
     near = best_slip(text, _verbs() if _verb_expected(texts, i) else _closed_words())
     return "" if near and text.startswith(near) else near
@@ -106,13 +106,13 @@ def _is_strange(text: str) -> bool:
 
 def misspelled_name(text: str, there: frozenset[str]) -> str:
     """The only name in `there` that an unknown word is a misspelling of; "" if there is none or more than one."""
-    near = frozenset() if text in _known_words() else likely_slips(text, there)
+    near = frozenset() if is_word(text) else likely_slips(text, there)
     return min(near) if len(near) == 1 else ""
 
 
 def is_word(text: str) -> bool:
     """Whether a word is taken to be spelt correctly."""
-    return text in _known_words()
+    return any(text in words() for words in (_listed_words, _closed_words, _verbs, _plurals))
 
 
 @cache
@@ -131,8 +131,8 @@ def _closed_words() -> frozenset[str]:
 
 
 @cache
-def _known_words() -> frozenset[str]:
-    """Every word that is taken to be spelt correctly."""
+def _listed_words() -> frozenset[str]:
+    """The words of all other tables."""
     tables = (lexicon.VERB_PHRASES, lexicon.UNSUPPORTED_PHRASES, lexicon.FILLER, lexicon.POLITE, lexicon.GERUND_OPENERS)
     said = {w for table in tables for p in table for w in p}
     said |= (
@@ -142,4 +142,9 @@ def _known_words() -> frozenset[str]:
     said |= {w for c in nouns.COMPOUNDS for w in c} | Vocabulary.household().modifiers
     said |= doings.plain() | doings.said_of_one() | doings.ongoing()
     said |= {w for n in kinds.every_word() for w in normalise(n)}
-    return frozenset(said | _closed_words() | _verbs() | set(map(plural, said)))
+    return frozenset(said)
+
+
+@cache
+def _plurals() -> frozenset[str]:
+    return frozenset(map(plural, _listed_words()))

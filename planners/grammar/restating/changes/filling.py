@@ -284,8 +284,14 @@ def _surface_of(clause: str, flaw: re.Match[str]) -> str | None:
     return named if named.split()[0] in ("the", "this", "that", "my", "our") else f"the {named}"
 
 
+# Each form of a request says a word to mend by, or what a hole is called.
+_NAMES = re.compile(rf"{_FILL}|{_FILLED}|{_KIND}", re.I)
+
+
 def _told(text: str) -> Request | None:
     """A hole that is told of, and then to be filled: "there is a hole in the floor, fill it"."""
+    if _NAMES.search(text) is None:
+        return None
     for pattern in (_TOLD, _STATED, _HAS, _LACKS, _VANISH):
         if found := pattern.match(text):
             return _of(found)
@@ -294,14 +300,17 @@ def _told(text: str) -> Request | None:
 
 def _request(clause: str) -> Request | None:
     clause = clause.strip(" ,;")
-    for pattern in (_SURFACE, _REQUEST, _LACK, _SURFACE_ONCE):
+    named = _NAMES.search(clause) is not None
+    for pattern in (_SURFACE, _REQUEST, _LACK, _SURFACE_ONCE) if named else ():
         if found := pattern.match(clause):
             return _of(found)
     if loose := _loosely(clause):
         return loose[0]
-    if found := _WITH_SURFACE.match(clause):
-        named = re.search(_SURFACES, found["with"] or "", re.I)
-        return Request(named[0] if named else "", "in") if not found["with"] or _MORE.search(found["with"]) else None
+    if named and (found := _WITH_SURFACE.match(clause)):
+        if found["with"] and not _MORE.search(found["with"]):
+            return None
+        surface = re.search(_SURFACES, found["with"] or "", re.I)
+        return Request(surface[0] if surface else "", "in")
     return None
 
 

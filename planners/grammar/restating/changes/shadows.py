@@ -91,6 +91,7 @@ _FORMS: tuple[tuple[Change, re.Pattern[str]], ...] = (
     ("cast", _clause(rf"{_THING} needs (?:a|some|its) {_SHADE}")),
     ("cast", _clause(rf"there should be (?:a|some) {_SHADE} {_OF} {_THING}")),
 )  # fmt: skip
+_SHADED = re.compile(rf"{_SHADE}|{_PATCH}", re.IGNORECASE)
 _AFTER = re.compile(
     r",? (?:(?:even )?(?:after|now that|since|although|though|but|because) (?:i|we|you|it|that|they|the) .+?"
     r"|(?:where|when) (?:it|that|they|the \w+) (?:was|were|stood|used to .+?))(?=,|;|\.| can you| could you| please|$)",
@@ -261,6 +262,8 @@ def _loosely(text: str) -> ShadowRequest | None:
 
 def _request(clause: str) -> ShadowRequest | None:
     clause = _ON.sub("", _AFTER.sub("", clause)).strip(" ,;")
+    if _SHADED.search(clause) is None:  # each form names a shadow
+        return None
     for change, pattern in _FORMS:
         if (found := pattern.match(clause)) is not None:
             words = found.groupdict().get("what")
