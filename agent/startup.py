@@ -1,4 +1,4 @@
-"""The start and the end of a command: no garbage is collected while modules load, the library of torch loads beside them,
+"""The start and the end of a command: no garbage is collected while modules load, torch's library loads beside them,
 the process ends without taking everything apart, and `--debug` tells what loading took."""
 
 from __future__ import annotations
