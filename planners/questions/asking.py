@@ -15,6 +15,7 @@ from ...gaussians import late_re as re
 from ...gaussians.language.query.nested import with_queries
 from ...gaussians.language.query.query import Query
 from ..grammar.tagging.words import bag
+from ..rooms.node import NodeId
 from . import kinds
 from .answer import Answer, AnswerType
 from .kind import Asked, Kind, Undecided
@@ -22,15 +23,21 @@ from .reading.holes import READERS
 from .reading.phrase_templates import Words
 from .reading.restating import restated
 from .reading.situation import Situation, read_situation
+from .reading.time import several
+from .reading.time.comparing import comparisons
+from .reading.time.frames import plain
+from .reading.time.happenings import thing
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
 from .telling import absent, absent_text, evidence
 from .timeline import static
 from .timeline.asked import STATIC, Untold, at, is_of_motion, nothing, spoken
 from .timeline.bodies import Timeline
+from .timeline.comparing import compared
 
 NOT_READ = "this question is not understood"
 _TRIED = 8  # candidates of an ambiguous phrase for which a question is answered one by one
+_ONE_TIME = 0.2  # seconds: what happens so soon after another happens with it
 _NEAR = 0.05  # relative difference up to which the answers for all candidates are one answer
 _YES_NO = bag(
     "is are was were am does do did has have had can could will would should shall may might must whether there got any"
@@ -100,6 +107,11 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     """The answer to a question about a scene with time: of its motion, else of the scene at a moment."""
     words = static.without_relative(plain_words(text), survey, timeline)
     asked = Asked(text, words=words, timeline=timeline)
+    for sentence in several.last_sentence(text):
+        if (told := _timed(sentence, survey, timeline)).answer.answer is not None:
+            return told
+    if (chosen := _chosen(words, survey, timeline)) is not None:
+        return chosen
     refused: Reading | None = None
     for kind in kinds.OF_MOTION:
         for slots in (found for template in kind.templates for found in template.match(words, READERS)):
@@ -112,6 +124,9 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
                 refused = refused or Reading(given, kind.name)
             elif given is not None:
                 return _reading(kind, given if survey.scaled else _in_units(given))
+    for made in (_compared, _of_two):
+        if (made_of := made(words, survey, timeline)) is not None:
+            return made_of
     try:
         for moment in static.moments(words, survey, timeline, asked):
             found = _at_moment(moment, text, survey, timeline)
@@ -126,6 +141,53 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         return refused
     none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
     return Reading(none, sight=True)
+
+
+def _chosen(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
+    """The answer to a question that offers names, from among these; None if it offers none."""
+    if (found := several.choice(" ".join(words))) is None:
+        return None
+    told = _timed(found[0], survey, timeline)
+    if told.answer.answer is None or told.answer.answer_type not in ("label", "list"):
+        return None
+    offered = dict[NodeId, str]()
+    for name in found[1]:
+        if (query := thing(name)) is None or (meant := survey.find(query)).verdict == "absent":
+            return None
+        offered.update({t.id: t.name for t in meant.things})
+    ids = [i for i in told.answer.evidence.ids if i in offered]
+    if not ids:
+        return Reading(nothing(f"None of them: {told.answer.text}"[:4000]), told.kind)
+    names = tuple(offered[i] for i in ids)
+    shown = told.answer.evidence.model_copy(update={"ids": tuple(ids)})
+    only = {"answer": names[0], "answer_type": "label"} if len(names) == 1 else {"answer": names, "answer_type": "list"}
+    text = f"{', '.join(names).capitalize()}. {told.answer.text}"[:4000]
+    return replace(told, answer=told.answer.model_copy(update={**only, "text": text, "evidence": shown}))
+
+
+def _of_two(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
+    """The answer to a question that is two, each of which is asked by itself; None if it is no such question."""
+    said = plain(words)
+    if (either := several.either(said)) is not None:
+        first, second = (_timed(one, survey, timeline) for one in either)
+        if first.answer.answer_type == second.answer.answer_type == "yesno" and None not in (
+            first.answer.answer, second.answer.answer,
+        ):  # fmt: skip
+            return second if first.answer.answer == "no" else first
+    if (both := several.both(said)) is not None:
+        first, second = (_timed(one, survey, timeline) for one in both)
+        a, b = first.answer.answer, second.answer.answer
+        if isinstance(a, float) and isinstance(b, float) and abs(a - b) < _ONE_TIME:
+            return first if a > b else second
+    return None
+
+
+def _compared(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
+    """The answer to a comparison, each of whose numbers is asked for by itself; None if the words are none."""
+    for comparison in comparisons(plain(words)):
+        if (given := compared(comparison, lambda said: _timed(said, survey, timeline).answer)) is not None:
+            return Reading(given, "comparison")
+    return None
 
 
 def _unnamed(error: NotResolved, survey: Survey) -> Answer:
@@ -149,6 +211,14 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
         answer = found.answer
         if answer.answer is None or (answer.answer == "no" and answer.text.startswith("No. There is no ")):
             return replace(found, answer=nothing(answer.text.removeprefix("No. ")))  # what is not there is not asked of
+        if answer.answer == 0.0 and (gone := _uncounted(moment.words, there)) is not None:
+            return replace(found, answer=nothing(gone))
+        if answer.answer == () and (under := _UNDER.match(moment.words)) is not None:  # on which it is
+            return _timed(f"what is {under['x']} on at {moment.times[0]} s", survey, timeline)
+        if found.restated and _LOST.intersection(moment.words.split()) - set(found.restated.split()):
+            return Reading(
+                Answer(answer=None, answer_type=answer.answer_type, text=NOT_READ, confidence=0.0, source="none")
+            )
         if moment.said and found.kind in _IMAGINED and not _IMAGINE.search(moment.words):
             return replace(found, answer=nothing(f"Nothing here tells what happens then: {moment.words}."))
         evidence = answer.evidence.model_copy(update={"time": time})
@@ -161,6 +231,24 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
             return found
     assert first is not None
     return first
+
+
+_UNDER = re.compile(r"^(?:what|which \w+) is (?:right |directly )?(?:under|underneath|beneath|below) (?P<x>.+)$")
+_COUNTED = re.compile(r"^(?:how many|count|(?:what is )?the number of) (?P<x>(?:\w+ )*?\w+s)(?= |$)")
+_LOST = bag(
+    "second seconds sec secs time moment long fast quick quickly slow slowly speed before after while during until "
+    "rpm times "
+    "often first last never ever again not faster slower longer farther later earlier far turn turns round rounds"
+)
+
+
+def _uncounted(words: str, survey: Survey) -> str | None:
+    """Why none of what is not in the scene at all can be counted; None if it is there."""
+    said = _COUNTED.match(words)
+    if said is None or (query := thing(f"the {said['x']}")) is None:
+        return None
+    found = survey.find(query.model_copy(update={"pick": "all"}))
+    return absent_text(survey, query, found) if found.verdict == "absent" else None
 
 
 def _present(answer: Answer, survey: Survey, timeline: Timeline) -> str:

@@ -293,7 +293,8 @@ def _clause(when: When, told: Told) -> Span:
             failed = failed or error
             continue
         if found:
-            return _about(when.conj, deed, min(found), line)
+            counts = told.frame.asks in ("yesno", "how_many", "how_far", "how_often")
+            return _about("when" if when.conj == "by" and not counts else when.conj, deed, min(found), line)
         failed = failed or Untold(f"That does not happen here: {when.clause}.")
     raise failed or Untold(f"It is not understood when this is: {when.clause}.")
 
@@ -302,7 +303,7 @@ def _about(conj: str, deed: Deed, span: Span, line: Timeline) -> Span:
     a, b = span
     if deed.stops:
         a = b
-    if conj == "before":
+    if conj in ("before", "by"):
         return line.start, a
     if conj == "until":
         return line.start, a if deed.at_once else b

@@ -9,7 +9,7 @@ from ....gaussians import late_re as re
 from ...grammar.tagging.words import bag
 from ..kind import Asked
 from ..reading.time.deeds import Deed, said_in
-from ..reading.time.frames import Frame, frames
+from ..reading.time.frames import Frame, frames, plain
 from ..reading.time.happenings import Happening
 from ..reading.time.moments import When, clauses, without_time
 from ..survey import NotResolved, Survey
@@ -106,8 +106,8 @@ def moments(words: tuple[str, ...], survey: Survey, timeline: Timeline, asked: A
     Raises:
         NotResolved, Untold: the moment is told by an event that is not there.
     """
-    said = _named(" ".join(words), survey, timeline)
-    for when, rest in _readings(said):
+    said, plainer = (_named(s, survey, timeline) for s in (" ".join(words), plain(words)))
+    for when, rest in (*_readings(said), *(() if plainer == said else _readings(plainer))):
         if not _MOTION_NOUNS.isdisjoint(rest.split()) or any(_is_of_motion(deed) for _, _, deed in said_in(rest)):
             continue
         rest = _ADVERB.sub("", rest)
@@ -156,6 +156,8 @@ def _time(when: When, survey: Survey, timeline: Timeline, asked: Asked) -> float
     """The moment that is meant: just before or after an event, or in the middle of a span."""
     span = window(when, Told(Frame("yesno", Happening(None), when=when), asked, survey, timeline))
     assert span is not None
+    if when.conj == "by":
+        return span[1]
     if when.kind == "clause" and when.conj == "before":
         return max(span[1] - _ASIDE, timeline.start)
     if (when.kind == "clause" and when.conj == "after") or when.kind == "after":

@@ -6,6 +6,7 @@ import re
 
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
+from .....gaussians.world.words import singular
 from ...answer import Answer
 from ...reading.noun_phrase import is_anything
 from ...reading.time.deeds import STATES
@@ -181,6 +182,7 @@ def _still(told: Told) -> Answer:
     every = told.survey.things
     if named and subject is not None:
         every = told.survey.find(subject.model_copy(update={"pick": "all"})).things
+        every = tuple(t for t in every if t.label == singular(subject.text)) or every  # drawers, and no dresser
     things = [t for t in every if t.id not in moving]
     text = (
         f"{cap(listed([told.survey.named(t) for t in things]))} {'stands' if len(things) == 1 else 'stand'} "
@@ -209,10 +211,9 @@ def _many(told: Told) -> Answer | None:
             raise
         return None
     if what.deed.kind == "still":
-        given = _still(told) if what.subject is None or not what.subject.text or what.subject.text == "thing" else None
-        if given is not None:
-            assert isinstance(given.answer, tuple)
-            return number(float(len(given.answer)), "", given.text, [])
+        given = _still(told)
+        count = len(given.answer) if isinstance(given.answer, tuple) else 1
+        return number(float(count), "", given.text, [])
     bodies = [b for b, _ in found]
     text = (
         f"{len(bodies)}: {listed([f'{b.name} {spoken(s)}' for b, s in found])}."

@@ -168,6 +168,7 @@ def _place(told: Told, body: Body, time: float) -> tuple[str, str, tuple[int, ..
         place, rest = f"on {survey.named(sheet)}", f"{place}{', ' + rest if rest else ''}"
     elif not place.startswith("on ") and _is_on_floor(body, time, told):
         place, rest = "on the floor", f"{place}{', ' + rest if rest else ''}"
+    rest = rest.removeprefix(place).strip(" ,")
     answer = f"{place}, {rest}" if rest else place
     support = thing.node.support if thing.node is not None else ""
     ids = tuple(i for i in (body.thing.id, support) if isinstance(i, int))

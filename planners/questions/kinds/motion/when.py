@@ -24,7 +24,7 @@ COUNTED_TURNS = re.compile(
     r"\b(?P<n>half a|one|per|a|each|every|two|three|four|five|ten|\d+) (?:(?:full|single|whole|complete) )?"
     r"(?:turn|rotation|revolution|spin|round)s?\b"
 )
-_ALL = re.compile(r"\b(?:all|both|every|everything|each)\b")
+_ALL = re.compile(r"\b(?:all|both|every|everything|each|nothing|none)\b")
 
 
 def moment(deed: Deed, span: Span) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -16,6 +17,7 @@ from ...timeline.bodies import Body
 from ...timeline.happening import is_near
 from .when import moment
 
+_SOME_TIME = re.compile(r"\b(?:finally|eventually|ultimately|afterwards?|at last|in the end)\b")
 _ROUND = 0.15  # seconds: what starts so soon after the start of the scene starts with it
 
 
@@ -37,6 +39,8 @@ def _whether(told: Told) -> Answer | None:
     if deed.kind == "move" and deed.phase and what.at:
         return _there(told)
     window = told.window()
+    if when is not None and when.kind == "end" and deed.kind not in STATES and _SOME_TIME.search(told.asked.said):
+        window = None  # "does it finally close": at some time
     bodies = told.bodies()
     if told.frame.rank == "together":
         return _together(told, bodies, window)

@@ -77,13 +77,14 @@ is_back - -: [STAY|~come|~go|~move] [FULL] back [in|at|to|into] [its|the] \
 still - -: [STAY] [SO] (still|at rest|motionless|stationary|at a \
     standstill|immobile|unmoved|fixed|static|resting|stopped|waiting|idle|inactive|put|switched off|turned \
     off|off|in [ITS|one] [same] (place|spot|position)|where (it|they) (~be)) | ~rest | ~wait | ~pause | ~idle | ~do \
-    nothing | ~hold still
+    nothing | ~hold still | STAY (there|put|around)
 open - out: ~open [up|out] | (GO|COME|TURN) [FULL] (out|outward|outwards|open|out of) | ~extend | ~pull out
 open stop out: ~open [up] (fully|completely|all the way|entirely|totally|wide) | (fully|completely|entirely) ~open
 close - in: (~close|~shut|~retract) [again|up] | (GO|COME|TURN|~push|~return|~slam|~bang) [FULL] [back] \
     (in|inward|inwards|inside|shut|closed) [again]
 close stop in: (~close|~shut) (fully|completely|all the way|entirely|totally) | (fully|completely) (~close|~shut)
-return - -: (GO|COME|TURN|~bounce|~spring) [all the way|right] back [again|home] | ~return [back|home] | ~go home
+return - -: (GO|COME|TURN|~bounce|~spring|~push|~pull) [all the way|right] back [again|home] | ~return \
+    [back|home] | ~go home
 move stop -: (~come|~roll|~slow|~grind|~slide|~get) [down] to [a|an|its] [full|complete|final|dead] \
     (rest|stop|halt|standstill|end|stillness) | (~end|~wind|~finish) up | (~settle|~freeze) [down] | END | ~be \
     (done|finished|over|through) | ~reach ITS (final|last) (position|place|spot) | (~go|~switch|~turn|~shut|~power) \
@@ -95,7 +96,8 @@ fall - down: FALL [down|over|off|downward|downwards] | (~come|~go|~tip|~crash) (
     (down|downward|downwards) | in [the|mid] air | airborne | in free fall | ~tip | knocked (over|down|off)
 rise - up: UP [up|off|upward|upwards] | (GO|~come) (up|upward|upwards) | ~take off
 land - -: ~land [on|onto|upon|down] | ~touch down | (~hit|~reach|~touch|~strike|~meet|~get to) [the] GROUND
-bob - -: (~bob|~bounce|~wobble|~shake|~jiggle|~sway|~vibrate|~rock) [up and down|about|around] | GO up and down
+bob - -: (~bob|~bounce|~wobble|~wiggle|~twitch|~tremble|~rattle|\
+    ~shake|~jiggle|~sway|~vibrate|~rock) [up and down|about|around] | GO up and down
 approach - -: ~approach | (GO|COME|~become|~draw) [any] (closer|nearer|near) [to|toward|towards] | GO \
     (toward|towards|in the direction of)
 recede - -: (GO|COME|~become|~be) (farther|further|more distant) [away] [from|of] | (GO|COME) away from | ~increase \
@@ -130,15 +132,19 @@ move - toward: (GO|COME) (toward|towards) (me|us|the (viewer|camera))
 move - away: (GO|COME) away from (me|us|the (viewer|camera))
 move - forward: GO (forward|forwards|ahead)
 move - backward: GO (backward|backwards)
-move - -: GO [around|about|along|away|on|there|anywhere|somewhere] | in motion | on the move | ~come | under way | \
+move - -: GO (from|out of|off) ITS (place|spot|position) | GO [around|about|along|away|on|there|anywhere|somewhere] | \
+    animated | in action | in motion | on the move | ~come | under way | \
     active | ~cover | ~happen | ~occur | ~change [ITS] (place|position|location) | ~leave ITS (place|spot)
 move is -: on | running | working | going | switched on | turned on
 """
 _NOUNS: dict[Kind, str] = {
     "move": "movement|motion|moving|roll|ride|walk|trip|journey|run|travel|path|way|slide|action|animation|rolling|"
     "walking|drive|route|course",
-    "turn": "turn|turning|rotation|spin|spinning|swing|revolution|corner|curve|bend|change of direction",
-    "open": "opening", "close": "closing|shutting", "fall": "fall|drop|falling|tumble|plunge|descent|flight",
+    "turn": "turn|turning|rotation|spin|spinning|swing|revolution|round|lap|circle|corner|curve|bend|"
+    "change of direction",
+    "open": "opening|[the] out stroke|outward stroke|opening stroke|outward movement|way out",
+    "close": "closing|shutting|return stroke|back stroke|inward stroke|closing stroke|way back in|way in",
+    "fall": "fall|drop|falling|tumble|plunge|descent|flight",
     "land": "landing|impact|touchdown", "reach": "contact|collision|hit|impact|arrival|touch|bump|crash",
     "return": "return|way back|trip back|journey back", "cross": "crossing", "still": "pause|rest|wait|break|"
     "stillness|standstill",

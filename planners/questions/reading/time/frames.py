@@ -205,6 +205,7 @@ _IN_UNIT = re.compile(
     rf"(?P<v>{_RATE}|{_LENGTH}|(?:milli)?seconds?|secs?|minutes?|{_ANGLE})(?= |$)|"
     rf" , (?P<w>{_LENGTH}|{_ANGLE}|seconds|secs)$"
 )
+_SAYS_IN = re.compile(rf" (?:in|,) (?:{_RATE}|{_LENGTH}|(?:milli)?seconds?|secs?|minutes?|{_ANGLE})$")
 _COUNT = r"(?:and )?(?:(?:by|through|for|with|at) )?(?:how many|what number of|(?:what is )?the number of)"
 _SPREAD = re.compile(
     rf"^(?:{_COUNT} (?P<n>{_COUNTED})|how (?:often|many times)) (?P<rest>.+) (?P<per>{_EACH} {_SECOND})$"
@@ -257,6 +258,8 @@ def _named(said: str, unit: str) -> Iterator[Frame]:
                     yield Frame("how_often", replace(what, deed=deed), when=when)
         if (found := _NOMINAL.match(rest)) is None or _ASKING.match(said) or is_main(rest):
             continue
+        if found["q"] == "time" and found["y"] is None and re.search(r"\bthe (?:whole|entire|full)$", found["x"]):
+            continue  # "it stays there the whole time"
         asks, kind = _QUANTITIES[found["q"]]
         x, y = _MOST.sub("", found["x"]).strip(), found["y"]
         for what in happenings(f"{x} of {y}" if x and y else y or x):
@@ -344,7 +347,15 @@ _MUCH_LATER = re.compile(
 @lru_cache(maxsize=4096)
 def frames(words: tuple[str, ...]) -> tuple[Frame, ...]:
     """Every way of reading the words of a question as one about a scene with time, the likeliest first."""
-    return tuple(dict.fromkeys(_frames(plainly(time_first(" ".join(words), _ASKING)))))
+    return tuple(dict.fromkeys(_frames(plain(words))))
+
+
+def plain(words: tuple[str, ...]) -> str:
+    """The words of a question in the order in which it is asked plainly: its time behind it, its unit last."""
+    said = " ".join(words)
+    rest, unit = _in_unit(said) if _SPREAD.match(said) is None and _SAYS_IN.search(said) else (said, "")
+    rest = plainly(time_first(rest, _ASKING))
+    return f"{rest} in {unit}" if unit else rest
 
 
 def _frames(said: str) -> Iterator[Frame]:

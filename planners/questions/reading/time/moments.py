@@ -114,7 +114,7 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
         (rf"\bat (?:the )?(?:half ?way(?: point| mark)?|midpoint|middle){_OF_CLIP}(?= |$)|"
          rf"\bhalf ?way through(?: {_CLIP})?(?= (?!its |the |his |her )|$)|"
          rf"\bin the middle of {_CLIP}(?= |$)", _plain("middle")),
-        (rf"\b(?:right |just )?(?:at|in|from|on) (?:the )?(?:very )?(?:start|beginning|outset){_OF_CLIP}(?= |$)|"
+        (rf"\b(?:right |just )?(?:at|in|from|on) (?:the )?(?:very )?(?:start|beginning|outset){_OF_CLIP}(?= (?!to )|$)|"
          r"\b(?:initially|originally|to begin with|to start with|at first|in the first frame|immediately|right away|"
          r"straight away|(?<!all )at once|instantly)(?= |$)", _plain("start")),
         (rf"\b(?:when|once|by the time|as|until) {_CLIP} (?:ends?|finishes|is over|stops|is done)(?= |$)",
@@ -124,7 +124,8 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
          rf"when (?:it|everything|all) is over|after everything|after it all)(?= |$)", _plain("end")),
         (rf"\b(?:(?:for |during )?(?:the|this) (?:whole|entire|full) (?:time|clip|video|film|scene|shot|recording|"
          rf"duration|{NUMBER} {SECONDS})|all the time|all the way through|throughout(?: {_CLIP})?|always|at all times|"
-         rf"from (?:the )?start to (?:the )?(?:end|finish)|from (?:the )?beginning to (?:the )?end|constantly|all "
+         rf"from (?:the )?(?:start|begin) to (?:the )?(?:end|finish)|from (?:the )?beginning to (?:the )?end|"
+         rf"constantly|all "
          rf"along|"
          rf"for all {NUMBER} {SECONDS}|the (?:whole|entire|full) way through)(?= |$)", _plain("always")),
         (rf"\b(?:at any (?:time|point|moment|stage)|at some (?:time|point|moment|stage)|sometimes?|ever|at one point|"
@@ -187,6 +188,8 @@ def clauses(said: str) -> Iterator[tuple[When, str]]:
 def conjunction(said: str) -> str:
     """A conjunction by its sense: "when", "while", "before", "after" or "until"."""
     last = said.split()[-1]
+    if said == "by the time":
+        return "by"
     if said in ("prior to",) or last == "before":
         return "before"
     if last in ("after", "following"):

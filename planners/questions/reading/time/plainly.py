@@ -12,6 +12,86 @@ from .....gaussians import late_re as re
 _LINES = r"""
 ^whether =>
 (?: ,)? or not$ =>
+^(which|what|how many) (\w+) in the room (?!is\b|are\b|was\b|has\b|have\b) => \1 \2
+\bwhatever(?: it is that)? => everything that
+ (?:already |still )?or (?:is it )?not(?: yet)?(?: (?:open|opened|closed|shut|moving|turning|there|on|off))?(?= ,|$| \
+(?:at|after|by|when|in|on|before)\b) =>
+(?: ,)? or (?:anything|something|so)(?: like that)?$ =>
+ (?:off |away |out |around )?(?:anywhere|somewhere)(?: else)?(?= |$) =>
+\blet(?:s| us)? go(?= |$) => starts to fall
+\b(is|are|was|were|still) (?:up|down|over|out) (?=(?:on|in|by|at|under) the ) => \1
+\bthe (\w+) (?:fellow|guy|chap|dude|lad|figure|thingy|character|creature)\b => the \1 thing
+^(.*?)\b(?:it|he|she|they)\b (.+?) , ((?:the|that|this|our|my) (?:\w+ )?\w+)(?= ,|$)(.*)$ => \1\3 \2\4
+\b(sits?|stands?|stays?|lies?|remains?|rests?|sitting|standing|lying) (?:right |just )?(?:there|around|put)(?= |$) \
+=> stays still
+^between (.+) and (.+?) , how (?:long|much time|many seconds) (?:does|do|is|did) (.+?) (?:wait|rest|pause|stay|stand|\
+sit|idle|stop|waiting|resting|pausing)\
+(?: still| out| open| there)*$ => how long is the pause between \3 \1 and \3 \2
+^how many of (?:the |its |these |those )?(?:\w+ )?\w+ 's (\w+) => how many \1
+^where (?:would|could|can|might|may|do|should|will) (?:i|you|we|one) (?:find|see|spot|look for|pick up) (.+)$ => \
+where is \1
+^(?:what|which) (?:surface|floor covering|ground|piece of floor|material) (?:is |lies |is lying )?(?:directly |right \
+)?(?:under|underneath|beneath|below) \
+(.+?)((?: at| when| after| before) .+)?$ => what is \1 on\2
+^(?:which|what) (?:surface|thing)? ?is (.+?) (?:lying|rolling|standing|resting|sitting|riding|travelling|\
+travell?ing) on\b => what is \1 on
+^when is the (?:very )?(?:first|start|beginning|onset) (?:frame |sign |moment )?of (?:the )?(.+?)(?: 's)? \
+(?:movement|motion|moving)$ => \
+when does the \1 start to move
+^when is the (?:very )?(?:last|final|end) (?:frame |sign |moment )?of (?:the )?(.+?)(?: 's)? (?:movement|motion|\
+moving)$ => \
+when does the \1 stop
+^(?:give me |tell me |what is |list |name |show me )?(?:the )?(drop|fall|falling|landing|opening|moving|movement) \
+(?:order|sequence) of (.+)$ => \
+in what order do \2 \1
+^(?:what is )?(?:the )?(?:total |overall |whole )?(?:travel|motion|movement|moving|moved) (?:time|duration) (?:of|\
+for) (.+)$ => how long does \
+\1 move
+^(?:what is )?(?:the )?(?:total |overall |whole )?(rolling|running|walking|spinning|turning|falling|waiting|\
+travell?ing|sliding) (?:time|duration) \
+(?:of|for) (.+)$ => how long is \2 \1
+^(?:what is )?(?:the )?(?:total |overall |whole )?(rug|carpet|mat|table|desk|floor|board) (?:time|duration) (?:of|\
+for) ((?:the )?\w+(?: \w+)?)(?= ,|$) \
+=> how long is \2 on the \1
+^how (?:many|much) (meters?|centimeters?|cm|m|degrees?|feet|steps) (?:does |is |do )?(.+?) (?:is making|makes|is \
+doing|make|doing|making)(?= |$) => \
+how many \1 does \2 move
+^(?:does |did |has |will |is )?(?:somebody|someone|anybody|anyone|a person|they) (?:ever )?(shuts?|closes?|opens?|\
+pushe?s?|pulls?|moves?|\
+turns?|stops?|closed|opened|moved|touche?s?) (the (?:\w+ )?\w+)(?= (?:again|back|out|in|off|on|afterwards|later|at|\
+before|after)\b|$) => does \2 \1
+(?: ,)? (?:counted|counting|measured|starting) from (?:its|the) (?:first|initial) (?:movement|move|motion)$ =>
+^(how (?:long|many seconds|much time)) (?:does |do |is |will )?(.+?) (?:needs?|takes?|requires?) (?:until|till|\
+before) (?:it|he|she) (?:has|is|have) \
+(.+)$ => \1 does \2 take to \3
+^((?:for )?how (?:long|many seconds) (?:is|does|stays|remains|will) (?!.* (?:from|between|after) ).+?) (?:till|until|\
+to|up to) (?:the (?:very )?end\
+(?: of the (?:clip|video|scene|film|shot))?|the (?:clip|video|scene|film|shot) (?:is|'s) (?:over|done)|the (?:clip|\
+video|scene|film) ends)$ => \1
+^(.+?) , how (long|many seconds|much time) (?:is|takes|does|would) (?:that|it|this)(?: take| last| be)?$ => how \2 \
+does \1 take
+^(?:after|from|since) (?:what|which) (?:second|time|moment|point|\w+ second)(?: on)? (?:is|does|are|has|do) \
+(?:nothing|none of them|no \w+) \
+(?:is |are )?(\w+)(?: any ?more| any longer)?$ => when does everything stop \1
+(?: ,)? (?:both|all|the two) (?:bits|parts|legs|stretches|ways|pieces|halves)(?: taken)? (?:together|combined|added \
+up)(?= ,|$) =>
+^(?:what is )?(?:the )?(?:whole |entire |total |full )?(.+?) 's (?:whole|entire|total|full|complete) (?:walk|way|\
+path|trip|journey|route|roll|travel)\
+((?: ,)? in \w+)?$ => how far does \1 move\2
+^how many (?:corners|bends|curves|turns) (?:does|do|did) (.+?) (?:walk|go|take|make|turn|drive|come)(?: around| \
+round| past)?$ => how often does \1 turn
+^the (?:exact |very |precise )?(?:moment|time|second|point|instant) (?:when |at which |that )?(?=(?:the|it|he|she) ) \
+=> when does
+\b(turn|go|walk|take)s? (the \w+(?: \w+)?) (?:around |round )?(?:the|a) corner$ => does \2 turn
+^to (?:which|what) (?:moment|time|second|point)\b => when
+^how (much|many seconds|long) (later|earlier|sooner) than (.+?) (does|do|did|is|will) (.+)$ => how \1 \2 \4 \5 than \3
+^(?:when|as|once) (?:it|he|she|the \w+(?: \w+)?) (?:changes (?:its )?(?:direction|course)|turns|takes (?:the|its|a) \
+(?:turn|corner)) , (.+?) \
+(?:go|turn|move|walk|head|drive|going|turning) (?:to )?(?:the |its )?(left or right|right or left|left or (?:to \
+)?(?:the |its )?right|right or (?:to )?(?:the )?left)$ => \1 turn \2
+^(.+?) (?:go|turn|move|walk|head|drive) (?:to )?(?:the |its )?(left or right|right or left) (?:when|as|once) (?:it|\
+he|she) (?:changes (?:its )?(?:direction|course)|\
+turns)$ => \1 turn \2
 ^(?:will|would|should|could|shall) (.+?) be\b => is \1
 \b(anything|something|else|anybody|nothing) in (?:the|this) (?:whole |entire )?(?:room|scene|clip|film)\b => \1
 \b(?:a|one) (?:second|sec) and a half\b => one and a half seconds
@@ -28,6 +108,21 @@ do \1 \2
 ^(?:what|which) is the (?:only )?(\w+ing) (?:thing|object|one) => what is \1
 ^(?:is|are) there (anything|something|any \w+) (?:else )?(?:that|which) (.+)$ => does \1 \2
 ^how does (.+?) end up(?: ,)? (\w+ or \w+)$ => is \1 \2 at the end
+^how (?:long|far) (?:is|was) (?:the )?(.+?) (?:'s )?(?:first|initial) (?:leg|stretch|section|straight|part)$ => how \
+far does \1 move before the turn
+^how (?:long|far) (?:is|was) (?:the )?(.+?) (?:'s )?(?:second|last|final) (?:leg|stretch|section|straight|part)$ => \
+how \
+far does \1 move after the turn
+^how (?:long|far) (?:is|was) the (first|initial|second|last|final) (?:leg|stretch|section|straight|part) of \
+(?!its |the (?:way|walk|trip|journey)$)(.+?)(?: 's (?:way|walk|trip|journey|path|route))?$ => how far is \2 's \1 leg
+^how (?:long|far) (?:is|was) (?:the )?(.+?) 's (?:first|initial) leg$ => how far does \1 move before the turn
+^how (?:long|far) (?:is|was) (?:the )?(.+?) 's (?:second|last|final) leg$ => how far does \1 move after the turn
+^how (?:long|far) (?:is|was) (?:the )?(?:first|initial) (?:leg|stretch|section|straight|part)(?: of .+)?$ => how far \
+does it \
+move before the turn
+^how (?:long|far) (?:is|was) (?:the )?(?:second|last|final) (?:leg|stretch|section|straight|part)(?: of .+)?$ => how \
+far does \
+it move after the turn
 ^how long is (?:the|its) (?:path|way|route|distance|track|trip)(?: (?:of|that) (.+?))?(?: \
 (?:moves|takes|walks|covers))?$ => how far does \1 move
 \b(?:is|was) it that (?=\w+s\b) =>
@@ -37,7 +132,8 @@ do \1 \2
 \b(opening|closing|sliding|rolling|turning|falling|walking) (?:movement|motion|action|phase)\b => \1
 (?: ,)? (?:out and back|there and back)$ =>
  (?:at rest|still|stationary|motionless) between (?:the|its) (?:two )?(?:movements|motions|moves|trips)$ => pausing
-^((?:which|what|who) (?!.*\b(?:first|earlier|sooner|later|last|faster|slower|quicker)\b)\w+ .+?) , the \w+(?: \w+)? \
+^((?:which|what|who) (?!.*\b(?:first|earlier|sooner|later|last|faster|slower|quicker|longer|shorter|farther|wider|\
+more|less|most)\b)\w+ .+?) , the \w+(?: \w+)? \
 or the \w+(?: \w+)?$ => \1
 ^(?:does|do|did|is|are|is it) only (the .+?) (?:that )?(move|moves|moving|fall|falls|falling|turn|turns|turning)$ \
 => nothing besides \1 \2

@@ -1,0 +1,380 @@
+"""Reads comparisons as questions for two numbers, or for one that is held against a number that is said.
+
+"Does it open faster than it closes?" asks "how fast does it open" and "how fast does it close"; "does the fan turn
+faster than 30 rpm?" asks "how fast does the fan turn in rpm". How these are answered is known elsewhere.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from .deeds import as_noun, said_in
+from .happenings import thing
+from .moments import NUMBER, SECONDS, is_main, seconds, without_time
+
+Relation = Literal["more", "less", "same", "at_least", "at_most"]
+Asks = Literal["yesno", "which", "difference"]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two numbers, or one and a number that is said.
+
+    Attributes:
+        relation: in which the first must stand to the second.
+        first, second: ways of asking for the numbers, the likeliest first; `second` is empty where one is said.
+        asks: "yesno", "which" of the two is more (or less), or by how much they differ.
+        number: what is said, in `unit`; or the share of the second that is meant.
+        unit: as said, "" if the second is asked for.
+        names: what the two are called, of "which".
+        denied: whether it is said not to be so.
+    """
+
+    relation: Relation
+    first: tuple[str, ...]
+    second: tuple[str, ...] = ()
+    asks: Asks = "yesno"
+    number: float = 1.0
+    unit: str = ""
+    names: tuple[str, ...] = ()
+    denied: bool = False
+
+
+# What a comparing word asks for, and whether it means less of it.
+_WORDS: dict[str, tuple[str, bool]] = {
+    "faster": ("how fast", False), "quicker": ("how fast", False), "slower": ("how fast", True),
+    "more quickly": ("how fast", False), "more rapidly": ("how fast", False), "more slowly": ("how fast", True),
+    "longer": ("how long", False), "shorter": ("how long", True), "more time": ("how long", False),
+    "less time": ("how long", True), "a longer time": ("how long", False), "a shorter time": ("how long", True),
+    "farther": ("how far", False), "a longer way": ("how far", False), "a shorter way": ("how far", True),
+    "a longer distance": ("how far", False), "a shorter distance": ("how far", True),
+    "a greater distance": ("how far", False), "more distance": ("how far", False), "less far": ("how far", True),
+    "wider": ("how far", False), "more often": ("how often", False), "less often": ("how often", True),
+    "later": ("when", False), "earlier": ("when", True), "sooner": ("when", True),
+}  # fmt: skip
+_PLAIN = {
+    "fast": "how fast", "quick": "how fast", "quickly": "how fast", "slow": "how fast", "slowly": "how fast",
+    "rapidly": "how fast", "long": "how long", "much time": "how long", "far": "how far", "wide": "how far",
+    "often": "how often", "many times": "how often", "late": "when", "early": "when",
+}  # fmt: skip
+_EQUAL_NOUNS = {
+    "time": "how long", "amount of time": "how long", "length of time": "how long", "duration": "how long",
+    "long": "how long", "seconds": "how long", "speed": "how fast", "pace": "how fast", "rate": "how fast",
+    "distance": "how far", "way": "how far",
+}  # fmt: skip
+_ADJ = "|".join(sorted(_WORDS, key=len, reverse=True))
+_AUX = r"(?:is|are|was|were|does|do|did|has|have|had|will|can)"
+_MUCH = r"(?:much |a lot |a bit |a little |even |any |clearly |slightly |significantly |for |by )*"
+
+_LENGTH = r"(?:meters?|m|centimeters?|cm|millimeters?|mm|feet|foot|ft|inch|inches)"
+_RATE = (
+    rf"(?:(?:{_LENGTH}|times|degrees?|deg|turns?|rotations?|revolutions?|rounds?|radians?|rad) (?:per|a|an|/|each|"
+    rf"every) "
+    r"(?:second|sec|s|minute|min|hour|h)|rpm|rps|mps|kmh|kph|mph|hz|hertz)"
+)
+_TURNS = r"(?:full |complete |whole )?(?:turns?|rotations?|revolutions?|rounds?)"
+_UNIT = rf"(?:{_RATE}|{_LENGTH}|{SECONDS}|degrees?|deg|{_TURNS}|times)"
+_BOUND: dict[str, Relation] = {
+    "more than": "more", "over": "more", "above": "more", "better than": "more", "beyond": "more", "past": "more",
+    "greater than": "more", "higher than": "more", "larger than": "more", "bigger than": "more", "longer than": "more",
+    "faster than": "more", "quicker than": "more", "farther than": "more", "wider than": "more", "later than": "more",
+    "up to more than": "more",
+    "less than": "less", "fewer than": "less", "under": "less", "below": "less", "shorter than": "less",
+    "slower than": "less", "lower than": "less", "smaller than": "less", "earlier than": "less",
+    "sooner than": "less",
+    "at least": "at_least", "no less than": "at_least", "not less than": "at_least", "at most": "at_most",
+    "no more than": "at_most", "not more than": "at_most", "no longer than": "at_most", "exactly": "same",
+    "as much as": "at_least", "as long as": "at_least", "as fast as": "at_least", "as far as": "at_least",
+}  # fmt: skip
+_LIMIT = "|".join(sorted(_BOUND, key=len, reverse=True))
+_WITH_NUMBER = re.compile(
+    rf"^(?P<pre>.+?) {_MUCH}(?P<in>in |by )?(?P<c>{_LIMIT}) (?:about |around |a full )?(?P<n>{NUMBER}) (?P<u>{_UNIT})"
+    r"(?: (?:long|in length|of time|in total|in all|altogether))?(?= |$)(?P<post>.*)$"
+)
+_COUNTED = re.compile(
+    rf"^(?P<aux>is|are|do|does|did|were|was|have|has) (?:there )?(?P<c>more than|less than|fewer than|at least|at most|"
+    rf"exactly|no more than|only) (?P<n>{NUMBER}) (?P<x>(?:\w+ )??\w+s)(?P<post> .+)$"
+)
+_SHARES = {
+    "half": 0.5, "halfway": 0.5, "half way": 0.5, "50 %": 0.5, "50 percent": 0.5, "a quarter": 0.25, "a third": 1 / 3,
+    "one third": 1 / 3, "two thirds": 2 / 3, "three quarters": 0.75, "25 %": 0.25, "75 %": 0.75,
+}  # fmt: skip
+_SHARE = re.compile(
+    rf"^(?P<aux>{_AUX}) (?P<x>.+?) (?:(?:come|be|get|been|gone|come out|slid|swung|moved|already|still|now) )*"
+    rf"(?P<c>more than|over|at least|less than|under|past|beyond|not even|at most) "
+    rf"(?P<s>{'|'.join(sorted(_SHARES, key=len, reverse=True))})"
+    r"(?: (?:of (?:its|the) (?:full |total |whole )?(?:way|opening|travel|extension|swing|range)|of the way|way))?"
+    r"(?: (?:open|opened|out|extended|pulled out))+(?P<post> .*)?$"
+)
+_SHARE_OF_WAY = re.compile(
+    rf"^(?P<aux>does|do|did|has|have|is) (?P<x>.+?) (?:(?:already|covered|cover|travelled|traveled|travel|done|made|"
+    rf"make|gone|rolled|moved|walked|roll|move|walk|go|come) )+(?P<c>more than|over|at least|less than|under) "
+    rf"(?P<s>{'|'.join(sorted(_SHARES, key=len, reverse=True))}) (?:of )?(?:its|the|of its|of the) (?:total |whole |"
+    r"full )?(?:way|distance|path|route|journey|trip)(?P<post> .*)?$"
+)
+_THAN = re.compile(rf"^(?P<a>.+?) {_MUCH}(?P<adj>{_ADJ})(?: (?P<mid>.+?))? than (?P<b>.+)$")
+_AS = re.compile(
+    rf"^(?P<a>.+?) (?P<not>not )?(?:(?:just|exactly|about) )?as "
+    rf"(?P<adj>{'|'.join(sorted(_PLAIN, key=len, reverse=True))})"
+    r"(?: (?P<mid>.+?))? as (?P<b>.+)$"
+)
+_DIFFERENCE = re.compile(
+    rf"^(?:by )?how (?:much|many (?P<u>{_UNIT})|far) (?P<adj>{_ADJ}) (?P<aux>{_AUX}) (?P<x>.+) than (?P<b>.+)$"
+)
+_SAME = re.compile(
+    rf"^(?P<aux>{_AUX}) (?P<a>.+?) (?P<v>take|takes|last|need|cover|travel|move|go|have|roll|fall|turn|spin|at|walk|"
+    rf"use)?"
+    r" ?(?:for |with |at |of )?(?:(?:exactly |about |roughly )?(?:the same|an equal|equal|the same exact) (?:\w+ )?"
+    rf"(?P<n>{'|'.join(sorted(_EQUAL_NOUNS, key=len, reverse=True))})|equally (?P<e>{'|'.join(_PLAIN)}))"
+    r"(?P<post>(?: (?:to|for|in) .+)?)$"
+)
+_WHICH = re.compile(
+    rf"^(?:and )?(?:which|what)(?: one| of the two(?: \w+)?| of these| of those)? (?P<v>is|takes|lasts|goes|moves|"
+    rf"runs|does|"
+    rf"needs|happens|was|took|lasted)?(?: the)? ?{_MUCH}(?P<adj>{_ADJ})(?: one)?(?P<mid> to \w+)?(?: ,| :)? "
+    r"(?P<a>.+?)(?: ,)? or (?P<b>.+)$"
+)
+_WHETHER_OR = re.compile(
+    rf"^(?P<aux>does|do|did|is|was) (?P<x>.+?) (?P<v>take|last|spend|need)?(?: |^){_MUCH}(?P<adj>{_ADJ})(?: ,)? "
+    r"(?P<a>(?:to |on |in |at |when |while |before |after )?.+?)(?: ,)? or (?P<b>.+)$"
+)
+_DOES_OR = re.compile(rf"^(?P<aux>does|do|did) (?P<x>.+?) (?P<a>\w+) or (?P<b>\w+) (?P<adj>{_ADJ})$")
+_TIMELY = re.compile(r"^(?:at|in|on|before|after|during|when|while|whilst|once|until|between|from)\b")
+_LEGS = re.compile(r"\b(?:leg|way|path|distance|route|track|stretch|trip|journey|road)\b")
+
+
+def comparisons(said: str) -> Iterator[Comparison]:
+    """Each way of reading words as a comparison, the likeliest first."""
+    if re.search(r"\bat the same time\b", said):
+        return
+    yield from _with_share(said)
+    yield from _with_number(said)
+    if (found := _DIFFERENCE.match(said)) is not None and found["adj"] not in ("later", "earlier", "sooner"):
+        for one in _than(f"{found['aux']} {found['x']}", found["adj"], "", found["b"]):
+            yield replace(one, asks="difference", unit=found["u"] or "")
+        return
+    if is_main(said) or not re.match(r"(?:how|what|which|when|where|who|list|name)\b", said):
+        if (found := _THAN.match(said)) is not None:
+            yield from _than(found["a"], found["adj"], found["mid"] or "", found["b"])
+        if (found := _AS.match(said)) is not None and not re.search(rf"^{NUMBER} ", found["b"]):
+            for one in _than(found["a"], found["adj"], found["mid"] or "", found["b"]):
+                yield replace(one, relation="same", denied=found["not"] is not None)
+        if (found := _SAME.match(said)) is not None:
+            yield from _same(found)
+    yield from _which(said)
+
+
+def _asked(cue: str, clause: str) -> tuple[str, ...]:
+    """A clause behind a cue, in the ways in which it may be asked: "how long does it take", "how long is the fall"."""
+    clause = clause.strip(" ,")
+    clause = re.sub(r"^(?:the )?(?:time|duration)(?: span)? (?:that |of |for which )?(?=it |the )", "", clause)
+    bare = re.sub(rf"^{_AUX} ", "", clause)
+    plain = [f"{cue} {clause}", f"{cue} {bare}"]
+    if is_main(clause):
+        plain.append(f"what {clause}")
+    else:
+        plain += [f"{cue} does {bare}", f"what is {bare}"]
+    if cue == "how long":
+        plain.append(f"how long does {bare} take")
+    return tuple(dict.fromkeys(p.replace(" 's", "'s") for p in plain))
+
+
+def _with_number(said: str) -> Iterator[Comparison]:
+    if re.match(r"(?:how|what|which|when|where|who|list|name)\b", said):
+        return
+    if (found := _COUNTED.match(said)) is not None and not re.fullmatch(_UNIT, found["x"]):
+        relation: Relation = "same" if found["c"] == "only" else _BOUND[found["c"]]
+        aux = "" if found["aux"] in ("do", "does", "did") else f" {'are' if found['aux'] == 'is' else found['aux']}"
+        asked = f"how many {found['x']}{aux}{found['post']}"
+        yield Comparison(relation, (asked,), number=seconds(found["n"]), unit="things")
+    if (found := _WITH_NUMBER.match(said)) is None:
+        return
+    unit, limit = found["u"], found["c"]
+    rest = f"{found['pre']} {found['post'].strip()}".strip(" ,")
+    denied = re.search(r"\b(?:not|never) ?$", found["pre"]) is not None
+    rest = re.sub(r"\b(?:not|never) ?(?=$| )", "", rest).strip() if denied else rest
+    timed = re.fullmatch(SECONDS, unit) is not None
+    if timed and limit in ("later than", "earlier than", "sooner than"):
+        cues = ["when"]
+    elif timed:
+        cues = ["how long"]
+    elif re.fullmatch(_RATE, unit):
+        cues = ["how fast"]
+    elif re.fullmatch(_LENGTH, unit):
+        cues = ["how far"]
+    elif unit.startswith("deg"):
+        cues = ["how many degrees"]
+    else:
+        cues = ["how many times" if unit == "times" else "how many turns"]
+    if limit == "faster than" and timed:
+        return
+    top = re.search(r" (?:ever|at any (?:time|point|moment)|at some (?:time|point|moment))(?= |$)", rest)
+    if top is not None and cues == ["how fast"]:
+        rest = f"{rest[: top.start()]}{rest[top.end() :]}"
+    rest = re.sub(r" (?:for|by|at|with|in|on average|reach|make|of|on)$", "", rest)
+    rest = re.sub(r"^on average(?: ,)? ", "", rest)
+    cue = "what is the top speed of" if top is not None and cues == ["how fast"] else cues[0]
+    ways = _asked(cue, rest)
+    ways = tuple(dict.fromkeys((*ways, *(re.sub(r" (?:goes|go|does|do|run|runs)$", "", a) for a in ways))))
+    if cues[0] in ("how fast", "how far"):
+        ways = tuple(f"{a} in {unit.replace('times', 'turns')}" for a in ways)
+    yield Comparison(_BOUND[limit], ways, number=seconds(found["n"]), unit=unit, denied=denied)
+
+
+def _with_share(said: str) -> Iterator[Comparison]:
+    if (found := _SHARE.match(said)) is not None and (post := (found["post"] or "").strip()):
+        relation: Relation = "at_least" if found["c"] == "not even" else _BOUND[found["c"]]
+        now = re.sub(r"^(?:by|after) (?=\S+ (?:seconds?|secs?|s)$)", "at ", re.sub(r"^already ", "", post))
+        if without_time(now)[0] is None and not _TIMELY.match(now):
+            return
+        yield Comparison(
+            relation, (f"how far is {found['x']} open {now}",), (f"how far does {found['x']} open",),
+            number=_SHARES[found["s"]], denied=found["c"] == "not even",
+        )  # fmt: skip
+    if (found := _SHARE_OF_WAY.match(said)) is not None and (post := (found["post"] or "").strip()):
+        now = re.sub(r"^(?:at|after) (?=\S+ (?:seconds?|secs?|s)$)", "by ", re.sub(r"^already ", "", post))
+        yield Comparison(
+            _BOUND[found["c"]], (f"how far does {found['x']} move {now}",), (f"how far does {found['x']} move",),
+            number=_SHARES[found["s"]],
+        )  # fmt: skip
+
+
+def _than(a: str, adj: str, mid: str, b: str) -> Iterator[Comparison]:
+    """Two clauses of which the second leaves out what the first says."""
+    cue, less = _WORDS.get(adj, (_PLAIN.get(adj, ""), False))
+    a = re.sub(rf" {_MUCH.rstrip('*')}$", "", f"{a} ").strip()
+    if cue == "how long" and _LEGS.search(a) and adj in ("longer", "shorter", "long"):
+        cue = "how far"
+    relation: Relation = "less" if less else "more"
+    b = re.sub(r" (?:does|do|did|is|are|was|has)$", "", b)
+    for one, other in _clauses(a, mid, b):
+        yield Comparison(relation, _asked(cue, one), _asked(cue, other))
+
+
+def _clauses(a: str, mid: str, b: str) -> Iterator[tuple[str, str]]:
+    """The first clause in full, and the ways of putting the second in place of a part of it."""
+    a = re.sub(r" (?:spend|spends|spent|stay|stays)$", " is", a) if mid else a
+    if re.match(r"^does (.+) is$", a):
+        a = re.sub(r"^does (.+) is$", r"is \1", a)
+    first = f"{a} {mid}".strip()
+    if re.search(r"\bfirst\b", a) and (other := re.fullmatch(r"the (second|last|third)(?: one)?", b)) is not None:
+        yield first, re.sub(r"\bfirst\b", other[1], first)
+        return
+    aux = re.match(rf"^(?P<aux>{_AUX}) (?P<x>.+)$", a)
+    said_by = f"{aux['aux']} " if aux is not None else ""
+    whole = aux["x"] if aux is not None else a
+    name, verb = _subject_of(whole)
+    if _TIMELY.match(b):
+        bare = a if without_time(mid)[0] is not None or _TIMELY.match(mid) else first
+        when, less = without_time(bare)
+        bare = less if when is not None else bare
+        lone = re.match(r"^(?P<j>before|after|at|during|when)(?: (?:it|that|then))?$", b)
+        clause = re.match(r"^(?:before|after|at|during|when) (?P<c>.+)$", mid)
+        cut = re.search(r" (?P<j>before|after|at|during|when|in) (?P<c>.+)$", a) if not mid else None
+        if lone and clause:
+            yield first, f"{bare} {lone['j']} {clause['c']}"
+        elif lone and cut:
+            yield first, f"{a[: cut.start()]} {lone['j']} {cut['c']}"
+        elif not lone:
+            yield first, f"{bare if cut is None else a[: cut.start()]} {b}"
+        return
+    if b.startswith("to "):
+        cut = re.search(r" to .+$", first)
+        if cut is not None:
+            yield first, f"{first[: cut.start()]} {b}"
+        return
+    clause = re.match(r"^(?:it|he|she|they|that)(?: (?:is|does|do|are|was|did))? (?P<v>.+)$", b)
+    if clause is not None and not b.startswith("that of"):
+        aux_b = re.match(r"^\w+ (is|are|was)\b", b)
+        yield first, f"{'is' if aux_b else 'does'} {name} {clause['v']}"
+        return
+    head = re.match(r"^(?P<h>(?:the |its )?(?:\w+ )?\w+) (?:of|by|for) .+$", name)
+    if head is not None and re.match(r"^(?:that|the one|the) of ", b):
+        yield first, f"{said_by}{head['h']} of {b.partition(' of ')[2]} {verb}".strip()
+        return
+    if head is not None and re.match(r"^(?:the |that )\w+(?: one| book)?$", b):
+        yield first, f"{said_by}{head['h']} of {b} {verb}".strip()
+    if any((start, stop) == (0, len(b)) for start, stop, _ in said_in(b)) and thing(b) is None:  # "than still"
+        yield first, f"{said_by}{name} {b}"
+        return
+    rest = f"{verb} {mid}".strip()
+    if re.match(r"^(?:the|a|an|its|that|this|my|when|any)\b", b) or len(b.split()) <= 2:
+        yield first, f"{said_by}{b} {rest}".strip()
+        if mid:
+            yield first, f"{said_by}{name} {verb} {b}".replace("  ", " ")
+
+
+def _subject_of(clause: str) -> tuple[str, str]:
+    """A clause without its auxiliary as its subject and the rest: ("the drawer", "open"), ("the robot", "walk")."""
+    for cut in (m.start() for m in re.finditer(" ", clause)):
+        if thing(clause[:cut]) is not None and (
+            re.match(r"(?:take|last|need|spend|use|do|make)s?\b", clause[cut + 1 :])
+            or any(start == cut + 1 for start, _, _ in said_in(clause))
+        ):
+            return clause[:cut], clause[cut + 1 :]
+    return clause, ""
+
+
+def _same(found: re.Match[str]) -> Iterator[Comparison]:
+    cue = _EQUAL_NOUNS[found["n"]] if found["n"] else _PLAIN[found["e"]]
+    verb = found["v"] or ""
+    if verb in ("at", "have", "use", "cover"):
+        verb = "take" if cue == "how long" else "move"
+    if found["aux"] in ("is", "are", "was", "were") and found["e"]:
+        verb = ""
+    denied = re.search(r"\bnot$", found["a"]) is not None
+    both = re.sub(r"\b(?:both|not) ?", "", found["a"]).strip()
+    two = re.match(r"^(?P<a>.+?) and (?P<b>.+)$", both)
+    if two is None:
+        yield Comparison("same", _asked(cue, f"{found['aux']} {both} {verb}{found['post']}".strip()), denied=denied)
+        return
+    first, second = two["a"], two["b"]
+    if re.fullmatch(r"(?:the )?\w+", first) and as_noun(first) is None and thing(first) is None:
+        first = f"{first} {second.split()[-1]}"  # "the red and the blue book"
+    a, b = (_asked(cue, f"does {x} {verb}{found['post']}".strip()) + _asked(cue, f"is {x}") for x in (first, second))
+    yield Comparison("same", a, b, denied=denied)
+
+
+def _which(said: str) -> Iterator[Comparison]:
+    if (found := _WHICH.match(said)) is not None:
+        cue, less = _WORDS[found["adj"]]
+        if cue == "when":
+            return
+        a, b = found["a"], found["b"]
+        if cue == "how long" and _LEGS.search(a) and found["v"] in ("is", "was", None):
+            cue = "how far"
+        tail = f" take{found['mid']}" if found["mid"] else ""
+        names = (_bare(a), _bare(b))
+        of = re.search(r" (?:of|by) .+$", b)
+        first = (a, f"{a}{of.group()}") if of is not None and " of " not in a else (a,)
+        yield Comparison(
+            "less" if less else "more", tuple(q for x in first for q in _asked(cue, f"{x}{tail}")),
+            _asked(cue, f"{b}{tail}"), asks="which", names=names,
+        )  # fmt: skip
+        return
+    if (found := _DOES_OR.match(said)) is not None:
+        cue, less = _WORDS[found["adj"]]
+        x = f"{found['aux']} {found['x']}"
+        yield Comparison("less" if less else "more", _asked(cue, f"{x} {found['a']}"), _asked(cue, f"{x} {found['b']}"),
+                         asks="which", names=(found["a"], found["b"]))  # fmt: skip
+        return
+    if (found := _WHETHER_OR.match(said)) is not None:
+        cue, less = _WORDS[found["adj"]]
+        if cue == "when":
+            return
+        a, b = found["a"], re.sub(r"^(?:is it|does it) ", "", found["b"])
+        x = f"{found['aux']} {found['x']}{' ' + found['v'] if found['v'] and found['v'] != 'spend' else ''}"
+        if found["v"] == "spend":
+            x = f"is {found['x']}"
+        joined = (
+            b if re.match(r"^(?:to|on|in|at|when|while|before|after)\b", b) or not a.startswith("to ") else f"to {b}"
+        )
+        yield Comparison("less" if less else "more", _asked(cue, f"{x} {a}"), _asked(cue, f"{x} {joined}"),
+                         asks="which", names=(_bare(a), _bare(b)))  # fmt: skip
+
+
+def _bare(said: str) -> str:
+    return re.sub(r"^(?:the|a|an|its|to|when it|while it) ", "", said.strip(" ,"))

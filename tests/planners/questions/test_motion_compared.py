@@ -1,0 +1,75 @@
+"""Comparisons in a scene with time, questions that are made of several, and those that offer names to choose from."""
+
+from __future__ import annotations
+
+import pytest
+
+from scenewright.agent.session.session import Session
+from scenewright.planners.questions.reading.time import several
+from scenewright.planners.questions.reading.time.comparing import comparisons
+from tests.planners.questions.test_motion_asked import moving, said
+
+
+@pytest.fixture(scope="module")
+def session() -> Session:
+    return Session(moving())
+
+
+@pytest.mark.parametrize(
+    ("text", "answer"),
+    [
+        ("does the clock turn faster than 20 rpm?", "yes"),
+        ("Does the clock do more than 40 rpm?", "no"),
+        ("does the ball roll farther than 3 metres?", "yes"),
+        ("is the ball on the rug for more than a second?", "no"),
+        ("does the red book take as long to fall as the green one?", "yes"),
+        ("do the two books fall equally fast?", "yes"),
+        ("does the ball move longer than it stands still?", "no"),
+        ("does the ball move longer than the red book?", "yes"),
+        ("has the ball covered more than half of its way at 1.5 s?", "no"),
+        ("do more than two books fall?", "no"),
+        ("which takes longer, the fall of the red book or the movement of the ball?", "movement of the ball"),
+        ("how much longer does the ball move than the red book?", pytest.approx(1.6, abs=0.06)),
+        ("does the ball roll farther than the cat?", None),
+        ("which moves, the chair, the desk or the ball?", "ball"),
+        ("What stays where it is from start to finish, the chair or the ball?", "chair"),
+        ("which of these moves: the chair or the desk?", None),
+        ("Does the chair fall over, or at least move a little?", "no"),
+        ("does the red book fall, or at least move?", "yes"),
+        ("when does the ball cross the rug and stop?", None),
+        ("I lost my glasses. What does the ball cross?", "rug"),
+        ("Something fell. When does the red book fall?", pytest.approx(2.0, abs=0.03)),
+        ("how many cats are on the desk at 1 s?", None),
+        ("how many chairs are on the desk at 1 s?", 0.0),
+        ("which surface is under the ball at 2.2 s?", "rug"),
+        ("does the red book finally fall?", "yes"),
+        ("by the time the red book lands, has the green one fallen?", "yes"),
+    ],
+)
+def test_comparisons_and_questions_of_two(session: Session, text: str, answer: object) -> None:
+    given = said(session, text)
+    assert given.answer == answer, given.text
+
+
+@pytest.mark.parametrize(
+    ("words", "first", "second"),
+    [
+        ("does it open faster than it closes", "how fast does it open", "how fast does it closes"),
+        ("does it take longer to open than to close", "how long does it take to open",
+         "how long does it take to close"),
+        ("does it go farther before the turn than after", "how far does it go before the turn",
+         "how far does it go after the turn"),
+        ("do the out stroke and the return stroke take the same time", "how long does the out stroke take",
+         "how long does the return stroke take"),
+        ("is the door more than half open at 2 s", "how far is the door open at 2 s", "how far does the door open"),
+    ],
+)  # fmt: skip
+def test_a_comparison_is_two_questions(words: str, first: str, second: str) -> None:
+    found = next(comparisons(words))
+    assert found.first[0] == first and second in found.second
+
+
+def test_what_is_no_comparison_is_left_alone() -> None:
+    for words in ("does it move at the same time", "which book falls first", "is the door open at 2 s"):
+        assert list(comparisons(words)) == [], words
+    assert several.either("is it open or closed") is None and several.choice("what moves at 2 s") is None
