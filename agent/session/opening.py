@@ -91,7 +91,6 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
     from ..pictures.named_cameras import choose_view
     from .own_references import own_references
 
-    startup.end()
     photographs = own_references(options.references, options.reference_width)  # a bad file is told first
     make, encoder, had_field = (
         _on_tiles(Tiles.open(options.path), options) if options.tiled and is_tiles(options.path) else _on_file(options)
@@ -120,6 +119,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         terminal.say(f"note: {note}")
     if options.view != "auto" or options.size is not None:
         session.viewer = choose_view(session.scene, options.view, options.size)
+    startup.end()
     return session, had_field
 
 
@@ -181,6 +181,7 @@ def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> t
         return embedded, encoder
     again = "(--encoder chooses that one, `scenewright embed` saves the new names)"
     terminal.say(f"note: {told_anew(embedded.language)} {again}")
+    startup.end()  # this renders, and may take long
     return embedded_by(encoder, embedded, terminal.progress), encoder
 
 
