@@ -83,7 +83,6 @@ def _run(given: list[str]) -> NoReturn:
     code: object = 0
     if given[:1] and given[0] in _ON_A_SESSION:
         startup.begin()
-        startup.load_ahead()
     try:
         verbs = given[:1] if given and given[0] in VERBS else VERBS  # an option or a slip needs the list of all
         code = command_line(verbs)(with_values(given), standalone_mode=False)

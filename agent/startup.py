@@ -1,21 +1,16 @@
-"""The start and the end of a command: no garbage is collected while modules load, torch's library loads beside them,
-the process ends without taking everything apart, and `--debug` tells what loading took."""
+"""The start and the end of a command: no garbage is collected while modules load, the process ends without taking
+everything apart, and `--debug` tells what loading took."""
 
 from __future__ import annotations
 
 import atexit
-import ctypes
 import gc
 import os
 import sys
-import threading
 import time
 from collections.abc import Sequence
-from contextlib import suppress
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
-from importlib.util import find_spec
-from pathlib import Path
 from types import ModuleType
 
 # Packages that take more than 0.05 s to import.
@@ -44,23 +39,6 @@ def end() -> None:
             gc.freeze()
         gc.enable()
         _collects = False
-
-
-def load_ahead() -> None:
-    """Let a thread load torch's library while this one reads modules: 0.15 s in which it holds no lock of Python's.
-
-    Only for a command that needs torch. `import torch` loads the same files and says what is wrong with them.
-    """
-    found = None if "torch" in sys.modules else find_spec("torch")
-    if found is not None and found.origin is not None:
-        threading.Thread(target=_load, args=(Path(found.origin).with_name("lib"),), daemon=True).start()
-
-
-def _load(folder: Path) -> None:
-    """Load the libraries that torch loads first, as it does; nothing where they have other names."""
-    with suppress(OSError):
-        ctypes.CDLL(str(folder / "libtorch_global_deps.so"), mode=ctypes.RTLD_GLOBAL)
-        ctypes.CDLL(str(folder / "libtorch_cpu.so"))
 
 
 _began: float | None = None

@@ -78,23 +78,3 @@ def test_the_process_ends_whole_but_is_not_taken_apart(arguments: list[str], cod
     assert done.returncode == code
     assert done.stdout.splitlines()[-2:] == ["threads have ended", "functions have run"]
     assert code == 0 or "scenewright: " in done.stderr
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="looks at the libraries of a process in /proc")
-def test_the_library_of_torch_is_loaded_without_torch() -> None:
-    code = """
-import sys, threading
-from scenewright.agent import startup
-startup.load_ahead()
-for thread in threading.enumerate():
-    if thread is not threading.main_thread():
-        thread.join()
-assert "torch" not in sys.modules
-print("libtorch_cpu" in open("/proc/self/maps").read())
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "True\n" and not done.stderr
-
-
-def test_a_torch_whose_files_have_other_names_is_left_to_itself(tmp_path: Path) -> None:
-    startup._load(tmp_path)  # raises nothing
