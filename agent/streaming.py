@@ -92,10 +92,11 @@ def write_levels_of_tiles(tiles: Tiles, output: Path, sizes: Sizes, memory: int,
 def levels_of(path: Path) -> tuple[list[str], list[dict[str, Any]]]:
     """Lines and rows that tell the levels of a scene; none if it has none."""
     from ..gaussians.files.formats import streamed_sog
-    from ..gaussians.levels.making import described
 
     if not streamed_sog.recognises(path, b""):
         return [], []
+    from ..gaussians.levels.making import described
+
     found = described(streamed_sog.Streamed.open(path))
     return _lines(found), _rows(found)
 

@@ -235,3 +235,13 @@ def test_edit_on_a_saved_field_loads_only_what_it_uses(room: tuple[Path, str], t
     loaded = _loaded_by_command("edit", str(room[0]), words, "-o", str(tmp_path / "out.ply"))
     assert (tmp_path / "out.ply").is_file() and "scenewright.tools.coloring.repaint" in loaded
     assert not loaded & UNUSED
+
+
+@pytest.mark.slow
+def test_ask_and_info_on_a_saved_field_load_only_what_they_use(room: tuple[Path, str]) -> None:
+    loaded = _loaded_by_command("ask", str(room[0]), f"how many {room[1]}s are there?")
+    assert "scenewright.planners.questions.kinds.counting" in loaded
+    assert not loaded & {"numba", "trimesh", "rich", "scipy.ndimage", "scipy.sparse", "scipy.optimize"}
+    loaded = _loaded_by_command("info", str(room[0]))
+    assert "scenewright.agent.terminal.thing_names" in loaded
+    assert not loaded & {"numba", "trimesh", "rich", "lark", "scipy", "scenewright.gaussians.fit"}

@@ -9,8 +9,8 @@ from collections.abc import Hashable, Iterable
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from ...gaussians.world.box import YawBox
 from ...gaussians.world.person import ARM, HEADROOM, SHOULDERS, STEP
@@ -79,7 +79,7 @@ class WalkableGrid:
     def _found_unreached(self) -> set[Hashable]:
         if not self.required:
             return set()
-        areas, count = ndimage.label(self.taken == 0, structure=_ALL_AROUND)
+        areas, count = scipy.ndimage.label(self.taken == 0, structure=_ALL_AROUND)
         if not count:
             return set(self.required)
         if self.doors:

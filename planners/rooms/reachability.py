@@ -9,8 +9,8 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from ...gaussians.world import kinds
 from ...gaussians.world.person import ARM, SHOULDERS, STEP
@@ -26,7 +26,7 @@ def unreached(graph: SceneGraph) -> Iterator[tuple[Node, float]]:
     """
     xs, ys = axes(graph.room, MOST_CELLS)
     half = SHOULDERS / 2 - 1e-9
-    areas, _ = ndimage.label(clearance(graph, xs, ys, half) >= half, structure=np.ones((3, 3)))
+    areas, _ = scipy.ndimage.label(clearance(graph, xs, ys, half) >= half, structure=np.ones((3, 3)))
     entered = set[int]()
     for door in (n for n in graph.nodes if kinds.is_door(n.label)):
         area, distance = _nearest(areas > 0, areas, door, xs, ys)

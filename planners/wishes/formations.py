@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+import scipy
 
 from ..layout import Wish as LayoutWish
 from ..rooms.node import Node
@@ -171,7 +171,7 @@ def _rows(
 def _assignment(things: Sequence[Node], slots: Slots) -> list[tuple[int, int]]:
     """Pairs (thing, slot) with the smallest total distance: a linear assignment (Kuhn 1955)."""
     away = [[math.dist(n.position[:2], s[:2]) for s in slots] for n in things]
-    rows, columns = linear_sum_assignment(np.array(away))
+    rows, columns = scipy.optimize.linear_sum_assignment(np.array(away))
     return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True)]
 
 

@@ -12,8 +12,8 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from ....gaussians.world import kinds
 from ....gaussians.world.person import ARM, SHOULDERS, STEP
@@ -56,7 +56,7 @@ class FloorMap:
         xs, ys = axes(graph.room, _MOST)
         cell = float(xs[1] - xs[0]) if len(xs) > 1 else float(ys[1] - ys[0]) if len(ys) > 1 else 0.05
         near = clearance(graph, xs, ys, _REACH)
-        beyond = ndimage.distance_transform_edt(np.pad(near >= _REACH, 1)) * cell
+        beyond = scipy.ndimage.distance_transform_edt(np.pad(near >= _REACH, 1)) * cell
         return cls(graph, xs, ys, cell, near + np.maximum(beyond[1:-1, 1:-1] - cell / 2, 0.0))
 
     # -- walking ----------------------------------------------------------------------------------------------------
@@ -69,7 +69,7 @@ class FloorMap:
         """`[X, Y]` number of the connected walkable area of each cell, 0 where one cannot stand."""
         key = round(width, 4)
         if key not in self._areas:
-            self._areas[key] = ndimage.label(self.walkable(width), structure=_ALL_AROUND)[0]
+            self._areas[key] = scipy.ndimage.label(self.walkable(width), structure=_ALL_AROUND)[0]
         return self._areas[key]
 
     def entered(self, width: float = SHOULDERS) -> set[int]:
@@ -100,7 +100,7 @@ class FloorMap:
             away[tuple(person.T)] = False
             if away.all():
                 return person
-            gap = ndimage.distance_transform_edt(away) * self.cell
+            gap = scipy.ndimage.distance_transform_edt(away) * self.cell
             cells = np.argwhere((gap <= width / 2) & self.walkable(width))
             return np.asarray(cells[np.argsort(gap[tuple(cells.T)], kind="stable")])
         box = self.base(node).yaw_box

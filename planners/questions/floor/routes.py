@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse import csgraph
 
 from ....gaussians.world import kinds
 from ....gaussians.world.person import SHOULDERS, WALKWAY
@@ -138,7 +137,7 @@ def _path(
     """`[M, 2]` the cells of the cheapest path, None if there is none; `cost` is that of a metre in each cell."""
     links = _links(floor, free, number, cost)
     start, goal = (cells[free[tuple(cells.T)]] for cells in (start, goal))
-    costs, before, _ = csgraph.dijkstra(
+    costs, before, _ = scipy.sparse.csgraph.dijkstra(
         links, directed=False, indices=number[tuple(start.T)], min_only=True, return_predecessors=True
     )
     ends = number[tuple(goal.T)]
@@ -151,7 +150,7 @@ def _path(
     return np.asarray(np.argwhere(free)[path[::-1]])
 
 
-def _links(floor: FloorMap, free: Flags, number: NDArray[np.int64], cost: F64) -> sparse.csr_matrix:
+def _links(floor: FloorMap, free: Flags, number: NDArray[np.int64], cost: F64) -> scipy.sparse.csr_matrix:
     """Lengths between neighbouring cells; each link once."""
     rows, columns, lengths = [], [], []
     n, m = free.shape
@@ -164,7 +163,7 @@ def _links(floor: FloorMap, free: Flags, number: NDArray[np.int64], cost: F64) -
         lengths.append(floor.cell * math.hypot(dx, dy) * (cost[here][both] + cost[there][both]) / 2)
     count = int(free.sum())
     data = (np.concatenate(lengths), (np.concatenate(rows), np.concatenate(columns)))
-    return sparse.csr_matrix(data, shape=(count, count))
+    return scipy.sparse.csr_matrix(data, shape=(count, count))
 
 
 def _pulled(floor: FloorMap, cells: Cells, width: float) -> list[tuple[int, int]]:
