@@ -55,7 +55,7 @@ ALONE = {
     "scale": "docs/scale.md",
 }
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
-LONG = frozenset({"dream", "edits", "effort", "fit_sizes", "layout", "mcp", "stability", "structure", "view"})
+LONG = frozenset({"dream", "edits", "effort", "fit_sizes", "layout", "mcp", "stability", "start", "structure", "view"})
 # Parts that whole runs leave out, with the reason.
 LEFT_OUT = {"edits graded": "its pictures are graded by eye; `scenewright bench edits` makes them"}
 # How benchmarks are divided: parts that share the cores (in whole runs a job each, in quick ones all of them one), and
