@@ -14,6 +14,8 @@ from typing import Any
 from ...gaussians import late_re as re
 from ...gaussians.language.query.nested import with_queries
 from ...gaussians.language.query.query import Query
+from ...gaussians.world import kinds as world
+from ...gaussians.world.words import singular
 from ..grammar.tagging.words import bag
 from ..rooms.node import NodeId
 from . import kinds
@@ -27,6 +29,7 @@ from .reading.time import several
 from .reading.time.comparing import comparisons
 from .reading.time.frames import plain
 from .reading.time.happenings import thing
+from .reading.time.loosely import loosely
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
 from .telling import absent, absent_text, evidence
@@ -107,14 +110,45 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     """The answer to a question about a scene with time: of its motion, else of the scene at a moment."""
     words = static.without_relative(plain_words(text), survey, timeline)
     asked = Asked(text, words=words, timeline=timeline)
-    for sentence in several.last_sentence(text):
+    for sentence in several.question_alone(text):
         if (told := _timed(sentence, survey, timeline)).answer.answer is not None:
             return told
     if (chosen := _chosen(words, survey, timeline)) is not None:
         return chosen
+    moved = _of_motion(asked, survey)
+    if moved is not None and moved.answer.answer is not None:
+        return moved
+    for made in (_compared, _of_two):
+        if (made_of := made(words, survey, timeline)) is not None:
+            return made_of
+    still = _of_moments(asked, survey, timeline)
+    if still is not None and still.answer.answer is not None:
+        return still
+    refused = moved or still
+    misread = refused is None or refused.answer.text.startswith(_MISREAD)
+    if misread and (loose := _loosely(words, survey, timeline)) is not None:
+        return loose
+    if refused is not None:
+        return refused
+    none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
+    return Reading(none, sight=True)
+
+
+# How reasons begin where words may have been taken for what they are not: a name, a time.
+_MISREAD = (
+    "There is no ",
+    "“",
+    "It is not understood",
+    "That does not happen here",
+    "Geometry does not tell the state",
+)
+
+
+def _of_motion(asked: Asked, survey: Survey) -> Reading | None:
+    """The answer to a question about what moves, or the first reason why there is none; None if it is no such one."""
     refused: Reading | None = None
     for kind in kinds.OF_MOTION:
-        for slots in (found for template in kind.templates for found in template.match(words, READERS)):
+        for slots in (found for template in kind.templates for found in template.match(asked.words, READERS)):
             try:
                 given = kind.answer(replace(asked, slots=slots), survey)
             except NotResolved as error:
@@ -124,12 +158,15 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
                 refused = refused or Reading(given, kind.name)
             elif given is not None:
                 return _reading(kind, given if survey.scaled else _in_units(given))
-    for made in (_compared, _of_two):
-        if (made_of := made(words, survey, timeline)) is not None:
-            return made_of
+    return refused
+
+
+def _of_moments(asked: Asked, survey: Survey, timeline: Timeline) -> Reading | None:
+    """The answer that the scene at a moment gives, or the first reason why it gives none; None if it is not asked."""
+    refused: Reading | None = None
     try:
-        for moment in static.moments(words, survey, timeline, asked):
-            found = _at_moment(moment, text, survey, timeline)
+        for moment in static.moments(asked.words, survey, timeline, asked):
+            found = _at_moment(moment, asked.text, survey, timeline)
             if found.answer.answer is not None:
                 return found
             refused = refused or (found if found.kind else None)
@@ -137,10 +174,7 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         refused = refused or Reading(_unnamed(error, survey), "moment")
     except Untold as error:
         refused = refused or Reading(nothing(str(error)), "moment")
-    if refused is not None:
-        return refused
-    none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
-    return Reading(none, sight=True)
+    return refused
 
 
 def _chosen(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
@@ -215,7 +249,7 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
             return replace(found, answer=nothing(gone))
         if answer.answer == () and (under := _UNDER.match(moment.words)) is not None:  # on which it is
             return _timed(f"what is {under['x']} on at {moment.times[0]} s", survey, timeline)
-        if found.restated and _LOST.intersection(moment.words.split()) - set(found.restated.split()):
+        if found.restated and _is_lost(set(moment.words.split()) - set(found.restated.split())):
             return Reading(
                 Answer(answer=None, answer_type=answer.answer_type, text=NOT_READ, confidence=0.0, source="none")
             )
@@ -238,8 +272,42 @@ _COUNTED = re.compile(r"^(?:how many|count|(?:what is )?the number of) (?P<x>(?:
 _LOST = bag(
     "second seconds sec secs time moment long fast quick quickly slow slowly speed before after while during until "
     "rpm times "
-    "often first last never ever again not faster slower longer farther later earlier far turn turns round rounds"
+    "often first last never ever again not faster slower longer farther later earlier far turn turns round rounds "
+    "floor wall "
+    "ceiling"
 )
+
+
+def _loosely(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
+    """The answer to a question whose parts are known and whose words say nothing else; None if it is not plain which.
+
+    All plainer questions that it may mean must have the same answer, if they have one.
+    """
+    names = frozenset(singular(w) for t in survey.things for w in t.label.split()) | {
+        "wall",
+        "floor",
+        "ceiling",
+        "door",
+    }
+    told: list[tuple[str, Reading]] = []
+    for plainer in loosely(plain(words), names):
+        asked = Asked(plainer, words=tuple(plainer.split()), timeline=timeline)
+        found = _of_motion(asked, survey)
+        if found is None or found.answer.answer is None:
+            found = _of_moments(asked, survey, timeline)
+        if found is not None and found.answer.answer is not None:
+            told.append((plainer, found))
+    if not told or _same([f.answer for _, f in told]) is None:
+        return None
+    plainer, found = told[0]
+    sure = round(found.answer.confidence * _RESTATED, 4)
+    text = f"{found.answer.text} (Read as: {plainer}?)"[:4000]
+    return replace(found, answer=found.answer.model_copy(update={"confidence": sure, "text": text}), restated=plainer)
+
+
+def _is_lost(left_out: set[str]) -> bool:
+    """Whether words that a plainer question leaves out tell a time or name a thing."""
+    return bool(_LOST & left_out) or any(world.find(singular(w)) is not None for w in left_out if len(w) > 2)
 
 
 def _uncounted(words: str, survey: Survey) -> str | None:

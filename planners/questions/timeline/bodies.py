@@ -18,6 +18,7 @@ from ....gaussians.world import kinds
 from ....gaussians.world.relation_geometry import Stand, viewer_stand
 from ....gaussians.world.support import SHELL
 from ....gaussians.world.words import singular
+from ...grammar.tagging.words import bag
 from ..reading.noun_phrase import is_anything
 from ..survey import Found, NotResolved, Survey, Thing
 from ..telling import told_apart
@@ -173,6 +174,9 @@ class Timeline:
         if (thing := _exactly(query, survey)) is not None:
             return tuple(b for b in self._of(thing, survey) if b.group.id == thing.id) or (self.body(thing, survey),)
         called = tuple(b for b in movers if self._is_called(query, b, survey)) if _is_plain(query) else ()
+        if query.size is not None and _is_plain(sizeless := query.model_copy(update={"size": None})):
+            alone = tuple(b for b in movers if self._is_called(sizeless, b, survey))
+            called = alone if len(alone) == 1 else called  # "the small drawer", of one that moves
         if called and (query.pick != "one" or len(called) == 1):
             return called
         found = survey.find(query)
@@ -253,7 +257,7 @@ def _is_plain(query: Query) -> bool:
     return query == plain and query.pick in ("one", "all", "any")
 
 
-_PARTS_ALONE = frozenset({"leaf", "blade", "blades", "body", "rotor", "panel", "wing", "base", "part", "frame", "hub"})
+_PARTS_ALONE = bag("leaf blade blades body rotor panel wing base part frame hub hinge joint pivot axle")
 
 
 def _is_a_thing(label: str) -> bool:

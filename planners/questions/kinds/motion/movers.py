@@ -10,6 +10,7 @@ from .....gaussians.world.words import singular
 from ...answer import Answer
 from ...reading.noun_phrase import is_anything
 from ...reading.time.deeds import STATES
+from ...reading.time.frames import plain
 from ...reading.time.happenings import TRANSITIVE
 from ...survey import NotResolved, listed
 from ...telling import evidence as evidence_of
@@ -23,6 +24,9 @@ _MOMENTS = ("at", "in", "start", "end", "middle")
 def doing(told: Told) -> list[tuple[Body, list[Span]]]:
     """The bodies that do it in the time that is asked of, with the spans."""
     window, found = told.window(), list[tuple[Body, list[Span]]]()
+    state = told.frame.what.deed is not None and told.frame.what.deed.kind in STATES
+    if window is not None and told.frame.when is not None and told.frame.when.conj == "by" and state:
+        window = (window[1], window[1])
     for body in told.bodies():
         try:
             spans = told.spans(body)
@@ -56,7 +60,7 @@ def _which(told: Told) -> Answer | None:
     at_moment = told.frame.when is None or told.frame.when.kind in _MOMENTS
     if deed is not None and deed.kind == "related" and what.object is not None and at_moment and not told.frame.rank:
         return None  # the scene at that time tells it
-    said = told.asked.said
+    said = plain(told.asked.words)
     asks_object = re.match(
         r"(?:what|which)(?: things?| objects?| furniture)? (?:does|do|did|will|is|has|the|it)\b", said
     )

@@ -44,6 +44,14 @@ _TURNS = re.compile(
     r"turns?|rotations?|revolutions?|revs?|rounds?|spins?|cycles?|rot|rpm|rps|r p m|hz|hertz|deg|degs|degrees?|rad|"
     r"radians?"
 )
+_NET = re.compile(
+    r"\b(?:as the crow flies|net|displacement|from where (?:it|he|she) (?:started|starts|began)|(?:straight|bee|air) "
+    r"?-?line|beeline|"
+    r"from (?:its|the) (?:start|starting|initial|first|original) (?:position|point|place|spot|one) to)\b|"
+    r"\b(?:finishing|final|end|stopping|last) (?:spot|position|place|point) from (?:its|the) "
+    r"(?:start|initial|first|original)",
+    re.IGNORECASE,
+)
 _TOTAL = re.compile(r"\b(?:total|altogether|all together|overall)\b", re.IGNORECASE)
 _MOMENT = 0.1  # seconds: a speed at a moment is the mean over them, since keys of a motion are as far apart
 _STEP = _MOMENT / 10
@@ -246,6 +254,11 @@ def _far_one(told: Told, body: Body) -> Answer:
         return _length(told, body, drop, f"{body.name} falls by", fall)
     if deed.kind in ("reach", "land", "enter", "leave", "pass") and (to := told.spans(body)):
         found = within(list(body.moving), (told.timeline.start, to[0][0]))
+    if _NET.search(told.asked.text):
+        net = float(np.linalg.norm(events.displacement(body.course, (found[0][0], found[-1][1]))))
+        return _length(
+            told, body, net, f"{body.name} ends up away from where it started by", (found[0][0], found[-1][1])
+        )
     way = sum(events.path_length(body.course, s) for s in found)
     return _length(told, body, way, f"{body.name} moves by", found[0])
 

@@ -6,11 +6,11 @@ faster than 30 rpm?" asks "how fast does the fan turn in rpm". How these are ans
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from .....gaussians import late_re as re
 from .deeds import as_noun, said_in
 from .happenings import thing
 from .moments import NUMBER, SECONDS, is_main, seconds, without_time
@@ -218,7 +218,9 @@ def _with_number(said: str) -> Iterator[Comparison]:
     rest = re.sub(r"^on average(?: ,)? ", "", rest)
     cue = "what is the top speed of" if top is not None and cues == ["how fast"] else cues[0]
     ways = _asked(cue, rest)
-    ways = tuple(dict.fromkeys((*ways, *(re.sub(r" (?:goes|go|does|do|run|runs)$", "", a) for a in ways))))
+    light = r" (?:goes|go|does|do|run|runs|get|gets|come|comes)(?= |$)"
+    moving = "turn" if unit.startswith("deg") else "move"
+    ways = tuple(dict.fromkeys((*ways, *(re.sub(light, f" {moving}", a) for a in ways))))
     if cues[0] in ("how fast", "how far"):
         ways = tuple(f"{a} in {unit.replace('times', 'turns')}" for a in ways)
     yield Comparison(_BOUND[limit], ways, number=seconds(found["n"]), unit=unit, denied=denied)
@@ -260,8 +262,14 @@ def _clauses(a: str, mid: str, b: str) -> Iterator[tuple[str, str]]:
     if re.match(r"^does (.+) is$", a):
         a = re.sub(r"^does (.+) is$", r"is \1", a)
     first = f"{a} {mid}".strip()
-    if re.search(r"\bfirst\b", a) and (other := re.fullmatch(r"the (second|last|third)(?: one)?", b)) is not None:
+    if (
+        re.search(r"\bfirst\b", a)
+        and (other := re.fullmatch(r"(?:the|its) (second|last|third)(?: one)?", b)) is not None
+    ):
         yield first, re.sub(r"\bfirst\b", other[1], first)
+        return
+    if re.search(r"\bsecond\b", a) and re.fullmatch(r"(?:the|its) first(?: one)?", b) is not None:
+        yield first, re.sub(r"\bsecond\b", "first", first)
         return
     aux = re.match(rf"^(?P<aux>{_AUX}) (?P<x>.+)$", a)
     said_by = f"{aux['aux']} " if aux is not None else ""

@@ -67,8 +67,9 @@ is_open half -: [STAY] (half|halfway|half way|partly|50 %|50 percent) (open|open
     (halfway|half way|midway) through ITS (opening|swing|travel)
 is_open full -: [STAY] FULL (open|opened|out|extended|pulled out|ajar) | open FULL | at [its] (widest|maximum \
     opening|full opening|[full|maximum] extension) | ~reach [its] (widest|maximum opening|full (opening|extension))
-is_open - -: [STAY] (open|opened|ajar|pulled out|extended|drawn out|out)
-is_closed - -: [STAY] [FULL] (closed|shut|pushed in|in) [again]
+is_open - -: (sticking|jutting|poking|hanging|standing|still|protruding|staying|left) \
+    (out|open) | protruding | [STAY] (open|opened|ajar|pulled out|extended|drawn out|out)
+is_closed - -: [STAY] [FULL] [back] (closed|shut|pushed in|in) [again]
 return - -: (~return|~go|~come|~get|~move) [back] to ITS (original|old|initial|starting|former|first|usual) \
     (place|position|spot)
 is_back - -: [STAY|~come|~go|~move] [FULL] back [in|at|to|into] [its|the] \
@@ -80,6 +81,9 @@ still - -: [STAY] [SO] (still|at rest|motionless|stationary|at a \
     nothing | ~hold still | STAY (there|put|around)
 open - out: ~open [up|out] | (GO|COME|TURN) [FULL] (out|outward|outwards|open|out of) | ~extend | ~pull out
 open stop out: ~open [up] (fully|completely|all the way|entirely|totally|wide) | (fully|completely|entirely) ~open
+open stop out: ~arrive [FULL] (out|open) | ~arrive at [its] (full|maximum) (extension|opening)
+close start in: (~set off|~head|~start) [back] (in|inside|inward) | START [to|its|the] \
+    (~go|~slide|~move|~come) back [in|inside]
 close - in: (~close|~shut|~retract) [again|up] | (GO|COME|TURN|~push|~return|~slam|~bang) [FULL] [back] \
     (in|inward|inwards|inside|shut|closed) [again]
 close stop in: (~close|~shut) (fully|completely|all the way|entirely|totally) | (fully|completely) (~close|~shut)

@@ -57,7 +57,8 @@ class Frame:
 
 _POINT = "([exact|precise|very|first|earliest] (time|second|seconds|moment|point|timestamp|timecode|instant|sec|\
 frame|stage) [in time|of time|mark|exactly|on])"
-_SPAN = "(duration|time span|timespan|period [of time]|length of time|amount of time|stretch of time)"
+_SPAN = "(duration|interval|time gap|delay|time span|timespan|period [of time]|length of time|amount of \
+time|stretch of time)"
 _TOLD = "[~be|tell|give|name|state] [me]"
 _TAKES = "[(do|does|did|will|would|has|is|was) (it|that|this) [all] (~take|~need|~last|~require|be) [time|for]]"
 _ROUNDS = "([full|complete|whole|total|single] (turn|turns|rotation|rotations|revolution|revolutions|spins|rounds|\
@@ -205,6 +206,7 @@ _IN_UNIT = re.compile(
     rf"(?P<v>{_RATE}|{_LENGTH}|(?:milli)?seconds?|secs?|minutes?|{_ANGLE})(?= |$)|"
     rf" , (?P<w>{_LENGTH}|{_ANGLE}|seconds|secs)$"
 )
+UNIT = rf"(?:{_RATE}|{_LENGTH}|(?:milli)?seconds?|secs?|minutes?|{_ANGLE})"
 _SAYS_IN = re.compile(rf" (?:in|,) (?:{_RATE}|{_LENGTH}|(?:milli)?seconds?|secs?|minutes?|{_ANGLE})$")
 _COUNT = r"(?:and )?(?:(?:by|through|for|with|at) )?(?:how many|what number of|(?:what is )?the number of)"
 _SPREAD = re.compile(
@@ -336,7 +338,8 @@ _SIDES_OF = tuple(  # of two happenings that a time lies between
     )
 )  # fmt: skip
 _GAP = re.compile(
-    r"^(?:and )?(?:what is )?(?:the )?(?:time|delay|gap|interval|pause)(?: difference)?(?: in seconds)? (?=between )"
+    r"^(?:and )?(?:what is )?(?:the )?(?:time|delay|gap|interval|pause|hold)(?: difference)?(?: in seconds)? "
+    r"(?=between )"
 )
 _SOON = re.compile(r"^how (?:soon|much later) (?:is it )?(?=after )")
 _MUCH_LATER = re.compile(
@@ -354,7 +357,7 @@ def plain(words: tuple[str, ...]) -> str:
     """The words of a question in the order in which it is asked plainly: its time behind it, its unit last."""
     said = " ".join(words)
     rest, unit = _in_unit(said) if _SPREAD.match(said) is None and _SAYS_IN.search(said) else (said, "")
-    rest = plainly(time_first(rest, _ASKING))
+    rest = plainly(time_first(plainly(rest), _ASKING))
     return f"{rest} in {unit}" if unit else rest
 
 
@@ -525,7 +528,7 @@ def _between(said: str, unit: str) -> Iterator[Frame]:
     rests = [(start, said[m.end() :]) for m in (_GAP.match(said), _MUCH_LATER.match(said)) if m is not None]
     rests += [(start, said[m.end() :]) for m in (_SOON.match(said),) if m is not None]
     rests += [(start, rest) for found, rest in _cued(said) if found.asks == "how_long"]
-    gap = re.search(r"\b(?:pause|gap|delay|break|wait|rest|interval)\b.* between ", said)
+    gap = re.search(r"\b(?:pause|gap|delay|break|wait|rest|interval|hold)\b.* between ", said)
     for frame, rest in rests:
         for row in _SIDES_OF:
             if (found := row.match(rest)) is not None:

@@ -210,7 +210,9 @@ def _placed(deed: Deed, subject: Query | None, other: Query, at: str, before: st
         yield Happening(replace(deed, kind="land"), subject, other, at)
     elif (
         (kind == "fall" and at in ("from", "off", "off of", "out of"))
-        or (kind in ("open", "close", "return") and at in ("of", "from", "into", "to"))
+        or (
+            kind in ("open", "close", "return", "is_open", "is_closed") and at in ("of", "from", "into", "to", "out of")
+        )
         or (deed.phase and at in _BESIDE)
     ):
         yield Happening(deed, subject, other, at)

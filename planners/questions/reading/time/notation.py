@@ -23,7 +23,8 @@ _IRREGULAR = {
     "be": "is are was were been am 's", "undergo": "underwent undergone", "speed": "sped",
 }  # fmt: skip
 _DOUBLED = bag(
-    "stop travel drop run spin hop step get shut hit set sit bob slip pop begin quit skid flip tip jog ram whir"
+    "stop travel drop plop flop run spin hop step get shut hit set sit bob slip pop begin quit skid flip tip jog ram "
+    "whir"
 )
 
 CLASSES = {
@@ -31,7 +32,7 @@ CLASSES = {
     "creep crawl step stride cruise proceed jump head journey trundle race stir jog pace skid",
     "COME": "come get pull pop stick poke protrude jut",
     "TURN": "turn spin rotate revolve swing whirl twirl swivel pivot circle gyrate wheel",
-    "FALL": "fall drop tumble plunge topple plummet sink descend",
+    "FALL": "fall drop tumble plunge topple plummet sink descend plop flop",
     "BUMP": "bump crash bang knock slam smash run ram collide roll drive walk bounce",
     "START": "start begin commence resume",
     "END": "stop finish end cease quit halt",

@@ -10,6 +10,79 @@ from functools import cache
 from .....gaussians import late_re as re
 
 _LINES = r"""
+^(?:(?:so|well|oh|hey|and|but|dear|my) )*(?:mummy|mum|mom|mommy|daddy|dad|papa|grandma|grandpa|granny|grandad|\
+teacher|miss|sir|madam|professor|doctor|guys|folks|kids|children|dude|bro|buddy|mate|honey|darling|dear|love|sweetie|\
+computer|assistant|people|everybody|everyone|listen|wait|hm|hmm|oh|yo) , =>
+ , (?:my )?(?:mummy|mum|mom|mommy|daddy|dad|papa|grandma|grandpa|granny|grandad|teacher|miss|sir|madam|professor|\
+doctor|guys|folks|kids|children|dude|bro|buddy|mate|honey|darling|dear|love|sweetie|computer|assistant|people|\
+everybody|everyone|listen|wait|hm|hmm|oh|yo)$ =>
+\b(?:his|her|their) (?=(?:walk|way|trip|journey|route|run|roll|fall|drop|turn|movement|motion|place|spot|ride|\
+drive)\b) => its
+(?<= ,) (?:oh|um|uh|er|erm|say|like|hm|well|let us say) , =>
+^(?:(?:ok|okay|so|like|ooh|oo|oh|wow|gosh|hmm|um|uh|er|erm|right|and|then|but|well|wait|hey|yo|lol|haha|now|actually|\
+alright|also|just|look|listen|anyway|honestly|please|basically|literally) (?:, )?)+(?=(?:how|what|which|when|where|\
+who|whereabouts|is|are|was|does|do|did|has|have|in|at|by|on|the|that|my|our)\b) =>
+(?: ,)? (?:or nah|or no|or what|lol|haha|lmao|is that so|is that right|is that correct|is it|do you know|d ?'you \
+know|d ?' you know|i reckon|i suppose|i think|i guess|i wonder|i bet|you know|thx|pls|please|though|or so|then|or \
+something|as far as you (?:know|see)|roughly speaking|to be (?:precise|exact))$ =>
+ (?:even )?(?:a )?(?:tiny |little |teeny )?(?:bit|tad|inch|smidgen|millimeter)(?: at all)?(?= |$) =>
+\b(?:volume|tome|paperback|hardback)(s?)\b => book\1
+\b(?:the|our|my|that|this) (?:little |small |big |poor |old |funny )*(\w+) (?:fellow|guy|chap|dude|lad|figure|thingy|\
+character|creature|friend|machine|gadget|object)\b => the \1 thing
+^(?:that|this|our|my|your|those|these) (\w+(?: \w+)?) , ((?:when|how|where|what|which|does|did|has|have|will|is|was|\
+are|at|until)\b.*)\b(?:it|they)\b(.*)$ => \2the \1\3
+^(the \w+(?: \w+)?) , ((?:has|have|did|do|was|were|will)\b.*)\b(?:it|they)\b(.*)$ => \2\1\3
+^(?:the )?(\w+(?: \w+)?)(?: 's)? (?:position|location|whereabouts)((?: at| when| after| before) .*)$ => where is the \
+\1\2
+^of (?:the |these |those |all |its )?(?:\w+ 's )?(?:two |three |four |five |six )?(\w+)(?: here)? , (how many|which|\
+what)(?: of them| ones?)? => \2 \1
+^(?:the )?(?:walls?|floor|ceiling)(?: and (?:the )?(?:walls?|floor|ceiling))* aside , =>
+^(?:name|list|give me|tell me|show me) (?:every|each|all|any) (?:single )?(?:objects?|things?|items?)(?: here| in \
+the room)? (?:that|which) => name everything that
+^(?:the )?(?:out ?point|end point|last frame|final frame|end frame) of (?:the )?(.+?) (swing|opening|closing|fall|\
+drop|roll|walk|spin|turn|movement|motion|slide)$ => when does the \1 stop
+^(?:the )?(?:in ?point|start point|first frame|start frame) of (?:the )?(.+?) (swing|opening|closing|fall|drop|roll|\
+walk|spin|turn|movement|motion|slide)$ => when does the \1 start to move
+^(?:the )?total (\w+(?: \w+)?) (?:travel|movement|motion|distance|way|path)(?: ,)? (?:out (?:plus|and) (?:return|\
+back|in|back in)|both ways|there and back|in both directions|out and back)$ => how far does the \1 move in total
+^(?:add up|sum up|sum|add) (?:the )?(?:way|trip|movement|travel|path|stroke|distance) out and (?:the )?(?:way |trip |\
+movement |travel |stroke )?(?:back|in|back in) (?:for|of) (.+?)(?: ,.*)?$ => how far does \1 move in total
+^how (?:many|much) (?:seconds|secs|time) (?:of|in) (?:this|the) (?:clip|video|scene|film|shot|recording) (?:has|have|\
+is|are|contains?|shows?) (?:no|without) (?:motion|movement)s?(?: at all)?$ => how long is everything still
+^(?:the )?(degrees|turns|rotations|revolutions|meters|centimeters) (?:swept|turned|made|completed|done) by (.+)$ => \
+how many \1 does \2 turn
+^(?:the )?(meters|centimeters|distance) (?:covered|travell?ed|moved|walked|rolled) by (.+)$ => how many \1 does \2 \
+move
+^(?:give|list|name|tell|show)(?: me)? (the \w+(?: \w+)?) in (?:the )?(\w+ing|drop|fall) order(?: ,? .*)?$ => in what \
+order do \1 \2
+^(?:the )?(?:heading|direction|course) change of (.+)$ => how far does \1 turn
+(?<=\bdoes )(.+?) (?:drive|walk|roll|run|wander|wheel|zoom|scoot|fly|march)s? off(?= (?:at|when|after|before|at)\b|\
+$) => \1 move
+^(where|whereabouts) (?:would|will|might|should|could) (.+?) be(?= |$) => where is \2
+^how (?:far|long) (?:away )?is (.+?) 's (?:finishing|final|end|last|ending|stopping) (?:spot|position|place|point) \
+from (?:its|the) (?:starting|start|initial|first|original) (?:one|spot|position|place|point)(?: as the crow flies)?$ \
+=> how far does \1 move
+^how (?:far|long) (?:away )?(?:from (?:where it|its) (?:started|starts|start|begins|starting (?:point|place|\
+position))) (?:does|is|do|did) (.+?) (?:stop|end up|end|finish|at the end)$ => how far does \1 move
+\b(is|are|was|were) (?:already|still|now|all) (?:lying|standing|sitting|resting)\b => \1
+^(?:the )?(?:timecode|timestamp|time|moment|second|frame)s? (?:for|of) (?=when ) =>
+^(when) (the|it|he|she)\b(?!.* , ) => \1 does \2
+(?: ,)? dyou know(?= ,|$) =>
+^i (?:suppose|assume|guess|take it|think|believe|bet)(?: that)? =>
+(?<= at) ,(?= (?:\d|about|around|roughly)) =>
+ ?@ ?(?=\d) => at
+^as the crow flies , (.+)$ => \1
+ as the crow flies$ =>
+ , (?:after|before|past) (?:its|the) (?:corner|turn|bend) , =>
+\bthe (start|beginning|end) of (the .+?) 's (\w+)\b => \2 \1s to \3
+\bthe start of (the \w+ one) 's$ => \1 starts
+\balong its (?:path|way|route)(?= |$) =>
+ (?:till|until|to|up to) (?:the )?(?:very )?(?:end|(?:clip|video|scene|film|shot|recording) (?:is|'s) (?:over|done)|\
+(?:clip|video|scene|film|shot) ends)(?= once| after| when) =>
+\b(?:is|'s|was) (?:all )?(?:done|finished|through) (?:with )?(walking|rolling|moving|turning|spinning|falling|\
+opening|closing)\b => stops \1
+\b(?:has|have|is|are) (?:all )?(?:calmed|settled|quietened|quieted) down\b => is still
+\bevery ?thing is still and nothing (?:falls|moves|happens)(?: any ?more)?\b => everything is still
 ^whether =>
 (?: ,)? or not$ =>
 ^(which|what|how many) (\w+) in the room (?!is\b|are\b|was\b|has\b|have\b) => \1 \2
@@ -25,59 +98,45 @@ _LINES = r"""
 \b(sits?|stands?|stays?|lies?|remains?|rests?|sitting|standing|lying) (?:right |just )?(?:there|around|put)(?= |$) \
 => stays still
 ^between (.+) and (.+?) , how (?:long|much time|many seconds) (?:does|do|is|did) (.+?) (?:wait|rest|pause|stay|stand|\
-sit|idle|stop|waiting|resting|pausing)\
-(?: still| out| open| there)*$ => how long is the pause between \3 \1 and \3 \2
+sit|idle|stop|waiting|resting|pausing)(?: still| out| open| there)*$ => how long is the pause between \3 \1 and \3 \2
 ^how many of (?:the |its |these |those )?(?:\w+ )?\w+ 's (\w+) => how many \1
 ^where (?:would|could|can|might|may|do|should|will) (?:i|you|we|one) (?:find|see|spot|look for|pick up) (.+)$ => \
 where is \1
 ^(?:what|which) (?:surface|floor covering|ground|piece of floor|material) (?:is |lies |is lying )?(?:directly |right \
-)?(?:under|underneath|beneath|below) \
-(.+?)((?: at| when| after| before) .+)?$ => what is \1 on\2
+)?(?:under|underneath|beneath|below) (.+?)((?: at| when| after| before) .+)?$ => what is \1 on\2
 ^(?:which|what) (?:surface|thing)? ?is (.+?) (?:lying|rolling|standing|resting|sitting|riding|travelling|\
 travell?ing) on\b => what is \1 on
 ^when is the (?:very )?(?:first|start|beginning|onset) (?:frame |sign |moment )?of (?:the )?(.+?)(?: 's)? \
-(?:movement|motion|moving)$ => \
-when does the \1 start to move
+(?:movement|motion|moving)$ => when does the \1 start to move
 ^when is the (?:very )?(?:last|final|end) (?:frame |sign |moment )?of (?:the )?(.+?)(?: 's)? (?:movement|motion|\
-moving)$ => \
-when does the \1 stop
+moving)$ => when does the \1 stop
 ^(?:give me |tell me |what is |list |name |show me )?(?:the )?(drop|fall|falling|landing|opening|moving|movement) \
-(?:order|sequence) of (.+)$ => \
-in what order do \2 \1
+(?:order|sequence) of (.+)$ => in what order do \2 \1
 ^(?:what is )?(?:the )?(?:total |overall |whole )?(?:travel|motion|movement|moving|moved) (?:time|duration) (?:of|\
-for) (.+)$ => how long does \
-\1 move
+for) (.+)$ => how long does \1 move
 ^(?:what is )?(?:the )?(?:total |overall |whole )?(rolling|running|walking|spinning|turning|falling|waiting|\
-travell?ing|sliding) (?:time|duration) \
-(?:of|for) (.+)$ => how long is \2 \1
+travell?ing|sliding) (?:time|duration) (?:of|for) (.+)$ => how long is \2 \1
 ^(?:what is )?(?:the )?(?:total |overall |whole )?(rug|carpet|mat|table|desk|floor|board) (?:time|duration) (?:of|\
-for) ((?:the )?\w+(?: \w+)?)(?= ,|$) \
-=> how long is \2 on the \1
+for) ((?:the )?\w+(?: \w+)?)(?= ,|$) => how long is \2 on the \1
 ^how (?:many|much) (meters?|centimeters?|cm|m|degrees?|feet|steps) (?:does |is |do )?(.+?) (?:is making|makes|is \
-doing|make|doing|making)(?= |$) => \
-how many \1 does \2 move
+doing|make|doing|making)(?= |$) => how many \1 does \2 move
 ^(?:does |did |has |will |is )?(?:somebody|someone|anybody|anyone|a person|they) (?:ever )?(shuts?|closes?|opens?|\
-pushe?s?|pulls?|moves?|\
-turns?|stops?|closed|opened|moved|touche?s?) (the (?:\w+ )?\w+)(?= (?:again|back|out|in|off|on|afterwards|later|at|\
-before|after)\b|$) => does \2 \1
+pushe?s?|pulls?|moves?|turns?|stops?|closed|opened|moved|touche?s?) (the (?:\w+ )?\w+)(?= (?:again|back|out|in|off|\
+on|afterwards|later|at|before|after)\b|$) => does \2 \1
 (?: ,)? (?:counted|counting|measured|starting) from (?:its|the) (?:first|initial) (?:movement|move|motion)$ =>
 ^(how (?:long|many seconds|much time)) (?:does |do |is |will )?(.+?) (?:needs?|takes?|requires?) (?:until|till|\
-before) (?:it|he|she) (?:has|is|have) \
-(.+)$ => \1 does \2 take to \3
+before) (?:it|he|she) (?:has|is|have) (.+)$ => \1 does \2 take to \3
 ^((?:for )?how (?:long|many seconds) (?:is|does|stays|remains|will) (?!.* (?:from|between|after) ).+?) (?:till|until|\
-to|up to) (?:the (?:very )?end\
-(?: of the (?:clip|video|scene|film|shot))?|the (?:clip|video|scene|film|shot) (?:is|'s) (?:over|done)|the (?:clip|\
-video|scene|film) ends)$ => \1
+to|up to) (?:the (?:very )?end(?: of the (?:clip|video|scene|film|shot))?|the (?:clip|video|scene|film|shot) (?:is|\
+'s) (?:over|done)|the (?:clip|video|scene|film) ends)$ => \1
 ^(.+?) , how (long|many seconds|much time) (?:is|takes|does|would) (?:that|it|this)(?: take| last| be)?$ => how \2 \
 does \1 take
 ^(?:after|from|since) (?:what|which) (?:second|time|moment|point|\w+ second)(?: on)? (?:is|does|are|has|do) \
-(?:nothing|none of them|no \w+) \
-(?:is |are )?(\w+)(?: any ?more| any longer)?$ => when does everything stop \1
+(?:nothing|none of them|no \w+) (?:is |are )?(\w+)(?: any ?more| any longer)?$ => when does everything stop \1
 (?: ,)? (?:both|all|the two) (?:bits|parts|legs|stretches|ways|pieces|halves)(?: taken)? (?:together|combined|added \
 up)(?= ,|$) =>
 ^(?:what is )?(?:the )?(?:whole |entire |total |full )?(.+?) 's (?:whole|entire|total|full|complete) (?:walk|way|\
-path|trip|journey|route|roll|travel)\
-((?: ,)? in \w+)?$ => how far does \1 move\2
+path|trip|journey|route|roll|travel)((?: ,)? in \w+)?$ => how far does \1 move\2
 ^how many (?:corners|bends|curves|turns) (?:does|do|did) (.+?) (?:walk|go|take|make|turn|drive|come)(?: around| \
 round| past)?$ => how often does \1 turn
 ^the (?:exact |very |precise )?(?:moment|time|second|point|instant) (?:when |at which |that )?(?=(?:the|it|he|she) ) \
@@ -86,12 +145,10 @@ round| past)?$ => how often does \1 turn
 ^to (?:which|what) (?:moment|time|second|point)\b => when
 ^how (much|many seconds|long) (later|earlier|sooner) than (.+?) (does|do|did|is|will) (.+)$ => how \1 \2 \4 \5 than \3
 ^(?:when|as|once) (?:it|he|she|the \w+(?: \w+)?) (?:changes (?:its )?(?:direction|course)|turns|takes (?:the|its|a) \
-(?:turn|corner)) , (.+?) \
-(?:go|turn|move|walk|head|drive|going|turning) (?:to )?(?:the |its )?(left or right|right or left|left or (?:to \
-)?(?:the |its )?right|right or (?:to )?(?:the )?left)$ => \1 turn \2
+(?:turn|corner)) , (.+?) (?:go|turn|move|walk|head|drive|going|turning) (?:to )?(?:the |its )?(left or right|right \
+or left|left or (?:to )?(?:the |its )?right|right or (?:to )?(?:the )?left)$ => \1 turn \2
 ^(.+?) (?:go|turn|move|walk|head|drive) (?:to )?(?:the |its )?(left or right|right or left) (?:when|as|once) (?:it|\
-he|she) (?:changes (?:its )?(?:direction|course)|\
-turns)$ => \1 turn \2
+he|she) (?:changes (?:its )?(?:direction|course)|turns)$ => \1 turn \2
 ^(?:will|would|should|could|shall) (.+?) be\b => is \1
 \b(anything|something|else|anybody|nothing) in (?:the|this) (?:whole |entire )?(?:room|scene|clip|film)\b => \1
 \b(?:a|one) (?:second|sec) and a half\b => one and a half seconds
@@ -111,20 +168,17 @@ do \1 \2
 ^how (?:long|far) (?:is|was) (?:the )?(.+?) (?:'s )?(?:first|initial) (?:leg|stretch|section|straight|part)$ => how \
 far does \1 move before the turn
 ^how (?:long|far) (?:is|was) (?:the )?(.+?) (?:'s )?(?:second|last|final) (?:leg|stretch|section|straight|part)$ => \
-how \
-far does \1 move after the turn
-^how (?:long|far) (?:is|was) the (first|initial|second|last|final) (?:leg|stretch|section|straight|part) of \
-(?!its |the (?:way|walk|trip|journey)$)(.+?)(?: 's (?:way|walk|trip|journey|path|route))?$ => how far is \2 's \1 leg
+how far does \1 move after the turn
+^how (?:long|far) (?:is|was) the (first|initial|second|last|final) (?:leg|stretch|section|straight|part) of (?!its |\
+the (?:way|walk|trip|journey)$)(.+?)(?: 's (?:way|walk|trip|journey|path|route))?$ => how far is \2 's \1 leg
 ^how (?:long|far) (?:is|was) (?:the )?(.+?) 's (?:first|initial) leg$ => how far does \1 move before the turn
 ^how (?:long|far) (?:is|was) (?:the )?(.+?) 's (?:second|last|final) leg$ => how far does \1 move after the turn
 ^how (?:long|far) (?:is|was) (?:the )?(?:first|initial) (?:leg|stretch|section|straight|part)(?: of .+)?$ => how far \
-does it \
-move before the turn
+does it move before the turn
 ^how (?:long|far) (?:is|was) (?:the )?(?:second|last|final) (?:leg|stretch|section|straight|part)(?: of .+)?$ => how \
-far does \
-it move after the turn
-^how long is (?:the|its) (?:path|way|route|distance|track|trip)(?: (?:of|that) (.+?))?(?: \
-(?:moves|takes|walks|covers))?$ => how far does \1 move
+far does it move after the turn
+^how long is (?:the|its) (?:path|way|route|distance|track|trip)(?: (?:of|that) (.+?))?(?: (?:moves|takes|walks|\
+covers))?$ => how far does \1 move
 \b(?:is|was) it that (?=\w+s\b) =>
 \b(?:would you say|do you think) =>
  , (?=in (?:order|sequence)$) =>
@@ -133,10 +187,9 @@ it move after the turn
 (?: ,)? (?:out and back|there and back)$ =>
  (?:at rest|still|stationary|motionless) between (?:the|its) (?:two )?(?:movements|motions|moves|trips)$ => pausing
 ^((?:which|what|who) (?!.*\b(?:first|earlier|sooner|later|last|faster|slower|quicker|longer|shorter|farther|wider|\
-more|less|most)\b)\w+ .+?) , the \w+(?: \w+)? \
-or the \w+(?: \w+)?$ => \1
-^(?:does|do|did|is|are|is it) only (the .+?) (?:that )?(move|moves|moving|fall|falls|falling|turn|turns|turning)$ \
-=> nothing besides \1 \2
+more|less|most)\b)\w+ .+?) , the \w+(?: \w+)? or the \w+(?: \w+)?$ => \1
+^(?:does|do|did|is|are|is it) only (the .+?) (?:that )?(move|moves|moving|fall|falls|falling|turn|turns|turning)$ => \
+nothing besides \1 \2
 \bon the (last|final|first) frame\b => in the \1 frame
 \bon (?:the|its) (?:last|final|second) (?:stretch|leg|part|straight)\b => after the turn
 \bon (?:the|its) (?:first|initial) (?:stretch|leg|part|straight)\b => before the turn
@@ -144,8 +197,8 @@ or the \w+(?: \w+)?$ => \1
 some time
 ^(?:is|are) there (?:still )?(?:any |some )?(?:movements?|motion)(?: in the room)?(?= |$) => does anything move
 ^(?:is )?(?:there )?anything (else )?(moving|turning|spinning|falling)\b => is anything \1\2
-^(does|is|did) anything (?:else )?(.*?)\
-(?: (?:besides|except|apart from|other than|but)) (.+)$ => \1 anything besides \3 \2
+^(does|is|did) anything (?:else )?(.*?)(?: (?:besides|except|apart from|other than|but)) (.+)$ => \1 anything \
+besides \3 \2
 \b(anything|something) else (?:than|but|besides|except) => \1 besides
 ^(the [\w ]+?) (does|did|is|was|will|has) (?:it|he|she|they) (.+)$ => \2 \1 \3
 ^(the \w+(?: \w+)?) , ((?:when|how|where|what|which|does|is|at|until)\b.*)\b(?:it|they)\b(.*)$ => \2\1\3
@@ -157,9 +210,8 @@ some time
 ^((?:for )?how long .+) lasts?$ => \1
 ^(?:the )?time (?:for|to make) (.+)$ => how long does \1 take
 ^(?:the )?time per (?:one |a )?(.+)$ => how long does one \1 take
- (?:for|to make|to complete|to do|to finish|makes?|made|complete|do) \
-(?:one|a|each|every|two|three|four|five|ten|\d+) (?:full |single |whole |complete \
-)?(?:turn|rotation|revolution|spin|round)s?\b => turn
+ (?:for|to make|to complete|to do|to finish|makes?|made|complete|do) (?:one|a|each|every|two|three|four|five|ten|\
+\d+) (?:full |single |whole |complete )?(?:turn|rotation|revolution|spin|round)s?\b => turn
 """
 
 

@@ -6,9 +6,11 @@ is so where either is; "when does it reach the wall and stop?" is when both are.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
+from .....gaussians import late_re as re
+from .....gaussians.world import kinds
+from .....gaussians.world.words import singular
 from .deeds import said_in
 from .happenings import thing
 from .moments import NUMBER, SECONDS
@@ -41,7 +43,26 @@ _WHICH_ONE = re.compile(
     r"^(?:so |and )?(?:which|what)(?: one| of them)?(?: is it| was it| exactly)?(?: ,? ?(?:dear|please|then))?$"
 )
 _SOMETHING = re.compile(r"\b(?:a|an|one|some) (?P<x>\w+(?: \w+)?)$")
-_TIMED = re.compile(rf"\b{NUMBER} {SECONDS}\b|\d|\b(?:then|after|before|when|while)\b")
+_TOLD = re.compile(
+    rf"\b{NUMBER} {SECONDS}\b|\d|\b(?:after|before|when|while|until|once|if|except|besides|excluding|ignoring|only|"
+    r"without counting|counting|apart|other than|(?:first|last) (?:time|one|second))\b",
+    re.IGNORECASE,
+)
+_PERSON = re.compile(
+    r"\b(?:i|i'm|i'd|i've|we|my|me|our|us|you|your|mum|mom|dad|gosh|ages|sorry|please|says?|said|thinks?|thought|"
+    r"wonders?|asked|"
+    r"asks?|asking|bets?|swears?|claims?|reckons?|guess|wow|honestly|assuming)\b"
+)
+_BEGINS = re.compile(
+    r"^(?:but |so |and |then |well |ok |okay )*(?P<q>(?:how|what|which|when|where|who|whereabouts|is|are|was|were|"
+    r"does|do|did|has|"
+    r"have|will|at what|at which|in what|in which|by how|for how|to what)\b.+)$"
+)
+_ASKING = re.compile(r"\b(?:at (?:what|which)|when|how|where|what|which)\b")
+_WHEN_THAT = re.compile(
+    r"^(?:so |and )?(?:when|what time|how long|how far|how fast|where|which|what) (?:is|was) "
+    r"(?:that|it|this)(?: exactly)?$"
+)
 _SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z\"'(a-z])")
 
 
@@ -87,18 +108,49 @@ def both(said: str) -> tuple[str, str] | None:
     return None
 
 
-def last_sentence(text: str) -> Iterator[str]:
-    """The question in a text of several sentences by itself: "I lost my glasses. Is the door open at 2 s?"."""
+def question_alone(text: str) -> Iterator[str]:
+    """The question in a text that says more by itself: "I lost my glasses. Is the door open at 2 s?".
+
+    What is left out tells no time, no number and no exception.
+    """
     sentences = [s for s in _SENTENCE.split(text.strip()) if s.strip()]
     asked = [s for s in sentences if s.endswith("?")] or sentences[-1:]
-    if len(sentences) < 2 or len(asked) != 1 or asked[0] != sentences[-1] or _TIMED.search(" ".join(sentences[:-1])):
-        return
-    question = asked[0].rstrip("?. ").lower()
-    if not _WHICH_ONE.match(question.replace(",", " ,")):
-        yield asked[0]
-        return
-    before = sentences[-2].rstrip("?.! ").lower()
+    if len(sentences) > 1 and len(asked) == 1:
+        others = [s for s in sentences if s is not asked[0]]
+        if not any(_TOLD.search(s) for s in others):
+            question, before = asked[0].rstrip("?. ").lower(), others[-1].rstrip("?.! ").lower()
+            if _WHICH_ONE.match(question.replace(",", " ,")):
+                yield from _which_one(before)
+            elif _WHEN_THAT.match(question) and (cue := _ASKING.search(before)) is not None:
+                yield f"{before[cue.start() :]}?"
+            else:
+                yield asked[0]
+            return
+    yield from _behind_a_comma(text)
+
+
+def _which_one(before: str) -> Iterator[str]:
+    """ "A drawer pops out. Which one?" """
     for start, _, _ in sorted(said_in(before), key=lambda s: s[0]):
         if (named := _SOMETHING.search(before[:start].strip())) is not None:
             yield f"which {named['x']} {before[start:]}?"
             return
+
+
+def _behind_a_comma(text: str) -> Iterator[str]:
+    """A question behind what somebody says of himself: "my wife says no way, but does the ball roll?"."""
+    parts = re.split(r"\s*[,;:–—]\s+", text.strip())
+    for i in range(1, len(parts)):
+        begins = _BEGINS.match(parts[i].lower())
+        said = [p.lower().split() for p in parts[:i]]
+        if begins is not None and all(_says_nothing(p) for p in said):
+            yield ", ".join([parts[i][begins.start("q") :], *parts[i + 1 :]])
+            return
+
+
+def _says_nothing(words: list[str]) -> bool:
+    """Whether a clause is about who asks: it holds no time, number, exception, and nothing that happens or is there."""
+    said = " ".join(words)
+    if _TOLD.search(said) or not _PERSON.search(said):
+        return False
+    return not any(thing(f"the {w}") is not None and kinds.find(singular(w)) is not None for w in words)
