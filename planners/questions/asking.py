@@ -188,7 +188,7 @@ def _chosen(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
     for name in found[1]:
         if (query := thing(name)) is None or (meant := survey.find(query)).verdict == "absent":
             return None
-        offered.update({t.id: t.name for t in meant.things})
+        offered.update({t.id: re.sub(r"^(?:the|a|an|my) ", "", name) for t in meant.things})
     ids = [i for i in told.answer.evidence.ids if i in offered]
     if not ids:
         return Reading(nothing(f"None of them: {told.answer.text}"[:4000]), told.kind)
@@ -243,7 +243,8 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
         there = survey if time == timeline.start else timeline.survey_at(time)
         found = _static(moment.words, there)
         answer = found.answer
-        if answer.answer is None or (answer.answer == "no" and answer.text.startswith("No. There is no ")):
+        named = answer.text.startswith("There is no ") and _OF_ONE.match(moment.words) is not None
+        if answer.answer is None or (answer.answer == "no" and (named or answer.text.startswith("No. There is no "))):
             return replace(found, answer=nothing(answer.text.removeprefix("No. ")))  # what is not there is not asked of
         if answer.answer == 0.0 and (gone := _uncounted(moment.words, there)) is not None:
             return replace(found, answer=nothing(gone))
@@ -267,6 +268,7 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
     return first
 
 
+_OF_ONE = re.compile(r"(?:is|are|was|does|do|did|has|will) (?:the|this|that|my|our) ")
 _UNDER = re.compile(r"^(?:what|which \w+) is (?:right |directly )?(?:under|underneath|beneath|below) (?P<x>.+)$")
 _COUNTED = re.compile(r"^(?:how many|count|(?:what is )?the number of) (?P<x>(?:\w+ )*?\w+s)(?= |$)")
 _LOST = bag(

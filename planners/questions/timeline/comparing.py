@@ -20,6 +20,7 @@ _UNITS = {  # of a unit as said: the unit of answers, and how many of it one is
     "rad/s": ("turns/s", 0.15915494),
 }  # fmt: skip
 _SIGNS = {"milli": "mm", "mm": "mm", "centi": "cm", "cm": "cm", "f": "ft", "in": "in", "m": "m"}
+_STILL = re.compile(r"The [\w ()]+ does not move\.|The [\w ()]+ never moves\.")
 Asking = Callable[[str], Answer]
 
 
@@ -40,7 +41,7 @@ def compared(comparison: Comparison, ask: Asking) -> Answer | None:
         if first.unit != _sign(comparison.unit):
             return None
         return _yes_no(_holds(comparison, first.answer, comparison.number), comparison, [first])
-    second = _number(comparison.second, ask)
+    second = _number(comparison.second, ask) or _nothing_moved(comparison.second, first, ask)
     if second is None or not isinstance(second.answer, float):
         return None
     a, b = _in_one_unit(first, second)
@@ -86,6 +87,15 @@ def _number(ways: Sequence[str], ask: Asking) -> Answer | None:
         answer = ask(words)
         if (isinstance(answer.answer, float) and "Read as" not in answer.text) or answer.text.startswith(_DIFFER):
             return answer
+    return None
+
+
+def _nothing_moved(ways: Sequence[str], like: Answer, ask: Asking) -> Answer | None:
+    """None of it, in the unit of another answer, of what does not move."""
+    for words in ways:
+        answer = ask(words)
+        if answer.answer is None and _STILL.fullmatch(answer.text):
+            return like.model_copy(update={"answer": 0.0, "text": answer.text, "evidence": answer.evidence})
     return None
 
 

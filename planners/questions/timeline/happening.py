@@ -26,6 +26,8 @@ BESIDE = 0.3  # metres: a thing that stops so near to another has reached it
 _CLOSER = 0.1  # metres by which it must have come nearer
 _ABOUT = 1e-6
 _PACE = 1.25  # times: one speed is clearly more than another
+MOMENT = 0.1  # seconds: a speed at a moment is the mean over them, since keys of a motion are as far apart
+STEP = MOMENT / 10
 _PASSES = 1.5  # metres: a thing farther away is not passed
 
 
@@ -134,6 +136,15 @@ def _changes_pace(body: Body, span: Span) -> int:
     third = (b - a) / 3
     early, late = (float(np.mean(body.course.rates(body.course.grid(s)))) for s in ((a, a + third), (b - third, b)))
     return 1 if late > _PACE * early else -1 if early > _PACE * late else 0
+
+
+def peak(body: Body, span: Span) -> tuple[float, float]:
+    """The greatest speed in a span, scene units a second, as a mean over `MOMENT`; and when that is."""
+    times = body.course.grid(span, STEP)
+    count = min(round(MOMENT / STEP), len(times))
+    means = np.convolve(events.speeds(body.course, times), np.full(count, 1 / count), "valid")
+    at_most = int(np.argmax(means))
+    return float(means[at_most]), float(times[at_most + count // 2])
 
 
 def bobs(body: Body) -> float:

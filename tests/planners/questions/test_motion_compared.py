@@ -7,6 +7,7 @@ import pytest
 from scenewright.agent.session.session import Session
 from scenewright.planners.questions.reading.time import several
 from scenewright.planners.questions.reading.time.comparing import comparisons
+from scenewright.planners.questions.reading.time.loosely import loosely
 from tests.planners.questions.test_motion_asked import moving, said
 
 
@@ -43,6 +44,19 @@ def session() -> Session:
         ("how many chairs are on the desk at 1 s?", 0.0),
         ("which surface is under the ball at 2.2 s?", "rug"),
         ("does the red book finally fall?", "yes"),
+        ("to the wall the ball rolls at which second", None),
+        ("onto the rug the ball gets at which second", pytest.approx(1.95, abs=0.03)),
+        ("rolly the ball, when does it stop?", pytest.approx(3.0, abs=0.03)),
+        ("My wife says no way, but does the ball roll more than three metres?", "yes"),
+        ("Which way does it go, the ball? My son bet me it goes left.", "right"),
+        ("How many books have fallen by 2.2 s?", 1.0),
+        ("when have two books fallen?", pytest.approx(2.4, abs=0.03)),
+        ("do three books fall?", "no"),
+        ("is there a book on the floor at 0.7 s?", "no"),
+        ("is the ball ever not moving?", "yes"),
+        ("how many full rotations does the clock make by the third second?", pytest.approx(1.5, abs=0.02)),
+        ("when is the chair's first movement?", None),
+        ("the ball, not before the rug, when does it stop?", None),
         ("by the time the red book lands, has the green one fallen?", "yes"),
     ],
 )
@@ -67,6 +81,22 @@ def test_comparisons_and_questions_of_two(session: Session, text: str, answer: o
 def test_a_comparison_is_two_questions(words: str, first: str, second: str) -> None:
     found = next(comparisons(words))
     assert found.first[0] == first and second in found.second
+
+
+@pytest.mark.parametrize(
+    ("words", "plain"),
+    [
+        ("robby the robot gets to the bed at which second", "when does the robot gets to the bed"),
+        ("robot , turn , when", "when does the robot turn"),
+        ("the robot at which speed walks", "how fast does the robot walks"),
+        ("the robot not walks when", ""),
+        ("when walks the robot more than the dragon", ""),
+        ("the robot zorps when", ""),
+    ],
+)
+def test_words_in_any_order_are_put_together_unless_some_that_matter_are_left(words: str, plain: str) -> None:
+    found = loosely(words, frozenset({"robot", "bed"}))
+    assert (plain in found) if plain else found == ()
 
 
 def test_what_is_no_comparison_is_left_alone() -> None:

@@ -16,7 +16,7 @@ from ...reading.time.deeds import AT_ONCE, Deed
 from ...reading.time.moments import When
 from ...timeline.asked import Told, Untold, agreed, at, cap, during, kind, names, number, spoken, verb, within, yes_no
 from ...timeline.bodies import Body
-from ...timeline.happening import bobs, hinged, opened
+from ...timeline.happening import MOMENT, STEP, bobs, hinged, opened, peak
 from .when import moment
 
 _PER_SECOND = {  # by the first letters of a unit: its sign, and how many of it are a metre a second
@@ -53,8 +53,6 @@ _NET = re.compile(
     re.IGNORECASE,
 )
 _TOTAL = re.compile(r"\b(?:total|altogether|all together|overall)\b", re.IGNORECASE)
-_MOMENT = 0.1  # seconds: a speed at a moment is the mean over them, since keys of a motion are as far apart
-_STEP = _MOMENT / 10
 _SPINS = math.radians(340)  # what turns by more in its place is told in turns, what turns by less in degrees
 
 
@@ -111,17 +109,8 @@ def _fast_one(told: Told, body: Body) -> Answer:
     window = told.window()
     now = window[0] if window is not None and window[0] == window[1] else None
     if now is not None and told.frame.when is not None and told.frame.when.kind == "clause":
-        now -= _MOMENT / 4  # "when it hits the floor": it still moves
+        now -= MOMENT / 4  # "when it hits the floor": it still moves
     return _turning(told, body, now) if turning else _going(told, body, now)
-
-
-def _peak(body: Body, span: Span) -> tuple[float, float]:
-    """The greatest speed in a span, scene units a second, as a mean over `_MOMENT`; and when that is."""
-    times = body.course.grid(span, _STEP)
-    count = min(round(_MOMENT / _STEP), len(times))
-    means = np.convolve(events.speeds(body.course, times), np.full(count, 1 / count), "valid")
-    at_most = int(np.argmax(means))
-    return float(means[at_most]), float(times[at_most + count // 2])
 
 
 def _going(told: Told, body: Body, now: float | None) -> Answer:
@@ -130,12 +119,12 @@ def _going(told: Told, body: Body, now: float | None) -> Answer:
     sign, factor = _PER_SECOND[key]
     per = factor / told.timeline.unit
     if now is not None:
-        around = (max(now - _MOMENT / 4, told.timeline.start), min(now + _MOMENT / 4, told.timeline.stop))
-        speed = float(events.speeds(body.course, body.course.grid(around, _STEP)).mean()) * per
+        around = (max(now - MOMENT / 4, told.timeline.start), min(now + MOMENT / 4, told.timeline.stop))
+        speed = float(events.speeds(body.course, body.course.grid(around, STEP)).mean()) * per
         return number(speed, sign, f"At {at(now)} {body.name} moves at {_short(speed)} {sign}.", [body], now)
     found = _spans(told, body)
     way, seconds = sum(events.path_length(body.course, s) for s in found), sum(b - a for a, b in found)
-    top, fastest = max(_peak(body, s) for s in found)
+    top, fastest = max(peak(body, s) for s in found)
     top *= per
     mean = way * per / max(seconds, 1e-9)
     if told.frame.measure == "top":

@@ -17,6 +17,7 @@ from ...reading.time.moments import seconds
 from ...survey import listed
 from ...timeline.asked import PLACES, Told, Untold, at, cap, during, kind, number, verb, within
 from ...timeline.bodies import Body
+from ...timeline.happening import peak
 
 _STEP = 1 / 240  # seconds, over which turns are added
 _ALMOST = 0.01  # of a turn
@@ -24,6 +25,7 @@ COUNTED_TURNS = re.compile(
     r"\b(?P<n>half a|one|per|a|each|every|two|three|four|five|ten|\d+) (?:(?:full|single|whole|complete) )?"
     r"(?:turn|rotation|revolution|spin|round)s?\b"
 )
+Event = tuple[float, Body, Span]
 _ALL = re.compile(r"\b(?:all|both|every|everything|each|nothing|none)\b")
 
 
@@ -70,10 +72,18 @@ def _when(told: Told) -> Answer | None:
     if len(doing) > 1 and subject is not None and not is_plural(subject) and not told.frame.rank:
         return _several(told, doing)
     events = _events(deed, doing)
+    if told.frame.rank in ("fastest", "slowest", "farthest", "nearest"):
+        return _at_most(told, doing)
+    if subject is not None and subject.count is not None and subject.count > 1:
+        return _so_many(told, subject.count, events, doing)
     if told.frame.rank == "last" and deed.stops and len(events) == 1:
         told = replace(told, frame=replace(told.frame, rank=""))
     place = PLACES.get(told.frame.rank, -1 if deed == replace(deed, kind="move", phase="stop") else 0)
-    if told.frame.rank == "again":
+    if told.frame.rank == "again" and deed.kind in STATES:
+        events = [e for e in events if e[0] > told.timeline.start + 1e-3]
+        if not events:
+            raise Untold(f"That does not happen again: {_told(told, doing)}.")
+    elif told.frame.rank == "again":
         place = min(1, len(events) - 1)
     if told.frame.rank in ("last", "second", "third") and deed.kind == "turn" and len(events) == 1 and not deed.stops:
         raise Untold(f"Its turns follow one another without a rest: {_told(told, doing)}.")
@@ -82,6 +92,31 @@ def _when(told: Told) -> Answer | None:
     time, body, _ = events[place]
     text = f"{_told(told, doing)}."
     return number(time, "s", cap(text), [body], time, others=told.others())
+
+
+def _at_most(told: Told, doing: Sequence[tuple[Body, list[Span]]]) -> Answer:
+    """When something that is done goes fastest."""
+    deed = told.frame.what.deed
+    if (
+        told.frame.rank != "fastest"
+        or len(doing) != 1
+        or deed is None
+        or deed.kind not in ("move", "fall")
+        or deed.phase
+    ):
+        raise Untold("When that is most so cannot be told.")
+    body, spans = doing[0]
+    _, time = max(peak(body, s) for s in spans)
+    return number(time, "s", f"{cap(body.name)} moves fastest at {at(time)}.", [body], time)
+
+
+def _so_many(told: Told, count: int, events: Sequence[Event], doing: Sequence[tuple[Body, list[Span]]]) -> Answer:
+    """When so many of several do it, or have done it."""
+    firsts = sorted({b.group.id: t for t, b, _ in reversed(events)}.values())
+    if len(firsts) < count:
+        raise Untold(f"Not so many do that: {_told(told, doing)}.")
+    time = firsts[count - 1]
+    return number(time, "s", cap(f"{_told(told, doing)}."), [b for b, _ in doing], time, others=told.others())
 
 
 def _turned(told: Told, body: Body, turns: float) -> Answer:
@@ -95,7 +130,7 @@ def _turned(told: Told, body: Body, turns: float) -> Answer:
     return number(time, "s", f"{cap(body.name)} has made {turns:g} turns at {at(time)}.", [body], time)
 
 
-def _events(deed: Deed, doing: Sequence[tuple[Body, list[Span]]]) -> list[tuple[float, Body, Span]]:
+def _events(deed: Deed, doing: Sequence[tuple[Body, list[Span]]]) -> list[Event]:
     found = [(moment(deed, s), b, s) for b, spans in doing for s in spans]
     return sorted(found, key=lambda event: event[0])
 

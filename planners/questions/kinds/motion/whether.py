@@ -55,6 +55,8 @@ def _whether(told: Told) -> Answer | None:
     plural = what.subject is not None and is_plural(what.subject) and what.subject.pick == "all"
     plural = plural or (deed.kind == "still" and what.subject is not None and is_anything(what.subject))
     holds = all(ok for _, (ok, _) in each) if plural else any(ok for _, (ok, _) in each)
+    if what.subject is not None and what.subject.count is not None and what.subject.count > 1:
+        holds = sum(ok for _, (ok, _) in each) >= what.subject.count  # "do two books fall"
     single = what.subject is not None and bool(what.subject.text) and what.subject.pick == "one"
     if single and len({ok for _, (ok, _) in each}) > 1:
         raise Untold(f"That holds of {listed([b.name for b, (ok, _) in each if ok])} only. Say which one is meant.")
@@ -105,7 +107,7 @@ def _holds(told: Told, body: Body, window: Span | None, always: bool) -> tuple[b
     if always:
         return sum(b - a for a, b in found) >= line.stop - line.start - _ROUND, found
     if window is None:
-        if deed.kind in ("still",):
+        if deed.kind == "still" and not (when is not None and when.kind == "ever"):
             return not body.moving, found
         return bool(found), found
     if deed.at_once and deed.phase not in ("quarter", "half", "full"):

@@ -52,7 +52,8 @@ _WORDS: dict[str, tuple[str, bool]] = {
     "farther": ("how far", False), "a longer way": ("how far", False), "a shorter way": ("how far", True),
     "a longer distance": ("how far", False), "a shorter distance": ("how far", True),
     "a greater distance": ("how far", False), "more distance": ("how far", False), "less far": ("how far", True),
-    "wider": ("how far", False), "more often": ("how often", False), "less often": ("how often", True),
+    "wider": ("how far", False), "more": ("how far", False),
+    "more often": ("how often", False), "less often": ("how often", True),
     "later": ("when", False), "earlier": ("when", True), "sooner": ("when", True),
 }  # fmt: skip
 _PLAIN = {
@@ -66,6 +67,7 @@ _EQUAL_NOUNS = {
     "distance": "how far", "way": "how far",
 }  # fmt: skip
 _ADJ = "|".join(sorted(_WORDS, key=len, reverse=True))
+_BARE_ADJ = "|".join(w for w in sorted(_WORDS, key=len, reverse=True) if w != "more")
 _AUX = r"(?:is|are|was|were|does|do|did|has|have|had|will|can)"
 _MUCH = r"(?:much |a lot |a bit |a little |even |any |clearly |slightly |significantly |for |by )*"
 
@@ -96,7 +98,12 @@ _WITH_NUMBER = re.compile(
 )
 _COUNTED = re.compile(
     rf"^(?P<aux>is|are|do|does|did|were|was|have|has) (?:there )?(?P<c>more than|less than|fewer than|at least|at most|"
-    rf"exactly|no more than|only) (?P<n>{NUMBER}) (?P<x>(?:\w+ )??\w+s)(?P<post> .+)$"
+    rf"exactly|no more than|only)?(?(c) |)(?P<n>{NUMBER}) (?P<x>(?:\w+ )??\w+s)(?P<post> .+)$"
+)
+_THERE_IS = re.compile(
+    r"^(?:is|are|was|were) there (?:a|an|any|some) (?P<x>(?:\w+ )?\w+)(?: lying| standing| sitting)?(?P<post> (?:on|"
+    r"in|at|under|near) "
+    r"(?:the|a|its) .+)$"
 )
 _SHARES = {
     "half": 0.5, "halfway": 0.5, "half way": 0.5, "50 %": 0.5, "50 percent": 0.5, "a quarter": 0.25, "a third": 1 / 3,
@@ -115,14 +122,14 @@ _SHARE_OF_WAY = re.compile(
     rf"(?P<s>{'|'.join(sorted(_SHARES, key=len, reverse=True))}) (?:of )?(?:its|the|of its|of the) (?:total |whole |"
     r"full )?(?:way|distance|path|route|journey|trip)(?P<post> .*)?$"
 )
-_THAN = re.compile(rf"^(?P<a>.+?) {_MUCH}(?P<adj>{_ADJ})(?: (?P<mid>.+?))? than (?P<b>.+)$")
+_THAN = re.compile(rf"^(?P<a>.+?) {_MUCH}(?P<adj>{_BARE_ADJ})(?: (?P<mid>.+?))? than (?P<b>.+)$")
 _AS = re.compile(
     rf"^(?P<a>.+?) (?P<not>not )?(?:(?:just|exactly|about) )?as "
     rf"(?P<adj>{'|'.join(sorted(_PLAIN, key=len, reverse=True))})"
     r"(?: (?P<mid>.+?))? as (?P<b>.+)$"
 )
 _DIFFERENCE = re.compile(
-    rf"^(?:by )?how (?:much|many (?P<u>{_UNIT})|far) (?P<adj>{_ADJ}) (?P<aux>{_AUX}) (?P<x>.+) than (?P<b>.+)$"
+    rf"^(?:by )?how (?:much|many (?P<u>{_UNIT})|far) (?P<adj>{_BARE_ADJ}) (?P<aux>{_AUX}) (?P<x>.+) than (?P<b>.+)$"
 )
 _SAME = re.compile(
     rf"^(?P<aux>{_AUX}) (?P<a>.+?) (?P<v>take|takes|last|need|cover|travel|move|go|have|roll|fall|turn|spin|at|walk|"
@@ -138,10 +145,22 @@ _WHICH = re.compile(
     r"(?P<a>.+?)(?: ,)? or (?P<b>.+)$"
 )
 _WHETHER_OR = re.compile(
-    rf"^(?P<aux>does|do|did|is|was) (?P<x>.+?) (?P<v>take|last|spend|need)?(?: |^){_MUCH}(?P<adj>{_ADJ})(?: ,)? "
+    rf"^(?P<aux>does|do|did|is|was) (?P<x>.+?) (?P<v>take|last|spend|need)?(?: |^){_MUCH}(?P<adj>{_BARE_ADJ})(?: ,)? "
     r"(?P<a>(?:to |on |in |at |when |while |before |after )?.+?)(?: ,)? or (?P<b>.+)$"
 )
-_DOES_OR = re.compile(rf"^(?P<aux>does|do|did) (?P<x>.+?) (?P<a>\w+) or (?P<b>\w+) (?P<adj>{_ADJ})$")
+_DOES_OR = re.compile(rf"^(?P<aux>does|do|did) (?P<x>.+?) (?P<a>\w+) or (?P<b>\w+) (?P<adj>{_BARE_ADJ})$")
+_TIMES_WORDS = re.compile(
+    r"\b(?P<c>more than|less than|at least|exactly|at most|only) (?P<n>once|twice)\b(?! the\b| it\b)|"
+    r"\b(?P<m>twice)(?= |$)"
+)
+_NEARER = re.compile(
+    rf"^{_AUX} (?P<x>.+?) (?P<v>(?:(?:get|gets|come|comes|end up|come to rest|stay|finish|stand|stop|ever) "
+    rf")*)(?P<adj>closer|nearer|"
+    rf"farther|farther away|"
+    r"further)(?: to| from)? (?P<b>(?:the|a|its|that) (?:\w+ )?\w+?)(?: (?P<when>(?:at|in|on|before|after|when|by) "
+    r".+?))? than "
+    r"(?P<rest>.+)$"
+)
 _TIMELY = re.compile(r"^(?:at|in|on|before|after|during|when|while|whilst|once|until|between|from)\b")
 _LEGS = re.compile(r"\b(?:leg|way|path|distance|route|track|stretch|trip|journey|road)\b")
 
@@ -150,6 +169,8 @@ def comparisons(said: str) -> Iterator[Comparison]:
     """Each way of reading words as a comparison, the likeliest first."""
     if re.search(r"\bat the same time\b", said):
         return
+    said = _TIMES_WORDS.sub(_times, said)
+    yield from _nearer(said)
     yield from _with_share(said)
     yield from _with_number(said)
     if (found := _DIFFERENCE.match(said)) is not None and found["adj"] not in ("later", "earlier", "sooner"):
@@ -167,10 +188,35 @@ def comparisons(said: str) -> Iterator[Comparison]:
     yield from _which(said)
 
 
+def _times(found: re.Match[str]) -> str:
+    limit = "exactly" if found["c"] in (None, "only") else found["c"]
+    return f"{limit} {1 if found['n'] == 'once' else 2} times"
+
+
+def _nearer(said: str) -> Iterator[Comparison]:
+    """ "Is it closer to the bed at the end than at the start?", "... to the bed than to the shelf?"."""
+    if (found := _NEARER.match(said)) is None:
+        return
+    relation: Relation = "more" if found["adj"].startswith("far") else "less"
+    ends = "at the end" if re.search(r"end up|finish|stop|come to rest", found["v"]) else ""
+    away, when, rest = f"how far is {found['x']} from", found["when"] or ends, found["rest"]
+    if _TIMELY.match(rest):
+        if when:
+            yield Comparison(relation, (f"{away} {found['b']} {when}",), (f"{away} {found['b']} {rest}",))
+        return
+    time, bare = without_time(rest)
+    when = rest.replace(bare, "").strip() if time is not None else when
+    bare = re.sub(r"^(?:to|from) ", "", bare)
+    walls = "wall" in (found["b"].split()[-1], bare.split()[-1])  # of several which is not said
+    if thing(bare) is not None and not walls:
+        yield Comparison(relation, (f"{away} {found['b']} {when}".strip(),), (f"{away} {bare} {when}".strip(),))
+
+
 def _asked(cue: str, clause: str) -> tuple[str, ...]:
     """A clause behind a cue, in the ways in which it may be asked: "how long does it take", "how long is the fall"."""
     clause = clause.strip(" ,")
     clause = re.sub(r"^(?:the )?(?:time|duration)(?: span)? (?:that |of |for which )?(?=it |the )", "", clause)
+    clause = re.sub(r"^(?:is |was )?the time (?:(?:that )?it (?:spends|is) )?(?=(?:on|in|at) )", "is it ", clause)
     bare = re.sub(rf"^{_AUX} ", "", clause)
     plain = [f"{cue} {clause}", f"{cue} {bare}"]
     if is_main(clause):
@@ -186,10 +232,13 @@ def _with_number(said: str) -> Iterator[Comparison]:
     if re.match(r"(?:how|what|which|when|where|who|list|name)\b", said):
         return
     if (found := _COUNTED.match(said)) is not None and not re.fullmatch(_UNIT, found["x"]):
-        relation: Relation = "same" if found["c"] == "only" else _BOUND[found["c"]]
+        relation: Relation = "same" if found["c"] == "only" else _BOUND[found["c"] or "at least"]
         aux = "" if found["aux"] in ("do", "does", "did") else f" {'are' if found['aux'] == 'is' else found['aux']}"
         asked = f"how many {found['x']}{aux}{found['post']}"
         yield Comparison(relation, (asked,), number=seconds(found["n"]), unit="things")
+    if (found := _THERE_IS.match(said)) is not None and without_time(found["post"])[0] is not None:
+        some = found["x"] if found["x"].endswith("s") else f"{found['x']}s"
+        yield Comparison("at_least", (f"how many {some} are{found['post']}",), number=1.0, unit="things")
     if (found := _WITH_NUMBER.match(said)) is None:
         return
     unit, limit = found["u"], found["c"]
@@ -349,7 +398,7 @@ def _same(found: re.Match[str]) -> Iterator[Comparison]:
 def _which(said: str) -> Iterator[Comparison]:
     if (found := _WHICH.match(said)) is not None:
         cue, less = _WORDS[found["adj"]]
-        if cue == "when":
+        if cue == "when" or (found["adj"] == "more" and found["v"] != "moves"):
             return
         a, b = found["a"], found["b"]
         if cue == "how long" and _LEGS.search(a) and found["v"] in ("is", "was", None):

@@ -139,6 +139,9 @@ _ASKING = re.compile(
     r"tell|give|show)\b"
 )
 _COMPARED = ("fall", "turn", "open", "close", "rise")
+_BEGINS_WITH_TIME = re.compile(
+    r"(?:(?:right|just|shortly|directly|immediately) )?(?:after|before|when|while|as|once|until)\b"
+)
 _TWO_QUESTIONS = re.compile(r"\b(?:and|,) (?:when|how|where|what|which|why|does|is|are|do)\b")
 
 
@@ -381,6 +384,8 @@ def _frames(said: str) -> Iterator[Frame]:
     if _SPREAD.match(said) is not None:
         return
     for start, inner in _cued(re.sub(r" on average$", "", rest)):
+        if start.asks == "order" and _BEGINS_WITH_TIME.match(inner):
+            inner = f"happens {inner}"
         yield from _filled(replace(start, unit=unit or start.unit), inner)
     if (found := _FIRST_OF.match(rest)) is not None:
         for a, b in _pairs(found["a"], found["b"]):
@@ -480,17 +485,42 @@ def _told(start: Frame, said: str) -> Iterator[Frame]:
             yield replace(start, what=what, rank="together")
         return
     lasts = start.asks == "how_long" and re.search(r"(?<!the) last$", said)
-    if start.asks not in ("where", "which_way", "faster") and not lasts and (ranked := _ranked(said)) is not None:
+    several = start.asks == "which" and re.match(r"(?:two|three|four)\b", said)
+    if (
+        start.asks not in ("where", "which_way", "faster")
+        and not lasts
+        and not several
+        and (ranked := _ranked(said)) is not None
+    ):
         rank, plain = ranked
+        if start.asks == "how_often":
+            return  # "how many turns by the third second"
         for what in happenings(plain) if start.asks != "yesno" or _RANKED_AS.search(said) else ():
             if _belongs(what, start.asks, plain):
                 yield replace(start, what=what, rank=rank)
     again = "again" if start.asks in ("when", "yesno") and "again" in said.split() else ""
     for what in happenings(said):
+        telic = start.asks in ("how_many", "which", "yesno") and what.deed is not None and what.deed.kind in _TELIC
+        if telic and what.deed is not None and not what.deed.phase and (by := _by_then(start.when, said)) is not None:
+            yield replace(start, what=replace(what, deed=replace(what.deed, phase="stop")), when=by)
+            continue  # "how many have fallen by 2 s"
         if start.asks == "when" and _DONE.match(said) and what.deed is not None and not _is_whole(what.deed):
             what = replace(what, deed=replace(what.deed, phase="stop"))  # "when has it crossed the rug"
         if _belongs(what, start.asks, said):
             yield replace(start, what=what, rank=start.rank or again)
+
+
+_TELIC = ("fall", "open", "close", "cross")
+_HAS_DONE = re.compile(r"\b(?:has|have|had) ")
+
+
+def _by_then(when: When | None, said: str) -> When | None:
+    """The time up to which something has been done; None if nothing says that it has."""
+    if _HAS_DONE.search(said) is None or when is None:
+        return None
+    if when.kind == "at":
+        return When("span", 0.0, when.start, conj="by")
+    return when if when.conj == "by" else None
 
 
 def _is_whole(deed: Deed) -> bool:

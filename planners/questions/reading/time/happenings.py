@@ -202,6 +202,8 @@ def _placed(deed: Deed, subject: Query | None, other: Query, at: str, before: st
         yield Happening(deed, subject, other, at)
     elif subject is None and at in ("", "by", "of"):
         yield Happening(deed, other)  # "when stops the fan", "the way travelled by the drawer"
+    elif deed.way == "straight" and at:
+        return  # it may reach it, but not straight
     elif kind == "move" and at in _PATHS and not deed.stops and not (deed.starts and at == "from"):
         yield Happening(replace(deed, kind=_PATHS[at]), subject, other, at)
     elif kind == "move" and not deed.phase and at in _SIDES:

@@ -43,13 +43,14 @@ _CUES = tuple(
         (
             "how_fast",
             r"(?:at |with )?(?:how (?:fast|quick|quickly|rapidly|slow|slowly)|(?:what|which) (?:speed|velocity|pace|"
-            r"rate)|(?:what is |give me )?the (?P<m>average |top |maximum |max |mean |peak |rotation )?(?:speed|"
+            r"rate)|(?:what is |give me )?(?:the )?(?P<m>average |top |maximum |max |mean |peak |rotation )?(?:speed|"
             r"velocity|pace)(?: of)?)",
         ),
         (
             "how_far",
             r"(?:by |over |through )?(?:how (?:far|wide|great a distance|long a (?:way|distance)|much distance)|"
-            r"(?:what|which) (?:distance|angle)|(?:what is )?the (?:total )?distance(?: of)?)",
+            r"(?:what|which) (?:distance|angle)|(?:what is )?(?:the )?(?:total )?distance(?: (?:covered|travelled|"
+            r"traveled|moved|walked))?(?: (?:of|by))?)",
         ),
         (
             "when",
@@ -152,13 +153,13 @@ def _timed(said: str) -> Iterator[tuple[str, str]]:
     for when, rest in clauses(said):
         if when.clause and not _ASKED.search(when.clause):
             yield f"{'by the time' if when.conj == 'by' else when.conj} {when.clause}", rest
-    when, rest = without_time(said)
-    if when is not None:
+    time, rest = without_time(said)
+    if time is not None:
         kept = [w for w in said.split() if w != ","]
         for word in rest.split():
             if word in kept:
                 kept.remove(word)
-        yield " ".join(kept) if when.kind != "ever" else "", rest
+        yield " ".join(kept) if time.kind != "ever" else "", rest
     yield "", said
 
 

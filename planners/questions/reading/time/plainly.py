@@ -34,6 +34,18 @@ are|at|until)\b.*)\b(?:it|they)\b(.*)$ => \2the \1\3
 ^(the \w+(?: \w+)?) , ((?:has|have|did|do|was|were|will)\b.*)\b(?:it|they)\b(.*)$ => \2\1\3
 ^(?:the )?(\w+(?: \w+)?)(?: 's)? (?:position|location|whereabouts)((?: at| when| after| before) .*)$ => where is the \
 \1\2
+^(?!what\b|which\b|where\b|who\b|when\b|how\b|is\b|are\b|does\b|do\b|did\b|in\b)(?:the )?(.+ (?:open|opened|closed|\
+shut|out|over|still|stopped|down|back)) at(?: when| what time| what second)?$ => when is the \1
+\bat its (?:farthest|furthest|widest|most|maximum|fullest)(?: out| open| extended| opening| extension| point)*(?= |\
+$) => fully open
+\b(by|at|until|till|after|before) the first second\b => \1 1 s
+\b(by|at|until|till|after|before) the third second\b => \1 3 s
+\b(by|at|until|till|after|before) the fourth second\b => \1 4 s
+\b(by|at|until|till|after|before) the fifth second\b => \1 5 s
+^(over|across|on|onto|against|into|past|off) (?:which|what)(?: thing| object| surface)? (does|is|do) (.+)$ => what \
+\2 \3 \1
+^(?:is|was) the (opening|closing|fall|roll|movement|motion|turn|spin|walk) (?:over|finished|done|complete|\
+completed)(?= |$) => does the \1 stop
 ^of (?:the |these |those |all |its )?(?:\w+ 's )?(?:two |three |four |five |six )?(\w+)(?: here)? , (how many|which|\
 what)(?: of them| ones?)? => \2 \1
 ^(?:the )?(?:walls?|floor|ceiling)(?: and (?:the )?(?:walls?|floor|ceiling))* aside , =>
@@ -203,7 +215,8 @@ besides \3 \2
 ^(the [\w ]+?) (does|did|is|was|will|has) (?:it|he|she|they) (.+)$ => \2 \1 \3
 ^(the \w+(?: \w+)?) , ((?:when|how|where|what|which|does|is|at|until)\b.*)\b(?:it|they)\b(.*)$ => \2\1\3
 ^(?:in )?(?:what|which) state (?:is|are) (.+?)(?: in)?((?: at .+)?)$ => is \1 open or closed\2
-^how (?:far|wide) (?:open|out) (is|was) (.+?)((?: at| when| after| before| by) .*)?$ => how far \1 \2 open\3
+^how (?:(?:far|wide) )?(?:open|out|extended) (is|was) (.+?)((?: at| when| after| before| by) .*)?$ => how far \1 \2 \
+open\3
 ^(how far) ((?:out of|away from|from|off) (?:the|its) (?:\w+ ){1,3}?)((?:does|do|did|is|has) .+)$ => \1 \3 \2
 ^(?:to )?where (?:is|does) (.+?) (?:heading|head|headed|bound)(?: to| for)?(?= |$) => which way does \1 move
 ^(?:the )?(?:total |whole )?time (the [\w ]+?) is in motion$ => how long does \1 move

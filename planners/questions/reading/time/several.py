@@ -24,6 +24,10 @@ _CHOICE = re.compile(
     rf")?\w+(?: \w+)*?)*(?: ,)? "
     r"or (?:(?:the|a|my) )?\w+(?: \w+)*)(?P<u> in \w+)?$"
 )
+_IS_IT = re.compile(
+    r"^(?:is|was) it (?P<a>(?:the|a) \w+(?: \w+)?) or (?P<b>(?:the |a )?\w+(?: \w+)?) (?:that|which) "
+    r"(?P<q>.+)$"
+)
 _OF_THESE = re.compile(
     r"^(what|which|who)(?: one| thing)?s? of (?:these|those|them|the following)(?: things| objects)?\b"
 )
@@ -68,6 +72,12 @@ _SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z\"'(a-z])")
 
 def choice(said: str) -> tuple[str, tuple[str, ...]] | None:
     """A question without the names that it offers, and these; None if it offers none."""
+    if (of := _IS_IT.match(said)) is not None:
+        noun = of["b"].split()[-1]
+        a = of["a"] if noun in of["a"].split() or thing(of["a"]) is not None else f"{of['a']} {noun}"
+        return (
+            (f"which {noun} {of['q']}", (a, of["b"])) if thing(a) is not None and thing(of["b"]) is not None else None
+        )
     if (found := _CHOICE.match(said)) is None:
         return None
     options = tuple(re.split(r"(?: ,)? or | , ", found["o"]))
