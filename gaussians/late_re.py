@@ -41,6 +41,9 @@ class LatePattern:
         self._given = pattern, flags
         self._compiled: Pattern[str] | None = None
 
+    def __reduce__(self) -> tuple[type[LatePattern], tuple[str, int]]:
+        return LatePattern, self._given
+
     def __getattr__(self, name: str) -> Any:  # asked only for what is not there yet
         if self._compiled is None:
             self._compiled = re.compile(*self._given)

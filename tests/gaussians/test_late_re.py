@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import importlib
+import pickle
 import pkgutil
 import re
 from collections.abc import Iterator
@@ -27,7 +28,8 @@ def test_it_finds_what_the_pattern_finds() -> None:
     assert late.sub(r"\g<n> metres", said) == plain.sub(r"\g<n> metres", said) == "2 metres and 35 metres"
     assert (late.pattern, late.flags, late.groups) == (plain.pattern, plain.flags, plain.groups)
     assert late.search is late.search  # nothing stands between a caller and the pattern any more
-    assert copy.deepcopy(late).search(said) is not None
+    for other in (copy.copy(late), copy.deepcopy(late), pickle.loads(pickle.dumps(late))):
+        assert other.search(said) is not None
 
 
 def _held(value: object) -> Iterator[late_re.LatePattern]:
