@@ -26,7 +26,11 @@ VERBS = (
     "bench", "doctor",
 )  # fmt: skip
 
-_ON_A_SESSION = ("select", "ask", "edit", "describe")  # which first load all that a session needs
+# They collect no garbage until a session is open or their modules are loaded, and then call `startup.end`.
+LOADING_FIRST = (
+    "select", "ask", "edit", "describe", "plan", "chat", "find-view", "name-all", "mesh", "info", "render", "convert",
+    "embed", "slim", "export", "tile", "fit",
+)  # fmt: skip
 
 
 def _version(value: bool) -> None:
@@ -81,7 +85,7 @@ def main(arguments: list[str] | None = None) -> NoReturn:
 def _run(given: list[str]) -> NoReturn:
     terminal.as_json = terminal.debug = False
     code: object = 0
-    if given[:1] and given[0] in _ON_A_SESSION:
+    if given and given[0] in LOADING_FIRST:
         startup.begin()
     try:
         verbs = given[:1] if given and given[0] in VERBS else VERBS  # an option or a slip needs the list of all

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .. import startup
 from ..options import Debug, Force, Json, Memory, SceneFile
 from ..terminal.output import terminal
 
@@ -93,6 +94,7 @@ def command(
     from ..sequences import is_pattern
     from ..streaming import HELD_OUT, is_streamed, write_levels, write_levels_of_tiles
 
+    startup.end()
     if is_pattern(output):
         said = {"--sh-degree": sh_degree, "--max-gaussians": max_gaussians, "--crop": crop,
                 "--crop-sphere": crop_sphere, "--levels": levels, "--views": views}  # fmt: skip

@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .. import startup
 from ..options import Capture, Debug, Effort, Encoder, Force, Json, Masks, Memory, Scale, SceneFile, Up
 from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import terminal
@@ -52,6 +53,7 @@ def command(
     from ...gaussians.tiles.store import Tiles, is_tiles
     from ..pictures.named_cameras import with_frame
 
+    startup.end()
     dial = dialled(effort, started)
     tiles = Tiles.open(scene) if is_tiles(scene) else None
     if tiles is not None and _by_blocks(tiles, {"--masks": masks, "--capture": capture, "--effort": effort}):

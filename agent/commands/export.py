@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from .. import startup
 from ..options import Debug, Force, Json, SceneFile, View
 from ..terminal.output import terminal
 
@@ -36,6 +37,7 @@ def command(
     from ..pictures.named_cameras import choose_view
     from ..view.standalone import page
 
+    startup.end()
     if output.suffix.lower() not in (".html", ".htm"):
         raise UserError(f"{output.name} is no web page; name it {output.name}.html")
     require_folder(output)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from .. import startup
 from ..options import Debug, Effort, Force, Json, Seed
 from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import terminal, time_left
@@ -98,6 +99,7 @@ def command(
     from ...gaussians.fit.engine import resolve_device
     from ...gaussians.motion.fitting.fit import stands
 
+    startup.end()
     if minutes is not None and steps is not None:
         raise UserError("give --minutes or --steps, not both")
     dial = dialled(effort, started)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .. import startup
 from ..options import Capture, Debug, Json, SceneFile
 from ..terminal.output import terminal
 
@@ -42,6 +43,7 @@ def command(
     from ..streaming import levels_of
     from ..terminal.motion_text import motion_data
 
+    startup.end()
     if capture is not None and not budget:
         raise UserError("--capture gives the views of --budget; add --budget or leave it out")
     if is_tiles(scene) and not (budget or graph):

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from .. import startup
 from ..options import Batch, Budget, Debug, Encoder, Json, Picture, Planner, View, Window
 from ..terminal.output import read_batch, terminal
 
@@ -93,6 +94,7 @@ def _without_scene(graph: Path | None, planner: str, budget: str | None) -> Answ
 
     ledger = Ledger(Budget.parse(budget) if budget is not None else None)
     planner_used = load_planner(planner, ledger=ledger, progress=terminal.progress)
+    startup.end()
     if graph is None:
         return lambda text, context: plan_json(planner_used.plan(text, previous=context))
     from ...planners.rooms.graph import SceneGraph

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .. import startup
 from ..options import Debug, Force, Json, Lod, Memory, SceneFile, Size, View
 from ..output_files import refuse_existing
 from ..pictures.named_cameras import PICTURE, choose_view, parse_size
@@ -95,6 +96,7 @@ def command(
     from ..streaming import Drawn
     from ..tiled_pictures import DrawnTiles
 
+    startup.end()
     film = is_film(output)
     options = {"--view": view != "auto", "--orbit": orbit is not None, "--cameras": cameras is not None}
     options |= {"--path": path is not None, "--seconds": seconds is not None, "--fps": fps is not None}

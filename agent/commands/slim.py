@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from .. import startup
 from ..options import Capture, Debug, Effort, Force, Json, Memory, SceneFile
 from ..terminal.effort import dialled, reported, tell
 from ..terminal.output import terminal
@@ -73,6 +74,7 @@ def command(
     from ..output_files import refuse_existing, require_folder
     from ..tiled_slim import described, refuse_whole, slim_by_parts, told, too_large
 
+    startup.end()
     dial = dialled(effort, started)
     target = named(output, format)
     settings = Settings(psnr, size, *_length(optimise))

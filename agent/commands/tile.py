@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from .. import startup
 from ..options import Debug, Force, Json, Memory
 from ..terminal.output import terminal
 
@@ -31,6 +32,7 @@ def command(
     from ...gaussians.tiles.store import SUFFIX
     from ..output_files import refuse_existing
 
+    startup.end()
     if output.suffix.lower() != SUFFIX:
         raise UserError(f"tiles are written to a folder NAME{SUFFIX}, not to {output.name}")
     refuse_existing([output], force)

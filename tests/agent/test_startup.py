@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import importlib
+import inspect
 import subprocess
 import sys
 import time
@@ -11,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from scenewright.agent import startup
+from scenewright.agent import cli, startup
 
 
 def test_seconds_count_from_the_start_of_a_process_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -52,6 +53,13 @@ def test_garbage_is_collected_again_after_the_start() -> None:
     startup.begin()
     startup.end()
     assert gc.get_freeze_count() <= kept  # a second command in this process leaves its garbage to be collected
+
+
+@pytest.mark.parametrize("verb", cli.LOADING_FIRST)
+def test_verbs_that_load_first_collect_garbage_while_they_work(verb: str) -> None:
+    module = importlib.import_module(f"scenewright.agent.commands.{verb.replace('-', '_')}")
+    source = inspect.getsource(module)
+    assert "startup.end()" in source or "open_session(" in source  # which calls it
 
 
 ENDING = """
