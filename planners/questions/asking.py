@@ -246,6 +246,8 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
         named = answer.text.startswith("There is no ") and _OF_ONE.match(moment.words) is not None
         if answer.answer is None or (answer.answer == "no" and (named or answer.text.startswith("No. There is no "))):
             return replace(found, answer=nothing(answer.text.removeprefix("No. ")))  # what is not there is not asked of
+        if _LASTS.match(moment.words):  # no length of a thing
+            return replace(found, answer=nothing(NOT_READ), kind="")
         if answer.answer == 0.0 and (gone := _uncounted(moment.words, there)) is not None:
             return replace(found, answer=nothing(gone))
         if answer.answer == () and (under := _UNDER.match(moment.words)) is not None:  # on which it is
@@ -269,6 +271,10 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
 
 
 _OF_ONE = re.compile(r"(?:is|are|was|does|do|did|has|will) (?:the|this|that|my|our) ")
+_LASTS = re.compile(
+    r"how long (?:is|are|was|does|do) .+ (?:standing|sitting|lying|resting|staying|waiting|stand|stay|on|at|in|by|"
+    r"near|next to|under)\b"
+)
 _UNDER = re.compile(r"^(?:what|which \w+) is (?:right |directly )?(?:under|underneath|beneath|below) (?P<x>.+)$")
 _COUNTED = re.compile(r"^(?:how many|count|(?:what is )?the number of) (?P<x>(?:\w+ )*?\w+s)(?= |$)")
 _LOST = bag(

@@ -294,7 +294,10 @@ def _clause(when: When, told: Told) -> Span:
             continue
         if found:
             counts = told.frame.asks in ("yesno", "how_many", "how_far", "how_often")
-            return _about("when" if when.conj == "by" and not counts else when.conj, deed, min(found), line)
+            conj = "when" if when.conj == "by" and not counts else when.conj
+            if conj == "once" and told.frame.asks == "how_long":
+                conj = "after"
+            return _about(conj, deed, min(found), line)
         failed = failed or Untold(f"That does not happen here: {when.clause}.")
     raise failed or Untold(f"It is not understood when this is: {when.clause}.")
 

@@ -57,6 +57,12 @@ def session() -> Session:
         ("how many full rotations does the clock make by the third second?", pytest.approx(1.5, abs=0.02)),
         ("when is the chair's first movement?", None),
         ("the ball, not before the rug, when does it stop?", None),
+        ("hi there, quick one: at what second is the ball done rolling?", pytest.approx(3.0, abs=0.03)),
+        ("Once it's off the rug, how much longer does the ball keep rolling?", pytest.approx(0.5, abs=0.06)),
+        ("Does the clock turn at a constant speed?", "yes"),
+        ("Only one thing in here never moves near the desk; which?", None),
+        ("does the ball end up where it started?", "no"),
+        ("how long is it standing at the desk in the end?", None),
         ("by the time the red book lands, has the green one fallen?", "yes"),
     ],
 )

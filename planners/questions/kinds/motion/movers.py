@@ -18,6 +18,7 @@ from ...timeline.asked import PLACES, Told, Untold, at, cap, kind, names, number
 from ...timeline.bodies import Body
 from .when import moment
 
+_JUST = 0.05  # seconds
 _MOMENTS = ("at", "in", "start", "end", "middle")
 
 
@@ -40,10 +41,15 @@ def doing(told: Told) -> list[tuple[Body, list[Span]]]:
         elif window is not None and window[0] < window[1]:
             spans = [s for s in spans if _overlaps(s, window)]
         else:
-            spans = within(spans, window)
+            spans = within(spans, window) or (within(spans, _soon(window)) if state is False else [])
         if spans:
             found.append((body, spans))
     return found
+
+
+def _soon(window: Span | None) -> Span | None:
+    """A moment a little later: what starts just then happens at it."""
+    return window if window is None else (window[0] + _JUST, window[1] + _JUST)
 
 
 def _overlaps(span: Span, window: Span) -> bool:

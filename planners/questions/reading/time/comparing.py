@@ -153,6 +153,11 @@ _TIMES_WORDS = re.compile(
     r"\b(?P<c>more than|less than|at least|exactly|at most|only) (?P<n>once|twice)\b(?! the\b| it\b)|"
     r"\b(?P<m>twice)(?= |$)"
 )
+_STEADY = re.compile(
+    r"^(?:is|are|does|do|did) (?P<x>.+?) (?:\w+ )?(?:at|with) (?:a |an |the )?(?:constant|steady|uniform|even|same) "
+    r"(?:speed|pace|"
+    r"rate|velocity)(?: throughout| all the time| the whole time)?$"
+)
 _NEARER = re.compile(
     rf"^{_AUX} (?P<x>.+?) (?P<v>(?:(?:get|gets|come|comes|end up|come to rest|stay|finish|stand|stop|ever) "
     rf")*)(?P<adj>closer|nearer|"
@@ -171,6 +176,10 @@ def comparisons(said: str) -> Iterator[Comparison]:
         return
     said = _TIMES_WORDS.sub(_times, said)
     yield from _nearer(said)
+    if (found := _STEADY.match(said)) is not None:
+        yield Comparison(
+            "same", (f"what is the top speed of {found['x']}",), (f"what is the average speed of {found['x']}",)
+        )
     yield from _with_share(said)
     yield from _with_number(said)
     if (found := _DIFFERENCE.match(said)) is not None and found["adj"] not in ("later", "earlier", "sooner"):

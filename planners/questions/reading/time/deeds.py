@@ -76,10 +76,10 @@ is_back - -: [STAY|~come|~go|~move] [FULL] back [in|at|to|into] [its|the] \
     [original|old|initial|starting|former|first|usual] (place|spot|position) | [STAY] back where it \
     (~be|~start|~begin) | (~go|~get|~come) back where it (~be|~start)
 still - -: [STAY] [SO] (still|at rest|motionless|stationary|at a \
-    standstill|immobile|unmoved|fixed|static|resting|stopped|waiting|idle|inactive|put|switched off|turned \
+    standstill|immobile|unmoved|fixed|static|resting|stopped|waiting|idle|inactive|parked|put|switched off|turned \
     off|off|in [ITS|one] [same] (place|spot|position)|where (it|they) (~be)) | ~rest | ~wait | ~pause | ~idle | ~do \
     nothing | ~hold still | STAY (there|put|around)
-open - out: ~open [up|out] | (GO|COME|TURN) [FULL] (out|outward|outwards|open|out of) | ~extend | ~pull out
+open - out: ~open [up|out] | (GO|COME|TURN) [FULL] (out|outward|outwards|open|out of) | ~extend | ~pull out | pulled
 open stop out: ~open [up] (fully|completely|all the way|entirely|totally|wide) | (fully|completely|entirely) ~open
 open stop out: ~arrive [FULL] (out|open) | ~arrive at [its] (full|maximum) (extension|opening)
 close start in: (~set off|~head|~start) [back] (in|inside|inward) | START [to|its|the] \
@@ -122,8 +122,9 @@ leave - -: ~leave | ~exit | (GO|COME|TURN|~step) (off|off of) | ~depart from | (
 cross - -: ~cross | ~traverse | (GO|~pass) (across|over|through|along)
 pass - -: ~pass [by|beside|near|next to|in front of|close to] | (GO|COME) [right|close] (past|by)
 enter - -: ~enter | (GO|COME|TURN|~step) (onto|on to)
-reach - -: ~reach | ~hit | ~touch | ~contact | ~meet | ~strike | BUMP (into|against|with) | ~knock over | ~arrive \
-    [at|on|in|by|near|next to|beside|with] | (GO|COME) [all the way|back] [up|over] (to|into|against) | \
+reach - -: ~reach | ~hit | ~touch | ~contact | ~meet | ~strike | BUMP [up] (into|against|with) | bumped | \
+    ~knock over | ~arrive [at|on|in|by|near|next to|beside|with] | \
+    (GO|COME) [all the way|back] [up|over] (to|into|against) | \
     (~make|made) it [all the way] [up|over] (to|into) | ~come into (contact|touch) with | (~make|~have) [first|its \
     first|the first] contact with | ~come up (to|against) | ~get as far as
 vanish - -: ~disappear | ~vanish | ~go away | gone
@@ -143,8 +144,8 @@ move is -: on | running | working | going | switched on | turned on
 """
 _NOUNS: dict[Kind, str] = {
     "move": "movement|motion|moving|roll|ride|walk|trip|journey|run|travel|path|way|slide|action|animation|rolling|"
-    "walking|drive|route|course",
-    "turn": "turn|turning|rotation|spin|spinning|swing|revolution|round|lap|circle|corner|curve|bend|"
+    "sliding|walking|drive|route|course",
+    "turn": "turn|turning|rotation|spin|spinning|swing|swinging|revolution|round|lap|circle|corner|curve|bend|"
     "change of direction",
     "open": "opening|[the] out stroke|outward stroke|opening stroke|outward movement|way out",
     "close": "closing|shutting|return stroke|back stroke|inward stroke|closing stroke|way back in|way in",

@@ -71,7 +71,7 @@ _SPEED = f"[{_MEASURES}] [{_MEASURES}] (speed|speeds|velocity|velocities|pace|te
 _THINGS = "[thing|things|object|objects|item|items|stuff|one|ones|else|all]"
 _CUES = f"""
 when end: (until|till|up to|up until) (when|(what|which) {_POINT})
-when: when [exactly] | since when | [by|at|on|in|after|around|about|from|since|through] (what|which) {_POINT} [is \
+when: when [exactly] | (since|by) when | [by|at|on|in|after|around|about|from|since|through] (what|which) {_POINT} [is \
     it] [that|when]
 when: how (soon|early|late) | how (long|many seconds|much time|many secs) [into it|in] {_TAKES} [is it|will it \
     be|passes|pass|elapses|goes by|go by|[do|must|does|will|should] (i|you|we|one) [have to|need to|must] wait|to \
@@ -139,6 +139,8 @@ _ASKING = re.compile(
     r"tell|give|show)\b"
 )
 _COMPARED = ("fall", "turn", "open", "close", "rise")
+_ASKED_LAST = re.compile(r" , (?:which|what|when|where|who|how)(?: one| thing)?$")
+_LAGS = ("gap", "delay", "interval")  # from the start of one to the start of the next, of what takes hardly any time
 _BEGINS_WITH_TIME = re.compile(
     r"(?:(?:right|just|shortly|directly|immediately) )?(?:after|before|when|while|as|once|until)\b"
 )
@@ -224,6 +226,7 @@ _QUANTITIES: dict[str, tuple[Asks, Kind]] = {
     "displacement": ("how_far", "move"), "angle": ("how_far", "open"), "height": ("how_far", "fall"),
     "drop": ("how_far", "fall"),
 }  # fmt: skip
+_QUESTION_WORD = re.compile(r"\b(?:when|what|which|how|where|who|why)\b")
 _NOMINAL = re.compile(rf"^(?:the )?(?P<x>.*?) ?\b(?P<q>{'|'.join(_QUANTITIES)})(?: (?:of|for) (?P<y>.+))?$")
 _MOST = re.compile(r"\b(?:total|overall|max|maximum|full|whole|greatest|travel|net|dwell|contact|final|'s)(?= |$)")
 _RATE_FIRST = re.compile(rf"^(?P<u>{_RATE}) (?:of|for)? ?(?P<rest>.+)$")
@@ -265,6 +268,8 @@ def _named(said: str, unit: str) -> Iterator[Frame]:
             continue
         if found["q"] == "time" and found["y"] is None and re.search(r"\bthe (?:whole|entire|full)$", found["x"]):
             continue  # "it stays there the whole time"
+        if _QUESTION_WORD.search(found["x"]) or found["x"].endswith(" all the"):
+            continue
         asks, kind = _QUANTITIES[found["q"]]
         x, y = _MOST.sub("", found["x"]).strip(), found["y"]
         for what in happenings(f"{x} of {y}" if x and y else y or x):
@@ -332,6 +337,7 @@ _SIDES_OF = tuple(  # of two happenings that a time lies between
     re.compile(said)
     for said in (
         r"^(?:\w+ ){0,4}?between (?P<a>.+) and (?P<b>.+)$",
+        r"^(?:\w+ ){0,4}?from (?P<a>.+) (?:until|till) (?P<b>.+)$",
         r"^(?:\w+ ){0,4}?from (?P<a>.+) (?:to|until|till) (?P<b>.+)$",
         r"^(?:separates?|divides?|lies? between|are between) (?P<a>.+) (?:from|and) (?P<b>.+)$",
         r"^(?:passe?s? |is it |goes by |go by |elapses? )?after (?P<a>.+?) (?:does|do|did|will|is|until|till|"
@@ -404,7 +410,7 @@ def _frames(said: str) -> Iterator[Frame]:
             yield Frame("faster", a, b, rank=rank)
     if (found := _RANKED_THING.match(rest)) is not None:
         yield from _filled(Frame("which", Happening(None)), found["x"])
-    if not unit and not _ASKING.match(said):
+    if not unit and not _ASKING.match(said) and not _ASKED_LAST.search(said):
         yield from _filled(Frame("yesno", Happening(None)), rest)
 
 
@@ -565,7 +571,8 @@ def _between(said: str, unit: str) -> Iterator[Frame]:
                 for a, b in _pairs(found["a"], found["b"]):
                     if a.deed is None or b.deed is None:
                         continue
-                    if gap and not a.deed.at_once:  # from the end of the first to the start of the second
+                    lags = gap is not None and gap[0].startswith(_LAGS) and a.deed.kind == "fall"
+                    if gap and not a.deed.at_once and not lags:  # from the end of the first to the start of the second
                         a = replace(a, deed=replace(a.deed, phase="stop"))
                     yield replace(frame, what=a, other=b)
 

@@ -158,6 +158,8 @@ def _around(deed: Deed, before: str, after: str) -> Iterator[Happening]:
         return
     if deed.kind in ("open", "close") and deed.verb in ("open", "shut") and _is_state(deed, before, ""):
         return
+    if deed.kind == "move" and deed.phase and not after and re.search(r"\b(?:in|at|by|until) the$", before):
+        return  # "in the end"
     noun = as_noun(_stripped(before))
     if noun is not None and not after and deed.kind == "move" and deed.phase:
         yield Happening(replace(noun, phase=deed.phase))  # "when does the turn end"

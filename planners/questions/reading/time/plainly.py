@@ -46,6 +46,30 @@ $) => fully open
 \2 \3 \1
 ^(?:is|was) the (opening|closing|fall|roll|movement|motion|turn|spin|walk) (?:over|finished|done|complete|\
 completed)(?= |$) => does the \1 stop
+^(when|at what time|at what second|at which second|by when) (?:is|are|was) (?:the )?(opening|closing|swinging|swing|\
+turning|spinning|rolling|roll|walking|walk|falling|fall|movement|motion|sliding|rotation)(?: of (.+?))? (?:all \
+)?(?:over|finished|done|complete|completed)$ => \1 does the \2 end \3
+^from where it (?:starts|begins|started|began) to where it (?:stops|ends|stopped|ended) , =>
+^how much longer (does|is|did|will)\b(?!.* than ) => how long \1
+\b(once|after|when|as soon as) (it|the \w+(?: \w+)?) (?:is|'s) off (?=the ) => \1 \2 leaves
+^(?:the )?time (the .+?|it) (?:takes?|needs?|took) (?:to (?:go|get|move) )?from (?:fully )?closed to (?:fully \
+)?open$ => how long does \1 take to open
+^(?:the )?time (the .+?|it) (?:takes?|needs?|took) (?:to (?:go|get|move) )?from (?:fully )?open to (?:fully \
+)?closed$ => how long does \1 take to close
+\b(past|over|more than|beyond|less than|under) a right angle\b => \1 90 degrees
+\b(?:the|this|that) (?:whole )?(?:hallway|hall|room|scene|bedroom|dining room|living room|study|playroom|place) \
+(?=(?:completely |perfectly |totally |all )?(?:still|motionless|static|quiet|at rest)) => everything
+\b(?:separate|distinct|individual) (?=(?:movements|motions|turns|rotations|times|drops|falls)\b) =>
+^when is the (?:very )?first (?:sign|hint|trace) of (?:life|movement|motion|action)(?: from| of| in| by)? (.+)$ => \
+when does \1 start to move
+^(?:does|did|will) (.+?) (?:end|end up|finish|finish up|stop) (?:back )?where it (?:started|starts|began|begins)(?: \
+out)?$ => is \1 back in its place at the end
+^(which|what|how many) of the (?:two |three |four |five )?(\w+s)\b => \1 \2
+^how many times (?:round|around) (has|does|did) (.+?) (?:gone|go|been)\b => how many turns \1 \2 made
+^only one (?:thing|object|item)(?: in the room| in here| here)? (.+?) , (?:which|what)(?: is it| one| thing)?$ => \
+what \1
+ (?:all told|all in|in all|tops)$ =>
+^(?:is there )?(?:any|a) (?:chance|risk|danger) (?:that )?(.+)$ => \1
 ^of (?:the |these |those |all |its )?(?:\w+ 's )?(?:two |three |four |five |six )?(\w+)(?: here)? , (how many|which|\
 what)(?: of them| ones?)? => \2 \1
 ^(?:the )?(?:walls?|floor|ceiling)(?: and (?:the )?(?:walls?|floor|ceiling))* aside , =>

@@ -15,13 +15,13 @@ from .deeds import said_in
 from .happenings import thing
 from .moments import NUMBER, SECONDS
 
-_RANKED = (
-    r"(?!.*\b(?:first|earlier|sooner|later|last|next|faster|slower|quicker|longer|shorter|farther|wider|more|less|most|"
-    r"fastest|slowest|longest|farthest)\b)"
+_RANKED = re.compile(
+    r"\b(?:first|earlier|sooner|later|last|next|faster|slower|quicker|longer|shorter|farther|wider|more|less|most|"
+    r"fastest|slowest|longest|farthest)\b"
 )
 _CHOICE = re.compile(
-    rf"^{_RANKED}(?P<q>(?:what|which|who)\b.+?) , (?P<o>(?:(?:the|a|my) )?\w+(?: \w+)*?(?: , (?:(?:the|a|my) "
-    rf")?\w+(?: \w+)*?)*(?: ,)? "
+    r"^(?P<q>(?:what|which|who)\b.+?) , (?P<o>(?:(?:the|a|my) )?\w+(?: \w+)*?(?: , (?:(?:the|a|my) "
+    r")?\w+(?: \w+)*?)*(?: ,)? "
     r"or (?:(?:the|a|my) )?\w+(?: \w+)*)(?P<u> in \w+)?$"
 )
 _IS_IT = re.compile(
@@ -53,7 +53,8 @@ _TOLD = re.compile(
     re.IGNORECASE,
 )
 _PERSON = re.compile(
-    r"\b(?:i|i'm|i'd|i've|we|my|me|our|us|you|your|mum|mom|dad|gosh|ages|sorry|please|says?|said|thinks?|thought|"
+    r"\b(?:hi|hello|hey|quick|basically|i|i'm|i'd|i've|we|my|me|our|us|you|your|mum|mom|dad|gosh|ages|sorry|please|"
+    r"says?|said|thinks?|thought|"
     r"wonders?|asked|"
     r"asks?|asking|bets?|swears?|claims?|reckons?|guess|wow|honestly|assuming)\b"
 )
@@ -81,7 +82,7 @@ def choice(said: str) -> tuple[str, tuple[str, ...]] | None:
     if (found := _CHOICE.match(said)) is None:
         return None
     options = tuple(re.split(r"(?: ,)? or | , ", found["o"]))
-    if len(options) < 2 or any(thing(o) is None for o in options):
+    if len(options) < 2 or (len(options) < 3 and _RANKED.search(said)) or any(thing(o) is None for o in options):
         return None
     return _OF_THESE.sub(r"\1", found["q"]) + (found["u"] or ""), options
 
