@@ -65,7 +65,9 @@ def compared(comparison: Comparison, ask: Asking) -> Answer | None:
 def _sign(unit: str) -> str:
     """The unit of the answer to a question that names its unit so; "" of what is counted."""
     rate = re.search(r"(?: per | a | an | / | each | every |^)(?=second$|sec$|s$|minute$|min$|hour$|h$)", unit)
-    if unit.startswith(("rpm", "rev", "turn", "rot", "round", "hz", "hertz", "rps", "full", "whole", "complete")):
+    if unit.startswith(
+        ("rpm", "rev", "turn", "rot", "round", "hz", "hertz", "rps", "full", "whole", "complete", "times ")
+    ):
         if unit == "rpm" or (rate and "min" in unit):
             return "rpm"
         return "turns/s" if rate or unit in ("rps", "hz", "hertz") else ""

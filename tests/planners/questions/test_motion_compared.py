@@ -63,6 +63,13 @@ def session() -> Session:
         ("Only one thing in here never moves near the desk; which?", None),
         ("does the ball end up where it started?", "no"),
         ("how long is it standing at the desk in the end?", None),
+        ("does the ball stop on the rug?", "no"),
+        ("which books fall after 0.2 s?", ("green book", "red book")),
+        ("does the red book take longer than the green one to fall?", "no"),
+        ("does the ball roll more slowly than 1 m/s?", "no"),
+        ("is the door open at 2 s?", None),
+        ("does the clock turn at least 20 times a minute?", "yes"),
+        ("does the ball ever go faster than 3 m/s?", "no"),
         ("by the time the red book lands, has the green one fallen?", "yes"),
     ],
 )

@@ -8,8 +8,9 @@ from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from .....gaussians.world.words import singular
 from ...answer import Answer
+from ...candidates import is_plural
 from ...reading.noun_phrase import is_anything
-from ...reading.time.deeds import STATES
+from ...reading.time.deeds import STATES, Deed
 from ...reading.time.frames import plain
 from ...reading.time.happenings import TRANSITIVE
 from ...survey import NotResolved, listed
@@ -72,7 +73,7 @@ def _which(told: Told) -> Answer | None:
     )
     if deed is not None and deed.kind in TRANSITIVE and what.object is None:
         return _objects(told) if asks_object and what.subject is not None else None
-    if deed is not None and deed.kind == "still":
+    if deed is not None and (deed.kind == "still" or _stays_shut(deed)):
         return _still(told)
     transitive = re.match(r"(?:what|which) (?:does|do|did|will|has)\b", said)
     if deed is not None and transitive and what.subject is not None and what.object is None and not told.frame.rank:
@@ -80,7 +81,8 @@ def _which(told: Told) -> Answer | None:
     found = doing(told)
     if told.frame.rank:
         return _ranked(told, found)
-    if told.frame.when is not None and told.frame.when.conj in ("after", "before") and len(found) > 1:
+    several = what.subject is not None and is_plural(what.subject)
+    if told.frame.when is not None and told.frame.when.conj in ("after", "before") and len(found) > 1 and not several:
         next_one = told.frame.when.conj == "after"  # "which book falls after the red one?"
         found = [(min if next_one else max)(found, key=lambda f: f[1][0][0])]
     bodies = [b for b, _ in found]
@@ -179,6 +181,11 @@ def _objects(told: Told) -> Answer | None:
     )
 
 
+def _stays_shut(deed: Deed) -> bool:
+    """Whether what does it never opens, so that of drawers and doors it is what stands still."""
+    return deed.kind == "is_closed" and deed.verb.startswith(("stay", "remain", "keep"))
+
+
 def _still(told: Told) -> Answer:
     """What stands still, at a time or all the time."""
     window = told.window()
@@ -220,7 +227,7 @@ def _many(told: Told) -> Answer | None:
         if error.found.verdict != "ambiguous":
             raise
         return None
-    if what.deed.kind == "still":
+    if what.deed.kind == "still" or _stays_shut(what.deed):
         given = _still(told)
         count = len(given.answer) if isinstance(given.answer, tuple) else 1
         return number(float(count), "", given.text, [])

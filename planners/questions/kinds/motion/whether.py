@@ -14,7 +14,7 @@ from ...reading.time.deeds import STATES, Deed
 from ...survey import listed
 from ...timeline.asked import PLACES, Told, Untold, at, cap, during, kind, spoken, verb, within, yes_no
 from ...timeline.bodies import Body
-from ...timeline.happening import is_near
+from ...timeline.happening import is_near, spans_of
 from .when import moment
 
 _SOME_TIME = re.compile(r"\b(?:finally|eventually|ultimately|afterwards?|at last|in the end)\b")
@@ -149,11 +149,15 @@ def _there(told: Told) -> Answer | None:
     if (
         not found
         or what.deed is None
-        or what.at not in ("at", "near", "next to", "beside", "by", "against", "from", "close to")
+        or what.at not in ("at", "near", "next to", "beside", "by", "against", "from", "close to", "on")
     ):
         return None
     time = moment(what.deed, found[-1 if what.deed.stops else 0])
-    near = is_near(body, others, told.timeline, time)
+    if what.at == "on":
+        lying = spans_of(Deed("related", relation="on"), body, others, told.timeline, told.survey) or []
+        near = any(a <= time <= b for a, b in lying)
+    else:
+        near = is_near(body, others, told.timeline, time)
     return yes_no(near != what.denied, f"{body.name} {verb(told)} at {at(time)}.", [body], time, others)
 
 

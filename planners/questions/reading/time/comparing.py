@@ -69,7 +69,8 @@ _EQUAL_NOUNS = {
 _ADJ = "|".join(sorted(_WORDS, key=len, reverse=True))
 _BARE_ADJ = "|".join(w for w in sorted(_WORDS, key=len, reverse=True) if w != "more")
 _AUX = r"(?:is|are|was|were|does|do|did|has|have|had|will|can)"
-_MUCH = r"(?:much |a lot |a bit |a little |even |any |clearly |slightly |significantly |for |by )*"
+_DEGREE = r"(?:much |a lot |a bit |a little |even |any |clearly |slightly |significantly |for |by )"
+_MUCH = f"{_DEGREE}*"
 
 _LENGTH = r"(?:meters?|m|centimeters?|cm|millimeters?|mm|feet|foot|ft|inch|inches)"
 _RATE = (
@@ -83,7 +84,7 @@ _BOUND: dict[str, Relation] = {
     "more than": "more", "over": "more", "above": "more", "better than": "more", "beyond": "more", "past": "more",
     "greater than": "more", "higher than": "more", "larger than": "more", "bigger than": "more", "longer than": "more",
     "faster than": "more", "quicker than": "more", "farther than": "more", "wider than": "more", "later than": "more",
-    "up to more than": "more",
+    "more quickly than": "more", "more rapidly than": "more", "more slowly than": "less",
     "less than": "less", "fewer than": "less", "under": "less", "below": "less", "shorter than": "less",
     "slower than": "less", "lower than": "less", "smaller than": "less", "earlier than": "less",
     "sooner than": "less",
@@ -254,34 +255,36 @@ def _with_number(said: str) -> Iterator[Comparison]:
     rest = f"{found['pre']} {found['post'].strip()}".strip(" ,")
     denied = re.search(r"\b(?:not|never) ?$", found["pre"]) is not None
     rest = re.sub(r"\b(?:not|never) ?(?=$| )", "", rest).strip() if denied else rest
-    timed = re.fullmatch(SECONDS, unit) is not None
-    if timed and limit in ("later than", "earlier than", "sooner than"):
-        cues = ["when"]
-    elif timed:
-        cues = ["how long"]
-    elif re.fullmatch(_RATE, unit):
-        cues = ["how fast"]
-    elif re.fullmatch(_LENGTH, unit):
-        cues = ["how far"]
-    elif unit.startswith("deg"):
-        cues = ["how many degrees"]
-    else:
-        cues = ["how many times" if unit == "times" else "how many turns"]
-    if limit == "faster than" and timed:
+    if limit == "faster than" and re.fullmatch(SECONDS, unit):
         return
+    cue = _cue_of(unit, limit)
     top = re.search(r" (?:ever|at any (?:time|point|moment)|at some (?:time|point|moment))(?= |$)", rest)
-    if top is not None and cues == ["how fast"]:
+    if top is not None and cue == "how fast":
         rest = f"{rest[: top.start()]}{rest[top.end() :]}"
     rest = re.sub(r" (?:for|by|at|with|in|on average|reach|make|of|on)$", "", rest)
     rest = re.sub(r"^on average(?: ,)? ", "", rest)
-    cue = "what is the top speed of" if top is not None and cues == ["how fast"] else cues[0]
-    ways = _asked(cue, rest)
     light = r" (?:goes|go|does|do|run|runs|get|gets|come|comes)(?= |$)"
     moving = "turn" if unit.startswith("deg") else "move"
+    ways = _asked(cue, rest)
+    if top is not None and cue == "how fast":
+        ways = (f"what is the top speed of {_subject_of(re.sub(rf'^{_AUX} ', '', rest))[0]}",)
     ways = tuple(dict.fromkeys((*ways, *(re.sub(light, f" {moving}", a) for a in ways))))
-    if cues[0] in ("how fast", "how far"):
+    if cue in ("how fast", "how far"):
         ways = tuple(f"{a} in {unit.replace('times', 'turns')}" for a in ways)
     yield Comparison(_BOUND[limit], ways, number=seconds(found["n"]), unit=unit, denied=denied)
+
+
+def _cue_of(unit: str, limit: str) -> str:
+    """How a number in a unit is asked for."""
+    if re.fullmatch(SECONDS, unit):
+        return "when" if limit in ("later than", "earlier than", "sooner than") else "how long"
+    if re.fullmatch(_RATE, unit):
+        return "how fast"
+    if re.fullmatch(_LENGTH, unit):
+        return "how far"
+    if unit.startswith("deg"):
+        return "how many degrees"
+    return "how many times" if unit == "times" else "how many turns"
 
 
 def _with_share(said: str) -> Iterator[Comparison]:
@@ -305,7 +308,7 @@ def _with_share(said: str) -> Iterator[Comparison]:
 def _than(a: str, adj: str, mid: str, b: str) -> Iterator[Comparison]:
     """Two clauses of which the second leaves out what the first says."""
     cue, less = _WORDS.get(adj, (_PLAIN.get(adj, ""), False))
-    a = re.sub(rf" {_MUCH.rstrip('*')}$", "", f"{a} ").strip()
+    a = re.sub(rf" {_DEGREE}$", "", f"{a} ").strip()
     if cue == "how long" and _LEGS.search(a) and adj in ("longer", "shorter", "long"):
         cue = "how far"
     relation: Relation = "less" if less else "more"
@@ -319,15 +322,12 @@ def _clauses(a: str, mid: str, b: str) -> Iterator[tuple[str, str]]:
     a = re.sub(r" (?:spend|spends|spent|stay|stays)$", " is", a) if mid else a
     if re.match(r"^does (.+) is$", a):
         a = re.sub(r"^does (.+) is$", r"is \1", a)
+    if not mid and " to " not in a and (to := re.match(r"^(?P<b>(?!it ).+?) (?P<mid>to \w+)$", b)) is not None:
+        mid, b = to["mid"], to["b"]  # "does it take longer than the other to fall"
     first = f"{a} {mid}".strip()
-    if (
-        re.search(r"\bfirst\b", a)
-        and (other := re.fullmatch(r"(?:the|its) (second|last|third)(?: one)?", b)) is not None
-    ):
-        yield first, re.sub(r"\bfirst\b", other[1], first)
-        return
-    if re.search(r"\bsecond\b", a) and re.fullmatch(r"(?:the|its) first(?: one)?", b) is not None:
-        yield first, re.sub(r"\bsecond\b", "first", first)
+    place = re.fullmatch(r"(?:the|its) (?P<n>first|second|last|third)(?: one)?", b)
+    if place is not None and (own := re.search(r"\b(?:first|second|third)\b", a)) is not None:
+        yield first, first.replace(own[0], place["n"], 1)
         return
     aux = re.match(rf"^(?P<aux>{_AUX}) (?P<x>.+)$", a)
     said_by = f"{aux['aux']} " if aux is not None else ""

@@ -117,8 +117,8 @@ slows - -: ~slow [down|up] | (GO|TURN|~get) (slower and slower|slower|more and m
     slower | (~lose|~drop) speed | ~decelerate | ~brake
 speeds_up - -: ~speed up | (GO|TURN|~get) (faster and faster) | ~accelerate | (~get|~become|~be) (faster|quicker) | \
     (~gain|~pick up) speed | ~pick up speed
-leave - -: ~leave | ~exit | (GO|COME|TURN|~step) (off|off of) | ~depart from | (END) [being] (on|touching) | ~lose \
-    [ITS] [contact|touch] with | ~clear | off | ~quit
+leave - -: ~leave | ~exit | (GO|COME|TURN|~step) (off|off of) | ~depart from | (END) (being on|being in|touching) | \
+    ~lose [ITS] [contact|touch] with | ~clear | off | ~quit
 cross - -: ~cross | ~traverse | (GO|~pass) (across|over|through|along)
 pass - -: ~pass [by|beside|near|next to|in front of|close to] | (GO|COME) [right|close] (past|by)
 enter - -: ~enter | (GO|COME|TURN|~step) (onto|on to)
