@@ -144,15 +144,24 @@ _MISREAD = (
 )
 
 
+_NO_NUMBER = bag("is are was were does do did has have had will can list which who")  # first words
+_ASKED_FOR = re.compile(
+    r"\b(?:how|what)\b|^(?:list|which|who)\b.*\b(?:when|time|second|moment|distance|speed|number|angle)\b"
+)
+
+
 def _of_motion(asked: Asked, survey: Survey) -> Reading | None:
     """The answer to a question about what moves, or the first reason why there is none; None if it is no such one."""
     refused: Reading | None = None
+    no_number = asked.words[0] in _NO_NUMBER and not _ASKED_FOR.search(asked.said)
     for kind in kinds.OF_MOTION:
         for slots in (found for template in kind.templates for found in template.match(asked.words, READERS)):
             try:
                 given = kind.answer(replace(asked, slots=slots), survey)
             except NotResolved as error:
                 refused = refused or Reading(_unnamed(error, survey), kind.name)
+                continue
+            if isinstance(given, Answer) and isinstance(given.answer, float) and no_number:
                 continue
             if isinstance(given, Answer) and given.answer is None:
                 refused = refused or Reading(given, kind.name)
@@ -252,6 +261,8 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
             return replace(found, answer=nothing(gone))
         if answer.answer == () and (under := _UNDER.match(moment.words)) is not None:  # on which it is
             return _timed(f"what is {under['x']} on at {moment.times[0]} s", survey, timeline)
+        if found.restated.startswith("how long"):
+            return replace(found, answer=nothing(NOT_READ), kind="")  # of a thing, or for how long
         if found.restated and _is_lost(set(moment.words.split()) - set(found.restated.split())):
             return Reading(
                 Answer(answer=None, answer_type=answer.answer_type, text=NOT_READ, confidence=0.0, source="none")

@@ -255,6 +255,8 @@ def window(when: When | None, told: Told) -> Span | None:
         return None
     if when.kind == "clause":
         return _clause(when, told)
+    if when.kind == "middle" and when.conj == "by":
+        return start, (start + stop) / 2
     if when.kind == "in":  # "how many turns does it make in 2 s", and "is it open in 2 s"
         counts = told.frame.asks in ("how_far", "how_often", "how_fast", "how_long", "how_many")
         return (start, when.start) if counts else (when.start, when.start)

@@ -70,6 +70,10 @@ def session() -> Session:
         ("is the door open at 2 s?", None),
         ("does the clock turn at least 20 times a minute?", "yes"),
         ("does the ball ever go faster than 3 m/s?", "no"),
+        ("Is the ball at its top speed when it leaves the rug?", None),
+        ("By the halfway point of the clip, has the green book fallen?", "yes"),
+        ("How much time is left in the clip when the ball stops?", pytest.approx(1.0, abs=0.03)),
+        ("I need a sound for the ball. How long should it last?", None),
         ("by the time the red book lands, has the green one fallen?", "yes"),
     ],
 )

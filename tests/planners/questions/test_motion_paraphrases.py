@@ -2,6 +2,7 @@
 
 `motion_paraphrases.tsv` holds a room, what is expected and the question; the questions were written before the reader
 that is developed with them, by somebody who knew it: a test of what stays, no measure of what it does for others.
+Behind them stand questions of five people who knew no code, from which the reader has learned since.
 """
 
 from __future__ import annotations

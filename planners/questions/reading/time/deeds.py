@@ -139,7 +139,7 @@ move - forward: GO (forward|forwards|ahead)
 move - backward: GO (backward|backwards)
 move - -: GO (from|out of|off) ITS (place|spot|position) | GO [around|about|along|away|on|there|anywhere|somewhere] | \
     animated | in action | in motion | on the move | ~come | under way | \
-    active | ~cover | ~happen | ~occur | ~change [ITS] (place|position|location) | ~leave ITS (place|spot)
+    active | ~cover | ~happen | ~occur | (~change|~shift) [ITS] (place|position|location) | ~leave ITS (place|spot)
 move is -: on | running | working | going | switched on | turned on
 """
 _NOUNS: dict[Kind, str] = {
@@ -151,7 +151,8 @@ _NOUNS: dict[Kind, str] = {
     "close": "closing|shutting|return stroke|back stroke|inward stroke|closing stroke|way back in|way in",
     "fall": "fall|drop|falling|tumble|plunge|descent|flight",
     "land": "landing|impact|touchdown", "reach": "contact|collision|hit|impact|arrival|touch|bump|crash",
-    "return": "return|way back|trip back|journey back", "cross": "crossing", "still": "pause|rest|wait|break|"
+    "return": "return|return trip|way back|trip back|journey back", "cross": "crossing",
+    "still": "pause|rest|wait|break|"
     "stillness|standstill",
     "leave": "departure|leaving",
 }  # fmt: skip

@@ -347,7 +347,8 @@ _SIDES_OF = tuple(  # of two happenings that a time lies between
     )
 )  # fmt: skip
 _GAP = re.compile(
-    r"^(?:and )?(?:what is )?(?:the )?(?:time|delay|gap|interval|pause|hold)(?: difference)?(?: in seconds)? "
+    r"^(?:and )?(?:what is )?(?:the )?(?:time|seconds|secs|delay|gap|interval|pause|hold)(?: difference)?"
+    r"(?: in seconds)? "
     r"(?=between )"
 )
 _SOON = re.compile(r"^how (?:soon|much later) (?:is it )?(?=after )")

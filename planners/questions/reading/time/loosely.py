@@ -181,6 +181,8 @@ def _main(said: str, unit: str, names: Collection[str], timed: bool) -> Iterator
     parts = _parts(re.sub(r" +", " ", rest).split(), names)
     if parts is None:
         return
+    if asks == "yesno" and yes_no is None and (not parts or parts[0].kind != "thing"):
+        return  # a fragment states nothing
     things = [p for p in parts if p.kind == "thing"]
     deeds = [p for p in parts if p.kind == "deed"]
     deed = _one_deed(deeds) if len(deeds) < 2 or " and " not in rest else False

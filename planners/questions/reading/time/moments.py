@@ -111,6 +111,8 @@ _TIMES: tuple[tuple[re.Pattern[str], Make], ...] = tuple(
         (rf"\bin {_A} {SECONDS}(?= |$)", lambda m: When("in", seconds(m["a"]))),
         (rf"\bt = {_A}(?: {SECONDS})?(?= |$)", _at),
         (rf"\b{_A} {SECONDS} (?:in|into it|into {_CLIP}|after the (?:start|beginning){_OF_CLIP}|later)(?= |$)", _at),
+        (rf"\bby (?:the )?(?:half ?way(?: point| mark)?|midpoint|middle){_OF_CLIP}(?= |$)",
+         lambda m: When("middle", conj="by")),
         (rf"\bat (?:the )?(?:half ?way(?: point| mark)?|midpoint|middle){_OF_CLIP}(?= |$)|"
          rf"\bhalf ?way through(?: {_CLIP})?(?= (?!its |the |his |her )|$)|"
          rf"\bin the middle of {_CLIP}(?= |$)", _plain("middle")),

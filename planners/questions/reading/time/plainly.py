@@ -70,6 +70,18 @@ out)?$ => is \1 back in its place at the end
 what \1
  (?:all told|all in|in all|tops)$ =>
 ^(?:is there )?(?:any|a) (?:chance|risk|danger) (?:that )?(.+)$ => \1
+^(?:list|name|order|sort|give me|rank) (the \w+(?: \w+)?) (?:by|according to) (?:when|the time|the order in which) \
+they (\w+)$ => in what order do \1 \2
+^how (?:much time|many seconds|long) is left(?: (?:in|of) the (?:clip|video|scene|film|shot))? (?:when|after) (.+)$ \
+=> how long is it from when \1 until the end of the clip
+\bby the time (\w+(?:\.\d+)?) (?:seconds|secs) (?:have|has|had|are) (?:passed|elapsed|gone|over)\b => by \1 seconds
+^(?:what|where) is (the .+?) 's (?:destination|goal|stopping place|final (?:resting )?(?:place|position|spot))$ => \
+where does \1 stop
+^(?:what is )?(?:the )?(?:final|last|end) (?:resting )?(?:spot|place) of (.+)$ => where does \1 stop
+^(?:the )?(?:total |overall )?time until (.+)$ => how long until \1
+^(?:what|which) distance (?:separates|lies between) (the .+?) 's (?:start|starting point|beginning) (?:from|and) \
+(?:its|the) (?:stop|end|stopping point|finish)$ => how far does \1 move
+^(?:is|was|does|did) (the \w+(?: \w+)?) (?:get |gets )?moved(?: by the \w+(?: \w+)?)?(?: in any way)?$ => does \1 move
 ^of (?:the |these |those |all |its )?(?:\w+ 's )?(?:two |three |four |five |six )?(\w+)(?: here)? , (how many|which|\
 what)(?: of them| ones?)? => \2 \1
 ^(?:the )?(?:walls?|floor|ceiling)(?: and (?:the )?(?:walls?|floor|ceiling))* aside , =>
@@ -247,8 +259,8 @@ open\3
 ^((?:for )?how long .+) lasts?$ => \1
 ^(?:the )?time (?:for|to make) (.+)$ => how long does \1 take
 ^(?:the )?time per (?:one |a )?(.+)$ => how long does one \1 take
- (?:for|to make|to complete|to do|to finish|makes?|made|complete|do) (?:one|a|each|every|two|three|four|five|ten|\
-\d+) (?:full |single |whole |complete )?(?:turn|rotation|revolution|spin|round)s?\b => turn
+ (?:for|to make|to complete|to do|to finish|makes?|made|complete|do) (?:one|half a|a|each|every|two|three|four|five|\
+ten|\d+) (?:full |single |whole |complete )?(?:turn|rotation|revolution|spin|round)s?\b => turn
 """
 
 
