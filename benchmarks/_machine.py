@@ -55,6 +55,11 @@ def _cpu() -> str:
     return platform.processor() or platform.machine()
 
 
+def processor() -> float:
+    """Seconds of the processor that this process has taken, and those of its children that have ended."""
+    return sum(os.times()[:4])
+
+
 def cores() -> int:
     """How many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -45,7 +45,7 @@ class Plan:
 
 
 FULL = Plan(
-    tuple(range(7801, 7813)), 360, 16, 7830, 200, steady=(7821, 7822, 7823), steady_graphs=6, watched=(7824, 7827, 7828)
+    tuple(range(7801, 7809)), 240, 12, 7830, 200, steady=(7821, 7822), steady_graphs=4, watched=(7824, 7827, 7828)
 )
 QUICK = Plan((7801,), 60, 4, 7830, 60, 0.4, steady_graphs=1, watched=(7824,))
 

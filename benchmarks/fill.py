@@ -22,7 +22,7 @@ from ._fill.measure import Scores, biharmonic, drawn, scored, telea, views_of
 from ._fill.rooms import PLACES, Deletion, deletions
 from .harness import Metric, Point, Result
 
-DELETIONS, QUICK_DELETIONS = 60, 2
+DELETIONS, QUICK_DELETIONS = 40, 2
 IN_ROOM, QUICK_IN_ROOM = 5, 2
 SEED = 101
 GOAL_OVER_BARE, GOAL_OVER_PICTURES, GOAL_OPEN, GOAL_SECONDS = 6.0, 3.0, 0.01, 3.0

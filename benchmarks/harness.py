@@ -101,7 +101,8 @@ class Result:
         notes: what a reader must know to judge them, a sentence each.
         seeds: seeds of everything random.
         cost: what the points' accuracy is bought with on the chart: time, or bytes.
-        name, quick, seconds, machine, versions, revision: stamped by `run`.
+        name, quick, seconds, processor, machine, versions, revision: stamped by `run`; `processor` is in seconds of the
+            process and of those that it started.
         repeats: how many times it was run; of several, figures are medians.
         rows: of a stability benchmark: what disturbances do to figures, and where they break.
     """
@@ -116,6 +117,7 @@ class Result:
     name: str = ""
     quick: bool = False
     seconds: float = 0.0
+    processor: float = 0.0
     machine: dict[str, Any] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
     revision: str | None = None
@@ -211,7 +213,7 @@ class Result:
         facts += [f"revision {self.revision}"] if self.revision else []
         runs = f", {self.repeats} runs: medians, and the least to the greatest" if self.repeats > 1 else ""
         rough = ", quick: rougher than the full run" if self.quick else ""
-        facts += [f"measured in {self.seconds:.0f} s{runs}{rough}"]
+        facts += [f"measured in {self.seconds:.0f} s, {self.processor:.0f} s of the processor{runs}{rough}"]
         return [f"- {fact}" for fact in facts if fact]
 
 
@@ -243,13 +245,14 @@ def run(name: str, quick: bool = False, parts: Sequence[str] = ()) -> Result:
     if unknown := [part for part in parts if part not in known]:
         choice = f"choose {', '.join(known)}" if known else "it runs as a whole"
         raise UserError(f"benchmark {name} has no part {', '.join(map(repr, unknown))}; {choice}")
-    start = time.perf_counter()
+    start, used = time.perf_counter(), _machine.processor()
     result: Result = module.run(quick, parts) if parts else module.run(quick)
     return replace(
         result,
         name=name,
         quick=quick,
         seconds=time.perf_counter() - start,
+        processor=_machine.processor() - used,
         machine=_machine.describe(),
         versions=_machine.versions(),
         revision=_machine.revision(),

@@ -45,6 +45,7 @@ GOALS = {
 
 Way = tuple[str, str]  # method and setting
 Draw = Callable[[], torch.Tensor]  # makes a picture, [H, W, 3]
+Drawn = tuple[float, torch.Tensor]  # seconds, and the picture
 Resized = Callable[[tuple[int, int]], Camera]  # a view, at a width and height
 
 
@@ -89,13 +90,14 @@ def run(quick: bool) -> Result:
         for size in sizes:
             case = Case(name, cloud, seen(size))
             truth = reference.render(cloud, case.camera, BLACK, torch.float64).rgb
-            metrics += _measure(case, truth, repeats)
-            if size == sizes[0]:
+            slow = _slow(case) if size == sizes[0] else None
+            metrics += _measure(case, truth, slow, repeats)
+            if slow is not None:
                 metrics += _gradient.measure(name, cloud, case.camera, repeats)
-                for way, value in _dial(case, truth, repeats).items():
+                for way, value in _dial(case, truth, slow, repeats).items():
                     found.setdefault(way, []).append(value)
     notes += [
-        f"times: minimum of {repeats} runs; one run of the reference",
+        f"times: minimum of {repeats} runs; one run of the reference, at the first size",
         f"points: means over {', '.join(scenes)} at {sizes[0][0]}x{sizes[0][1]}, without work that is done once for a "
         "scene",
     ]
@@ -151,21 +153,33 @@ def psnr(picture: torch.Tensor, truth: torch.Tensor) -> float:
     return BEST_PSNR if error == 0 else min(BEST_PSNR, -10 * math.log10(error))
 
 
-def _measure(case: Case, truth: torch.Tensor, repeats: int) -> list[Metric]:
-    """Both renderers and the fast one's stages on one case."""
+def _slow(case: Case) -> Drawn:
+    """One picture by the reference renderer, which takes seconds to minutes."""
+    return _time(lambda: render(case.cloud, case.camera, backend="reference").rgb, 1)
+
+
+def _measure(case: Case, truth: torch.Tensor, slow: Drawn | None, repeats: int) -> list[Metric]:
+    """The fast renderer and its stages on one case, beside the reference renderer if it was timed."""
     key = f"{case.name}.{case.camera.width}x{case.camera.height}"
     fast, fast_rgb = _time(lambda: render(case.cloud, case.camera, backend="cpu").rgb, repeats)
-    slow, slow_rgb = _time(lambda: render(case.cloud, case.camera, backend="reference").rgb, 1)
     stages = _stages(case, repeats)
     return [
         Metric(f"{key}.cpu", fast * 1e3, "ms", "lower", 0.15),
-        Metric(f"{key}.reference", slow * 1e3, "ms", "lower", 0.3),
-        Metric(f"{key}.speedup", slow / fast, "x", "higher", 0.3),
         Metric(f"{key}.cpu.psnr", psnr(fast_rgb, truth), "dB", "higher", 0.05),
-        Metric(f"{key}.reference.psnr", psnr(slow_rgb, truth), "dB", "higher", 0.05),
+        *(_beside(key, fast, slow, truth) if slow is not None else ()),
         *(Metric(f"{key}.stage.{stage}", seconds * 1e3, "ms") for stage, seconds in stages.items()),
         *_floor.measure(case.cloud, case.camera, key, stages[_floor.STAGE]),
         *_on_a_gpu(case, truth, key, repeats),
+    ]
+
+
+def _beside(key: str, fast: float, slow: Drawn, truth: torch.Tensor) -> list[Metric]:
+    """The reference renderer's time and accuracy, and how many times as fast the fast one is."""
+    seconds, rgb = slow
+    return [
+        Metric(f"{key}.reference", seconds * 1e3, "ms", "lower", 0.3),
+        Metric(f"{key}.speedup", seconds / fast, "x", "higher", 0.3),
+        Metric(f"{key}.reference.psnr", psnr(rgb, truth), "dB", "higher", 0.05),
     ]
 
 
@@ -180,8 +194,8 @@ def _on_a_gpu(case: Case, truth: torch.Tensor, key: str, repeats: int) -> list[M
     ]
 
 
-def _dial(case: Case, truth: torch.Tensor, repeats: int) -> dict[Way, tuple[float, float, int]]:
-    """Seconds, accuracy and bytes of each way to draw a case."""
+def _dial(case: Case, truth: torch.Tensor, slow: Drawn, repeats: int) -> dict[Way, tuple[float, float, int]]:
+    """Seconds, accuracy and bytes of each way to draw a case; `slow`: as the reference renderer drew it."""
     cloud, camera = case.cloud, case.camera
     plain, solid = cloud.with_degree(0), cloud[cloud.opacities >= FAINT]
     half = camera.resized(max(1, camera.width // 2), max(1, camera.height // 2))
@@ -190,13 +204,10 @@ def _dial(case: Case, truth: torch.Tensor, repeats: int) -> dict[Way, tuple[floa
         ("cpu", "no harmonics"): (lambda: render(plain, camera).rgb, plain),
         ("cpu", f"opacity from {FAINT:g}"): (lambda: render(solid, camera).rgb, solid),
         ("cpu", "half size"): (lambda: _enlarged(render(cloud, half).rgb, camera), cloud),
-        ("reference", "full"): (lambda: render(cloud, camera, backend="reference").rgb, cloud),
     }
-    found = {}
-    for way, (draw, held) in ways.items():
-        seconds, rgb = _time(draw, 1 if way[0] == "reference" else repeats)
-        found[way] = seconds, psnr(rgb, truth), held.nbytes
-    return found
+    drawn = {way: (_time(draw, repeats), held) for way, (draw, held) in ways.items()}
+    drawn["reference", "full"] = slow, cloud
+    return {way: (seconds, psnr(rgb, truth), held.nbytes) for way, ((seconds, rgb), held) in drawn.items()}
 
 
 def _enlarged(rgb: torch.Tensor, camera: Camera) -> torch.Tensor:
@@ -211,7 +222,7 @@ def _point(way: Way, values: list[tuple[float, float, int]]) -> Point:
     return Point(*way, seconds, accuracy, int(size), default=way == DEFAULT)
 
 
-def _time(draw: Draw, repeats: int) -> tuple[float, torch.Tensor]:
+def _time(draw: Draw, repeats: int) -> Drawn:
     """Least seconds of `repeats` calls, and a picture; several are warmed up by one that is not counted."""
     picture = draw() if repeats > 1 else None
     least = math.inf

@@ -58,9 +58,9 @@ FULL = Plan(
     names=tuple(range(7001, 7011)),
     attributes=tuple(range(7011, 7017)),
     swaps=tuple(range(7021, 7025)),
-    relations=tuple(range(7001, 7007)),
-    staged=tuple(range(7031, 7035)),
-    stability=(7001, 7002, 7003),
+    relations=tuple(range(7001, 7004)),
+    staged=tuple(range(7031, 7033)),
+    stability=(7001, 7002),
     masked=(7001,),
     chart=(7001, 7002),
 )

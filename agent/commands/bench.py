@@ -91,11 +91,13 @@ def command(
 def _all(quick: bool, folder: Path, against: Path | None, force: bool, resume: bool) -> None:
     """Run every benchmark and write the page of all."""
     import shutil
+    import time
 
     from ...benchmarks import harness
     from ...benchmarks._all import page, running
     from ..output_files import make_folder, refuse_existing
 
+    started = time.perf_counter()
     refuse_existing([folder / page.PAGE], force)
     make_folder(folder)
     earlier = [_read(path) for path in sorted(against.glob("*.json"))] if against else []
@@ -107,13 +109,14 @@ def _all(quick: bool, folder: Path, against: Path | None, force: bool, resume: b
     if not quick:
         running.prepare(terminal.say)
     found = running.measured(harness.names(), quick, terminal.say, kept=kept)
-    made = page.write(folder, found.results, found.failed)
+    elapsed = time.perf_counter() - started
+    made = page.write(folder, found.results, found.failed, None if resume else elapsed)
     told = {
         "page": str(made[-1]),
         "results": [json.loads(r.to_json()) for r in found.results],
         "failed": dict(found.failed),
     }
-    terminal.result(f"{made[-1]}: {len(found.results)} benchmarks, {len(found.failed)} failed", told)
+    terminal.result(f"{made[-1]}: {len(found.results)} benchmarks, {len(found.failed)} failed, {elapsed:.0f} s", told)
     before = {result.name: result for result in earlier}
     _tell([f"{r.name}: {s}" for r in found.results if r.name in before for s in r.regressions(before[r.name])])
     if found.failed:

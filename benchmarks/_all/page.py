@@ -19,22 +19,27 @@ LESS = (
     *(f"{name} is left out: it is long, and its figures are in {page}" for name, page in running.ALONE.items()),
     "fit: the default for five minutes only; `scenewright bench fit` compares eight settings in an hour",
     "fit_sizes: a minute for each degree on one core, not a minute and a half on two",
-    "select: every second kind of composed room, faults of masks in one furnished room and the chart in two, not three",
-    "ask: 360 questions in 12 furnished rooms and 200 in 16 graphs, not 600 in 20 and 300 in 24",
+    "select: every second kind of composed room, relations in five rooms, faults of masks in one, disturbances and the "
+    "chart in two",
+    "ask: 240 questions in 8 furnished rooms and 200 in 12 graphs",
     "plan: every eighth sentence of other people, not every fourth",
-    "fill: 60 deletions, not 100. slim: no 44 dB",
+    "fill: 40 deletions. slim: no 44 dB. render: the reference renderer is timed at 512x512 alone. mesh: the chart is "
+    "of four things",
     "dream: twelve seconds each on one core",
 )
 _ONCE = "accuracies are shares or likenesses, which do not depend on the machine; times do"
 
 
-def write(folder: Path, results: Sequence[Result], failed: Mapping[str, str]) -> tuple[Path, ...]:
+def write(
+    folder: Path, results: Sequence[Result], failed: Mapping[str, str], elapsed: float | None = None
+) -> tuple[Path, ...]:
     """Write `README.md`, and for each result its JSON and, where it has points, its chart; earlier ones are replaced,
     and those of benchmarks without a result removed.
 
     Args:
         folder: an existing folder.
         failed: names of benchmarks that failed, with the reason in a sentence.
+        elapsed: seconds that the run of all took; None if it was done in several starts.
 
     Raises:
         BackendError: matplotlib is not installed.
@@ -55,13 +60,13 @@ def write(folder: Path, results: Sequence[Result], failed: Mapping[str, str]) ->
                 old.unlink(missing_ok=True)
     made.append(folder / PAGE)
     with writing(made[-1], force=True) as file:
-        file.write(text(results, failed).encode())
+        file.write(text(results, failed, elapsed).encode())
     return tuple(made)
 
 
-def text(results: Sequence[Result], failed: Mapping[str, str]) -> str:
+def text(results: Sequence[Result], failed: Mapping[str, str], elapsed: float | None = None) -> str:
     """The page in Markdown."""
-    lines = ["# Benchmarks", "", *_head(results, failed), "", *_goals(results), ""]
+    lines = ["# Benchmarks", "", *_head(results, failed, elapsed), "", *_goals(results), ""]
     for result in results:
         lines += [f"## {result.name}", "", f"{result.title}.", ""]
         if result.points or result.rows:
@@ -71,21 +76,22 @@ def text(results: Sequence[Result], failed: Mapping[str, str]) -> str:
     return "\n".join(lines).rstrip() + "\n"
 
 
-def _head(results: Sequence[Result], failed: Mapping[str, str]) -> list[str]:
+def _head(results: Sequence[Result], failed: Mapping[str, str], elapsed: float | None) -> list[str]:
     """How and where all of it was measured."""
     if not results:
         return ["Nothing could be measured.", "", *_failures(failed)]
     first = results[0]
     facts = (first.machine, first.versions)
     told = "; ".join(", ".join(f"{key} {value}" for key, value in f.items() if key != "load") for f in facts)
-    seconds = sum(r.seconds for r in results)
+    took = "in several starts" if elapsed is None else f"in {elapsed / 60:.0f} minutes"
+    took += f" ({sum(r.processor for r in results) / 60:.0f} minutes of the processor)"
     left = sorted(set(harness.names()) - {r.name for r in results} - set(failed))
     form = "the quick forms, rougher than the full ones" if first.quick else "the full forms"
     form += f" (left out: {', '.join(left)})" if left else ""
     less = [] if first.quick else ["", *(f"- {line}" for line in LESS)]
     return [
         f"`scenewright bench all{' --quick' if first.quick else ''}` wrote this page: {len(results)} benchmarks, "
-        f"{form}, on revision {first.revision or 'unknown'}, in {duration(seconds)}. Every chart and figure here is of "
+        f"{form}, on revision {first.revision or 'unknown'}, {took}. Every chart and figure here is of "
         f"this one revision; {_ONCE}.",
         "",
         f"{told}.",
@@ -100,13 +106,17 @@ def _failures(failed: Mapping[str, str]) -> list[str]:
 
 def _goals(results: Sequence[Result]) -> list[str]:
     """How many goals each benchmark meets, and those that it misses."""
-    lines = ["| benchmark | runs | time | goals met | missed |", "| --- | ---: | ---: | ---: | --- |"]
+    lines = [
+        "| benchmark | runs | time | of the processor | goals met | missed |",
+        "| --- | ---: | ---: | ---: | ---: | --- |",
+    ]
     for result in results:
         aimed = [m for m in result.metrics if m.goal is not None]
         missed = [f"{m.key} {m.value:.3g} of {m.goal:.3g} {m.unit}".rstrip() for m in aimed if not m.met]
         met = f"{len(aimed) - len(missed)} of {len(aimed)}" if aimed else ""
         lines.append(
-            f"| [{result.name}](#{result.name}) | {result.repeats} | {duration(result.seconds)} | {met} "
+            f"| [{result.name}](#{result.name}) | {result.repeats} | {duration(result.seconds)} "
+            f"| {duration(result.processor)} | {met} "
             f"| {', '.join(missed)} |"
         )
     return lines

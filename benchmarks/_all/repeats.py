@@ -28,6 +28,7 @@ def merged(results: Sequence[Result]) -> Result:
         metrics=metrics,
         points=points if all(_same(first, r) for r in results) else first.points,
         seconds=sum(r.seconds for r in results),
+        processor=sum(r.processor for r in results),
         repeats=len(results),
     )
 
@@ -49,6 +50,7 @@ def joined(parts: Sequence[Result]) -> Result:
         notes=tuple(dict.fromkeys(n for r in parts for n in r.notes)),
         seeds=tuple(dict.fromkeys(s for r in parts for s in r.seeds)),
         seconds=sum(r.seconds for r in parts),
+        processor=sum(r.processor for r in parts),
     )
 
 

@@ -33,6 +33,7 @@ def result(value: float = 2.0, name: str = "plan", **fields: Any) -> Result:
         (Point("grammar", "plain", value / 10, value, 100, default=True),),
         name=name,
         seconds=value,
+        processor=fields.pop("processor", value),
         machine={"cpu": "a", "cores": 2},
         versions={"python": "3"},
         revision="abc",
@@ -46,7 +47,8 @@ def test_of_repeats_the_median_and_the_spread_are_kept(values: list[float]) -> N
     (metric,) = found.metrics
     assert metric.low == min(values) and metric.high == max(values)
     assert metric.low <= metric.value <= metric.high
-    assert found.repeats == len(values) and found.seconds == pytest.approx(sum(values))
+    assert found.repeats == len(values)
+    assert found.seconds == pytest.approx(sum(values)) == found.processor
     assert merged([result(v) for v in reversed(values)]).metrics == found.metrics
     assert Result.from_json(found.to_json()) == found
 
@@ -175,10 +177,12 @@ def test_what_is_of_another_revision_or_unreadable_is_a_failure(processes: list[
 
 def test_the_page_has_each_chart_table_and_failure(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
-    page.write(tmp_path, [result(0.9), result(1.0, "select")], {"ask": "no captures"})
+    page.write(tmp_path, [result(0.9, processor=150.0), result(1.0, "select")], {"ask": "no captures"}, elapsed=181.0)
     text = (tmp_path / "README.md").read_text()
     assert "**ask** failed: no captures" in text and "revision abc" in text
-    assert "| [plan](#plan) | 1 | 900 ms | 0 of 1 | right 0.9 of 1 share |" in text
+    assert "in 3 minutes (3 minutes of the processor)" in text
+    assert "in several starts" in page.text([result()], {})
+    assert "| [plan](#plan) | 1 | 900 ms | 150 s | 0 of 1 | right 0.9 of 1 share |" in text
     for name in ("plan", "select"):
         assert f"({name}.svg)" in text and (tmp_path / f"{name}.svg").exists()
         assert Result.from_json((tmp_path / f"{name}.json").read_text()).name == name
