@@ -55,7 +55,23 @@ ALONE = {
     "scale": "docs/scale.md",
 }
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
-LONG = frozenset({"dream", "edits", "effort", "fit_sizes", "layout", "mcp", "stability", "start", "structure", "view"})
+LONG = frozenset(
+    {
+        "dream",
+        "edits",
+        "effort",
+        "fill",
+        "fit_sizes",
+        "layout",
+        "mcp",
+        "mesh",
+        "restyle",
+        "stability",
+        "start",
+        "structure",
+        "view",
+    }
+)
 # Parts that whole runs leave out, with the reason.
 LEFT_OUT = {"edits graded": "its pictures are graded by eye; `scenewright bench edits` makes them"}
 # How benchmarks are divided: parts that share the cores (in whole runs a job each, in quick ones all of them one), and
@@ -88,7 +104,7 @@ LONGEST = (
     "ask geometry",
     "edits colour",
 )
-QUICK_LONGEST = ("ask", "select", "slim", "mesh", "plan", "edit")
+QUICK_LONGEST = ("ask", "select", "slim", "plan", "edit")
 MOST_REPEATS = 3
 _STARTS = 5.0  # seconds that a process takes besides its measurement
 _CHANGED = "the source changed while it was measured; leave it alone until all is measured"

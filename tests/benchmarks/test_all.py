@@ -130,8 +130,8 @@ def test_quick_runs_make_one_job_of_the_parts_that_share_the_cores() -> None:
     assert timed == running.Job("ask", ("speed",)) and shared.shares
     assert shared.parts == tuple(itertools.chain(*running.SHARED_PARTS["ask"]))
     assert running.jobs(["relight"], True) == [running.Job("relight")]
-    names = [job.name for job in running.jobs(["fill", "mesh", "slim", "ask"], True)]
-    assert names == ["ask", "ask", "slim", "mesh", "fill"]
+    names = [job.name for job in running.jobs(["files", "edit", "slim", "ask"], True)]
+    assert names == ["ask", "ask", "slim", "edit", "files"]
 
 
 def test_parts_are_joined_to_one_result() -> None:
@@ -192,7 +192,7 @@ def test_the_command_writes_the_page_and_tells_what_is_worse(
     tmp_path: Path, processes: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr(harness, "names", lambda: ("plan", "fill"))
+    monkeypatch.setattr(harness, "names", lambda: ("plan", "files"))
     earlier = tmp_path / "earlier"
     earlier.mkdir()
     (earlier / "plan.json").write_text(result(3.0, quick=True).to_json())
@@ -203,7 +203,7 @@ def test_the_command_writes_the_page_and_tells_what_is_worse(
     assert told["page"] == str(tmp_path / "new" / "README.md") and len(told["results"]) == 2
     with pytest.raises(UserError, match="--force"):
         CliRunner().invoke(BENCH, command, catch_exceptions=False)
-    monkeypatch.setattr(harness, "names", lambda: ("plan", "render", "fill"))
+    monkeypatch.setattr(harness, "names", lambda: ("plan", "render", "files"))
     (tmp_path / "new" / "render.json").write_text("stale")
     assert CliRunner().invoke(BENCH, [*command, "--force"]).exit_code == 1  # "render" failed
     assert not (tmp_path / "new" / "render.json").exists()
