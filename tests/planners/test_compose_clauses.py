@@ -46,6 +46,25 @@ def test_a_relation_is_found_wherever_its_words_stand(text: str, relations: set[
 
 
 @pytest.mark.parametrize(
+    ("text", "there", "elsewhere"),
+    [
+        ("a living room with a sofa, an armchair and a coffee table on a rug",
+         {"sofa", "armchair", "coffee table"}, set()),
+        ("a kids room with a bed, a desk, a bookshelf, a toy car and a ball on a rug",
+         {"toy car", "ball"}, {"bed", "desk", "bookshelf"}),
+        ("a bedroom with a bed, a wardrobe and a cat on a rug", {"cat"}, {"bed", "wardrobe"}),
+        ("a dining table and four chairs on a rug", {"dining table", "chair"}, set()),
+    ],
+)  # fmt: skip
+def test_what_is_much_larger_does_not_share_the_rug_of_what_is_listed_behind_it(
+    text: str, there: set[str], elsewhere: set[str]
+) -> None:
+    relations = told(read(text))
+    assert {f"{name} on rug" for name in there} <= relations
+    assert not {f"{name} on rug" for name in elsewhere} & relations
+
+
+@pytest.mark.parametrize(
     ("text", "number"),
     [
         ("a bathroom with two basins, a mirror above each", {"wash basin": 2, "mirror": 2}),

@@ -29,6 +29,7 @@ _AT_WINDOW = frozenset({"next_to", "under", "below", "at", "in_front_of", "again
 
 
 _TWO, _CORNERS, _FULL = 2, 4, 4
+_TIMES_AS_LONG = 2.5  # as a thing on a rug, say: how much longer things listed before it may be to stand there too
 _ENDS = (",", ".", ";", "and", "!", "?", "\n")
 _NEAREST = frozenset({"next_to", "in_front_of", "behind", "left_of", "right_of", "against"})
 _TO_OWNER = frozenset({
@@ -625,6 +626,14 @@ def _is_small(draft: Draft) -> bool:
     return draft.kind is None or draft.kind.support == "surface"
 
 
+def _share_ground(draft: Draft, subject: Draft) -> bool:
+    """Whether what a floor thing stands on carries a large one before it too: sofas and the table among them on a rug,
+    but not the bed that was listed before a ball."""
+    if draft.kind is None or subject.kind is None or subject.kind.support == "surface":
+        return False
+    return max(draft.kind.usual_size) <= _TIMES_AS_LONG * max(subject.kind.usual_size)
+
+
 def _may_share(draft: Draft, link: Link) -> bool:
     """Whether a thing in a list shares the place of another one of it, where only that one's is stated."""
     kind = draft.kind
@@ -635,11 +644,7 @@ def _may_share(draft: Draft, link: Link) -> bool:
         return False  # chairs are at the table that is there
     if link.name in ("on", "inside"):
         first = link.objects[0].kind
-        return (
-            small
-            or (link.subject.kind is not None and link.subject.kind.support != "surface")
-            or (first is not None and first.name == "stage")
-        )
+        return small or _share_ground(draft, link.subject) or (first is not None and first.name == "stage")
     if link.name in ("in_center", "in_corner", "next_to", "between", "around", "aligned_with"):
         return False
     return not small or link.name in ("under", "below")
