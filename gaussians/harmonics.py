@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
 from .cloud import SH_BANDS
@@ -99,11 +100,17 @@ def turning(rotation: Tensor, bands: int) -> Tensor:
     Raises:
         UserError: as `rotate`.
     """
+    matrix = _checked(rotation)
+    # One product over all bands and channels is three times as fast as a small one for each band.
+    return torch.kron(_all_bands(tuple(matrix.flatten().tolist()), bands), torch.eye(3, dtype=torch.float64))
+
+
+def _checked(rotation: Tensor) -> Tensor:
+    """The rotation `[3, 3]` in float64 on the CPU. Raises UserError as `rotate`."""
     matrix = rotation.detach().to("cpu", torch.float64)
     if tuple(matrix.shape) != (3, 3) or not _is_rotation(matrix):
         raise UserError("harmonics can only be rotated by a proper 3x3 rotation; remove scale and mirroring first")
-    # One product over all bands and channels is three times as fast as a small one for each band.
-    return torch.kron(_all_bands(tuple(matrix.flatten().tolist()), bands), torch.eye(3, dtype=torch.float64))
+    return matrix
 
 
 def turned(sh: Tensor, turn: Tensor) -> Tensor:
@@ -116,12 +123,21 @@ def turned(sh: Tensor, turn: Tensor) -> Tensor:
 @functools.lru_cache(maxsize=4)  # clouds are rotated block by block
 def _all_bands(rotation: tuple[float, ...], bands: int) -> Tensor:
     """`[K, K]` float64 matrix that rotates K = `bands` coefficients; `rotation` row by row."""
-    matrix = torch.tensor(rotation, dtype=torch.float64).reshape(3, 3)
     turn = torch.eye(bands, dtype=torch.float64)
-    for degree in range(1, SH_BANDS[bands] + 1):
+    for degree, matrix in enumerate(matrices(np.array(rotation).reshape(3, 3), bands), start=1):
         band = slice(degree**2, (degree + 1) ** 2)
-        turn[band, band] = band_matrix(matrix, degree)
+        turn[band, band] = torch.from_numpy(matrix)
     return turn
+
+
+def matrices(rotation: NDArray[np.float64], bands: int) -> list[NDArray[np.float64]]:
+    """The matrices of `band_matrix` for bands 1, 2, ... of K = `bands` coefficients.
+
+    Raises:
+        UserError: as `rotate`.
+    """
+    checked = _checked(torch.from_numpy(np.ascontiguousarray(rotation)))
+    return [band_matrix(checked, degree).numpy() for degree in range(1, SH_BANDS[bands] + 1)]
 
 
 def band_matrix(rotation: Tensor, degree: int) -> Tensor:

@@ -16,14 +16,13 @@ from torch import Tensor
 
 from ..cloud import GaussianCloud
 from ..errors import UserError
-from ..harmonics import turned, turning
 from ..kept import Kept
 from ..language.field.language_field import Group, LanguageField
 from ..language.field.measure import lab_of_cloud
-from ..rotations import from_matrix, multiply
 from ..rows import rows_of_ids, rows_where
 from ..scene import Scene
 from .boxes import boxes_over
+from .carrying import carry, shift_means
 from .motion import Look, Motion, chained, combinations
 from .runs import ids_of
 from .spare import Rows, like
@@ -192,24 +191,23 @@ class _Draft:
         turns = bool(np.abs(turn - np.eye(3)).max() > _TURN)
         if not turns and not shift.any():
             return
-        matrix, away = torch.from_numpy(turn).to(rows.device), torch.from_numpy(shift).to(rows.device)
-        # float64: a point far from the origin is turned to the last bit of its float32
-        self.change("means", rows, lambda means: means.double() @ matrix.T + away)
         if not turns:
+            shift_means(rows, self._from_to("means", rows), shift)
             return
-        # The product of quaternions is linear in each: row i is what it makes of the i-th basis quaternion.
-        product = multiply(from_matrix(matrix), torch.eye(4, dtype=torch.float64, device=rows.device))
-        self.change("quats", rows, lambda quats: quats @ product.to(quats))
-        bands = int(self._cloud.sh.shape[1])
-        if bands > 1:
-            harmonics = turning(matrix, bands).to(self._cloud.sh)
-            self.change("sh", rows, lambda sh: turned(sh, harmonics))
+        means, quats = self._from_to("means", rows), self._from_to("quats", rows)
+        # Without view-dependent colours none is written: the column stays shared.
+        sh = self._from_to("sh", rows) if self._cloud.sh.shape[1] > 1 else None
+        carry(rows, means, quats, sh, turn, shift)
+
+    def _from_to(self, name: str, rows: Tensor) -> tuple[Tensor, Tensor]:
+        """A column as it is, and the one to write `rows` of it to."""
+        span, source = _side_by_side(rows), self._written.get(name, getattr(self._cloud, name))
+        return source, self._own(name, rows if span is None else span, all_written=True)
 
     def _own(self, name: str, rows: Rows, all_written: bool = False) -> Tensor:
         """The column, to write to `rows` of it."""
         if name not in self._written:
-            next_written = rows if all_written and isinstance(rows, slice) else None
-            self._written[name], self._rows[name] = like(getattr(self._cloud, name), next_written)
+            self._written[name], self._rows[name] = like(getattr(self._cloud, name), rows if all_written else None)
         self._rows[name].append(rows)
         return self._written[name]
 

@@ -40,7 +40,7 @@ _spares: Kept[_Spare] = Kept(3)  # means, rotations and harmonics of one scene
 _lock = threading.Lock()
 
 
-def like(column: Tensor, written_next: slice | None = None) -> tuple[Tensor, list[Rows]]:
+def like(column: Tensor, written_next: Rows | None = None) -> tuple[Tensor, list[Rows]]:
     """A float32 column of one's own with the values of `column`, and a list of rows, to which every row that is written
     into it is to be added.
 
@@ -57,7 +57,7 @@ def like(column: Tensor, written_next: slice | None = None) -> tuple[Tensor, lis
         if spare is not fresh and _references(spare) <= _ALONE:
             out = torch.from_numpy(spare.array)  # from here on the tensor's memory holds the array
             for rows in spare.written:
-                if not (isinstance(rows, slice) and rows == written_next):
+                if not _same(rows, written_next):
                     out[rows] = column[rows]
         else:
             spare.array = np.empty(tuple(column.shape), np.float32)
@@ -66,9 +66,14 @@ def like(column: Tensor, written_next: slice | None = None) -> tuple[Tensor, lis
         return out, spare.written
 
 
-def _copied(column: Tensor, array: NDArray[np.float32], left_out: slice | None) -> Tensor:
+def _same(rows: Rows, others: Rows | None) -> bool:
+    """Whether both are surely the same rows."""
+    return rows is others or (isinstance(rows, slice) and isinstance(others, slice) and rows == others)
+
+
+def _copied(column: Tensor, array: NDArray[np.float32], left_out: Rows | None) -> Tensor:
     out = torch.from_numpy(array)
-    if left_out is None:
+    if not isinstance(left_out, slice):
         return out.copy_(column)
     out[: left_out.start] = column[: left_out.start]
     out[left_out.stop :] = column[left_out.stop :]
