@@ -17,6 +17,7 @@ from ..gaussians.fit import Photos, Settings
 from ..gaussians.fit.densify import DefaultStrategy, Strategy
 from ..gaussians.fit.engine_torch import TorchEngine
 from ..gaussians.fit.initialize import initial_cloud
+from ..gaussians.fit.layers import Layers
 from ..gaussians.fit.parameters import F32, Parameters
 from ..gaussians.fit.train import Schedule, Trainer
 from ..gaussians.render import reference
@@ -35,13 +36,13 @@ class PlainEngine(TorchEngine):
         super().__init__(parameters, strategy, ssim_lambda, device="cpu", draw=_draw)
         self._taken = 0
 
-    def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
+    def train_step(self, camera: Camera, photo: F32, means_lr: float, around: Layers | None = None) -> float:
         """See `Engine`."""
         degree = min(HIGHEST, self._taken // BAND_EVERY)
         if degree > self.degree:
             self.fetch().raise_degree(degree)
         self._taken += 1
-        return super().train_step(camera, photo, means_lr)
+        return super().train_step(camera, photo, means_lr, around)
 
 
 def trainer(photos: Photos, settings: Settings) -> Trainer:

@@ -1,12 +1,12 @@
-"""Fit a large capture by blocks: everything coarsely first, then each block of space alone, twice.
+"""Fit a large capture by blocks: everything with few bands first, then each block of space alone, in rounds.
 
-A block is a cell of space. Its Gaussians are trained on the parts of the photographs that show it, while all others
-stand around it and stay as they are. All of it is one training with one schedule: the first part trains everything, the
-others go on from there block by block, with the optimiser's moments; the last goes over blocks that are all done, so
-that they meet without seams. A coarse fit first and blocks among it afterwards is the scheme of CityGaussian (Liu et
-al. 2024).
+A block is a cell of space. Its Gaussians are trained on the parts of the photographs that show it, between pictures of
+what is in front of it and behind it (`layers`), which stays as it is. All of it is one training with one schedule: the
+first part trains everything, the others go on from there block by block, with the optimiser's moments; each round draws
+what is around a block anew, so that blocks meet without seams. A coarse fit first and blocks among it afterwards is the
+scheme of CityGaussian (Liu et al. 2024).
 
-What a step optimises is one block; what it draws besides are the other Gaussians in the same part of the photograph.
+A step draws and optimises one block; what it costs is a share of what a step of everything costs.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from __future__ import annotations
 import contextlib
 import math
 import re
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -21,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
 from ..camera import Camera
@@ -34,6 +36,7 @@ from .engine import engine_for, resolve_device
 from .fitting import Fitted, Record, Settings, Status
 from .held_out_choice import Choice
 from .initialize import initial_cloud
+from .layers import Layers
 from .parameters import Parameters
 from .photographs.photos import MIN_PHOTOS, Photos
 from .quality import measure
@@ -42,12 +45,15 @@ from .train import REFINE_STOP, Schedule, Shot, Trainer, morton_order
 MOST_BLOCKS = 256
 PER_BLOCK = 500_000  # Gaussians of a block at most, if the number of blocks is chosen by itself
 COARSE = 0.4  # share of the training after which it goes on by blocks
-COARSE_GAUSSIANS = 0.5  # share of the Gaussians that everything together may have until then
+COARSE_DEGREE = 1  # of the harmonics until then: 368 bytes a Gaussian with moments and gradient, 944 with degree 3
 ROUNDS = ((COARSE, REFINE_STOP), (REFINE_STOP, 1.0))  # the parts of the training that go over the blocks
+VISITS = 2  # of each photograph in a round at least: a short training uses fewer photographs, as layers take time
+LAYERS = 0.25  # of a block's seconds at most in which its layers are drawn
 GROW = 0.25  # of a block's Gaussians added per refinement: there are fewer of them than in a whole training
 MARGIN = 8  # pixels around a block's part of a photograph
 SMALLEST = 24  # pixels; photographs that show less of a block are not its business
 SEEN = 0.01  # of a photograph that must show a block
+COARSER = 4  # times larger are the pixels in which the parts of photographs are found
 TRIM = 0.01  # of the pixels that show a block, on each side, that its part may leave out
 F32 = NDArray[np.float32]
 _PART = re.compile(r"(?:coarse|round-\d+-block-\d+)(?:\.checkpoint)?")  # files of a training
@@ -107,8 +113,8 @@ def fit_by_blocks(
     """Train a scene by blocks.
 
     Args:
-        settings: of the whole; everything together gets `COARSE` of its length, the blocks the rest. Steps are steps
-            of whole photographs: a block makes as many more as its parts of them are smaller.
+        settings: of the whole; everything together gets `COARSE` of its length, the blocks the rest. Counted in
+            steps, each block makes as many of the rest as photographs show it; in seconds, blocks divide them.
         folder: keeps checkpoints and finished blocks, so that a training that was stopped goes on from there. The
             caller deletes it after saving the scene.
         on_status: as in `fit`.
@@ -126,16 +132,21 @@ def fit_by_blocks(
     parameters, steps, seconds, choices = begun.parameters, begun.steps, begun.seconds, list[Choice]()
     division = cells(parameters.means, blocks)
     shares = [float(cell.holds(parameters.means).mean()) for cell in division]
+    backend = "auto" if resolve_device(settings.device) == "cpu" else "cuda"
     for lap, (first, last) in enumerate(ROUNDS):
         parts = parts_of(photos.shots, parameters.cloud(), division)
-        for i, (cell, share) in enumerate(zip(division, shares, strict=True)):
-            length = (last - first) * share
-            status = _share_of(on_status, first + (last - first) * sum(shares[:i]), length)
+        efforts = _efforts(parts, shares, photos.shots)
+        for i, cell in enumerate(division):
+            length = (last - first) * efforts[i]
+            status = _share_of(on_status, first + (last - first) * sum(efforts[:i]), length)
             inside = cell.holds(parameters.means)
-            own, others = (parameters.only(np.flatnonzero(rows)) for rows in (inside, ~inside))
-            task = partial(_block, own, others, parts[i], share, photos, settings, lap, i, status)
+            own = parameters.only(np.flatnonzero(inside))
+            parameters.take(np.flatnonzero(~inside))
+            around = partial(among, own=i, division=division, backend=backend)
+            turn = _Turn(lap, i, shares[i], efforts[i], tuple(parts[i]), around)
+            task = partial(_block, own, parameters, turn, photos, settings, status)
             done = kept.part(f"round-{lap + 1}-block-{i + 1}", task)
-            parameters = Parameters.joined([others, done.parameters])
+            parameters = Parameters.joined([parameters, done.parameters])
             steps, seconds = steps + done.steps, seconds + done.seconds
         if last == REFINE_STOP:
             choices = fitting.reduced(parameters, photos, settings)
@@ -150,14 +161,45 @@ def parts_of(shots: Sequence[Shot], cloud: GaussianCloud, division: Sequence[Cel
     """For each cell, those photographs that show it, cut to where they do: where the surface seen lies in the cell."""
     found: list[list[Shot]] = [[] for _ in division]
     for shot in shots:
-        seen = render(cloud, shot.camera)
-        points = points_seen(shot.camera, seen.depth.numpy())
+        camera = smaller(shot.camera, COARSER)
+        seen = render(cloud, camera)
+        points = points_seen(camera, seen.depth.numpy())
         there = seen.alpha.numpy() > 0.5
         for cell, parts in zip(division, found, strict=True):
-            box = _rectangle(there & cell.holds(points))
+            box = _rectangle(there & cell.holds(points), shot.camera)
             if box is not None:
                 parts.append(cropped(shot, *box))
     return found
+
+
+def among(
+    parts: Sequence[Shot], others: GaussianCloud, own: int, division: Sequence[Cell], backend: str = "auto"
+) -> list[Shot]:
+    """Parts of photographs with what is around a cell in each.
+
+    Args:
+        others: all Gaussians outside the cell.
+        own: index of the cell in its division.
+        backend: that draws them, see `render`.
+    """
+    home = np.argmax([cell.holds(others.means.numpy()) for cell in division], axis=0)
+    ahead = [tuple(k for k, c in enumerate(division) if hides(c, division[own], p.camera.position)) for p in parts]
+    found: dict[int, Shot] = {}
+    for hiding in sorted(set(ahead)):
+        rows = torch.from_numpy(np.isin(home, hiding))
+        before, behind = others[rows], others[~rows]
+        for i in (i for i, these in enumerate(ahead) if these == hiding):
+            front, back = (render(cloud, parts[i].camera, backend=backend) for cloud in (before, behind))
+            layers = Layers.of(front.rgb.numpy(), front.alpha.numpy(), back.rgb.numpy(), parts[i].share)
+            found[i] = replace(parts[i], around=layers)
+    return [found[i] for i in range(len(parts))]
+
+
+def hides(cell: Cell, other: Cell, eye: NDArray[np.float64]) -> bool:
+    """Whether rays from `eye` that meet both cells of a division meet `cell` first; False if none meets both."""
+    ahead = ((cell.high <= other.low) & (eye < cell.high)) | ((cell.low >= other.high) & (eye >= cell.low))
+    behind = ((other.high <= cell.low) & (eye < other.high)) | ((other.low >= cell.high) & (eye >= other.low))
+    return bool(ahead.any() and not behind.any())
 
 
 def points_seen(camera: Camera, depth: F32) -> NDArray[np.float64]:
@@ -174,19 +216,35 @@ def cropped(shot: Shot, left: int, top: int, right: int, bottom: int) -> Shot:
     camera = Camera(
         c.world_to_camera, c.fx, c.fy, c.cx - left, c.cy - top, right - left, bottom - top, c.name
     )  # fmt: skip
-    return Shot(camera, np.ascontiguousarray(shot.photo[top:bottom, left:right]))
+    part = np.ascontiguousarray(shot.photo[top:bottom, left:right])
+    return replace(shot, camera=camera, photo=part, share=part.size / shot.photo.size)
 
 
-def _rectangle(mask: NDArray[np.bool_]) -> tuple[int, int, int, int] | None:
-    """Left, top, right, bottom around the pixels of a mask `[H, W]`; None if they are few."""
-    height, width = mask.shape
+def smaller(camera: Camera, times: int) -> Camera:
+    """A camera with so many times larger pixels; some of the last rows and columns are left out."""
+    c, width, height = camera, max(1, camera.width // times), max(1, camera.height // times)
+    fx, fy, cx, cy = c.fx / times, c.fy / times, c.cx / times, c.cy / times
+    return Camera(c.world_to_camera, fx, fy, cx, cy, width, height, c.name)
+
+
+def _rectangle(mask: NDArray[np.bool_], camera: Camera) -> tuple[int, int, int, int] | None:
+    """Left, top, right, bottom of the part of a photograph around a mask `[H, W]` of larger pixels; None if few."""
     y, x = np.nonzero(mask)
     if len(x) <= SEEN * mask.size:
         return None
-    (left, right), (top, bottom) = (np.quantile(v, [TRIM, 1 - TRIM]).astype(int) for v in (x, y))
-    left, top = max(0, left - MARGIN), max(0, top - MARGIN)
-    right, bottom = min(width, right + 1 + MARGIN), min(height, bottom + 1 + MARGIN)
+    (left, right), (top, bottom) = (COARSER * np.quantile(v, [TRIM, 1 - TRIM]).astype(int) for v in (x, y))
+    left, top = max(0, int(left) - MARGIN), max(0, int(top) - MARGIN)
+    right = min(camera.width, int(right) + COARSER + MARGIN)
+    bottom = min(camera.height, int(bottom) + COARSER + MARGIN)
     return None if min(right - left, bottom - top) < SMALLEST else (left, top, right, bottom)
+
+
+def _efforts(parts: Sequence[Sequence[Shot]], shares: Sequence[float], shots: Sequence[Shot]) -> list[float]:
+    """The share of a round that each block gets: by its photographs, and what a step costs, which is about as its share
+    of the Gaussians and that of a photograph's pixels."""
+    whole = _pixels(shots)
+    costs = [len(p) * (share + _pixels(p) / whole) if p else 0.0 for p, share in zip(parts, shares, strict=True)]
+    return [cost / max(sum(costs), 1e-9) for cost in costs]
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,39 +258,74 @@ class _Trained:
 
 def _coarse(photos: Photos, settings: Settings, on_status: Callable[[Status], None], path: Path | None) -> _Trained:
     """The beginning of the training, of everything."""
-    rng = np.random.default_rng(settings.seed)
-    most = max(1, round(COARSE_GAUSSIANS * settings.max_gaussians))
+    rng, most = np.random.default_rng(settings.seed), settings.max_gaussians
     start, strategy = Parameters.of(initial_cloud(photos, most, rng)), MCMCStrategy(most, rng)
-    shorter = replace(settings, **_length(settings, COARSE, photos.shots, photos.shots))
-    return _trained(photos, photos.shots, start, strategy, rng, shorter, (0.0, COARSE), None, on_status, path)
+    few = COARSE_DEGREE if settings.degree == "auto" else min(COARSE_DEGREE, settings.degree)
+    seconds, steps = settings.seconds, settings.steps
+    shorter = replace(
+        settings, degree=few, seconds=None if seconds is None else COARSE * seconds,
+        steps=None if steps is None else max(1, round(COARSE * steps)),
+    )  # fmt: skip
+    return _trained(photos, photos.shots, start, strategy, rng, shorter, (0.0, COARSE), on_status, path)
+
+
+@dataclass(frozen=True, eq=False)
+class _Turn:
+    """A block's part in a round.
+
+    Attributes:
+        lap: of `ROUNDS`.
+        index: of the block.
+        share: of the Gaussians.
+        effort: share of the round's seconds.
+        parts: of the photographs, that show it.
+        among: adds what is around the block to parts, of all other Gaussians.
+    """
+
+    lap: int
+    index: int
+    share: float
+    effort: float
+    parts: tuple[Shot, ...]
+    among: Callable[[Sequence[Shot], GaussianCloud], list[Shot]]
 
 
 def _block(
-    own: Parameters,
-    others: Parameters,
-    parts: Sequence[Shot],
-    share: float,
-    photos: Photos,
-    settings: Settings,
-    lap: int,
-    index: int,
-    on_status: Callable[[Status], None],
-    path: Path | None,
-) -> _Trained:
-    """One block trained while the others stay as they are.
-
-    Args:
-        parts: of the photographs.
-        share: of the training that the block gets.
-        lap: of `ROUNDS`.
-    """
-    if len(parts) < MIN_PHOTOS or not len(own):
+    own: Parameters, others: Parameters, turn: _Turn, photos: Photos, settings: Settings,
+    on_status: Callable[[Status], None], path: Path | None,
+) -> _Trained:  # fmt: skip
+    """One block trained while the others stay as they are."""
+    if len(turn.parts) < MIN_PHOTOS or not len(own):
         return _Trained(own, 0, 0.0)
-    first, last = ROUNDS[lap]
-    rng = np.random.default_rng((settings.seed, lap, index))
-    strategy = MCMCStrategy(max(len(own), round(share * settings.max_gaussians)), rng, GROW)
-    shorter = replace(settings, **_length(settings, (last - first) * share, parts, photos.shots))
-    return _trained(photos, parts, own, strategy, rng, shorter, (first, last), others, on_status, path)
+    first, last = ROUNDS[turn.lap]
+    rng = np.random.default_rng((settings.seed, turn.lap, turn.index))
+    strategy = MCMCStrategy(max(len(own), round(turn.share * settings.max_gaussians)), rng, GROW)
+    strategy.opacity_reg *= turn.share  # means over a block's Gaussians; in a training of all they weigh as much less
+    strategy.scale_reg *= turn.share
+    if settings.steps is not None:
+        steps = max(1, round((last - first) * settings.steps * len(turn.parts) / len(photos.shots)))
+        shots = turn.among(_some(turn.parts, steps // VISITS, turn.lap), others.cloud())
+        shorter = replace(settings, steps=steps)
+    else:
+        seconds = (last - first) * turn.effort * (settings.seconds or 0.0)
+        shots, taken = _within(LAYERS * seconds, turn, others.cloud())
+        shorter = replace(settings, seconds=max(seconds - taken, 0.5 * seconds))
+    return _trained(photos, shots, own, strategy, rng, shorter, (first, last), on_status, path)
+
+
+def _within(seconds: float, turn: _Turn, others: GaussianCloud) -> tuple[list[Shot], float]:
+    """As many photographs with what is around a block as are drawn in about so many seconds; what they took."""
+    started = time.perf_counter()
+    turn.among(_some(turn.parts, MIN_PHOTOS, turn.lap), others)
+    each = (time.perf_counter() - started) / MIN_PHOTOS
+    shots = turn.among(_some(turn.parts, int(seconds / each), turn.lap), others)
+    return shots, time.perf_counter() - started
+
+
+def _some(parts: Sequence[Shot], count: int, lap: int) -> list[Shot]:
+    """So many photographs, but `MIN_PHOTOS` at least, evenly spaced; others in the next round."""
+    count = min(len(parts), max(MIN_PHOTOS, count))
+    return [parts[(i * len(parts) + lap * len(parts) // 2) // count % len(parts)] for i in range(count)]
 
 
 def _trained(
@@ -243,7 +336,6 @@ def _trained(
     rng: np.random.Generator,
     settings: Settings,
     part: tuple[float, float],
-    others: Parameters | None,
     on_status: Callable[[Status], None],
     path: Path | None,
 ) -> _Trained:
@@ -252,12 +344,11 @@ def _trained(
     Args:
         settings: with the length of this part.
         part: where in the whole training it begins and ends.
-        others: Gaussians that stay as they are.
         path: of its checkpoint.
     """
     degree = held_out_choice.MAX_DEGREE if settings.degree == "auto" else settings.degree
     schedule = Schedule(settings.steps, settings.seconds, settings.coarse, degree, first=part[0], last=part[1])
-    engine = engine_for(resolve_device(settings.device), None if others is None else others.columns())
+    engine = engine_for(resolve_device(settings.device))
     trainer = Trainer(shots, start, strategy, photos.extent, schedule, rng, engine)
     name = f"{fitting.training_id(replace(photos, shots=tuple(shots)), settings)} {part}"
     record = Record() if path is None else fitting.resume(trainer, path, name)
@@ -265,13 +356,6 @@ def _trained(
     unreduced = replace(settings, gain=None, degree=degree)
     fitting.train(trainer, whole, unreduced, record, None if path is None else (path, name), on_status)
     return _Trained(trainer.parameters, trainer.steps, trainer.seconds)
-
-
-def _length(settings: Settings, share: float, parts: Sequence[Shot], shots: Sequence[Shot]) -> dict[str, Any]:
-    """The length of a share of the training; in steps, as many with parts of photographs as make as many pixels."""
-    if settings.steps is None:
-        return {"seconds": share * (settings.seconds or 0.0)}
-    return {"steps": max(1, round(share * settings.steps * _pixels(shots) / _pixels(parts)))}
 
 
 def _pixels(shots: Sequence[Shot]) -> float:

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields
 from functools import partial
 from typing import Literal, Protocol
 
@@ -16,8 +15,9 @@ from numpy.typing import NDArray
 from ..camera import Camera, Vec3
 from ..render.cpu import gradient
 from .densify import Strategy
+from .layers import Layers
 from .loss import BLACK, Slope, photometric
-from .parameters import Columns, Parameters, parameter_gradients
+from .parameters import Parameters, parameter_gradients
 
 F32 = NDArray[np.float32]
 
@@ -25,11 +25,12 @@ F32 = NDArray[np.float32]
 class Engine(Protocol):
     """Holds the parameters, on the host or on a device, and trains them."""
 
-    def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
+    def train_step(self, camera: Camera, photo: F32, means_lr: float, around: Layers | None = None) -> float:
         """Train on one photograph `[H, W, 3]` in [0, 1]. Returns the loss before the step.
 
         Args:
             means_lr: learning rate of means, scene units.
+            around: what else the photograph shows, which stays as it is.
         """
         ...
 
@@ -61,30 +62,30 @@ EngineFactory = Callable[[Parameters, Strategy, float], Engine]  # the last is t
 
 
 class CpuEngine:
-    """Trains with numba kernels on the host. Same input, same bytes.
+    """Trains with numba kernels on the host. Same input, same bytes."""
 
-    Args:
-        around: columns (`Parameters.columns`) of Gaussians that are drawn too and stay as they are, of any degree.
-    """
-
-    def __init__(
-        self, parameters: Parameters, strategy: Strategy, ssim_lambda: float, around: Columns | None = None
-    ) -> None:
+    def __init__(self, parameters: Parameters, strategy: Strategy, ssim_lambda: float) -> None:
         self._parameters, self._strategy, self._ssim_lambda = parameters, strategy, ssim_lambda
-        self._around = None if around is None else _Around(around)
 
-    def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
+    def train_step(self, camera: Camera, photo: F32, means_lr: float, around: Layers | None = None) -> float:
         """See `Engine`."""
-        return self.learn(camera, BLACK, lambda rgb: photometric(rgb, photo, self._ssim_lambda), means_lr)
+        return self._step(camera, BLACK, lambda rgb: photometric(rgb, photo, self._ssim_lambda), means_lr, around)
 
     def learn(self, camera: Camera, background: Vec3, slope: Slope, means_lr: float) -> float:
         """See `Engine`."""
+        return self._step(camera, background, slope, means_lr, None)
+
+    def _step(self, camera: Camera, background: Vec3, slope: Slope, means_lr: float, around: Layers | None) -> float:
+        """Draw, run backward, and step."""
         columns = self._parameters.columns()
-        shown = columns if self._around is None else self._around.after(columns)
-        drawn = gradient.draw(shown, camera, background)
-        loss, d_rgb = slope(drawn.rgb)
-        found = gradient.draw_backward(drawn, d_rgb, np.zeros(d_rgb.shape[:2], np.float32))
-        found = found if self._around is None else _first_rows(found, len(columns[0]))
+        drawn = gradient.draw(columns, camera, background)
+        if around is None:
+            loss, d_rgb = slope(drawn.rgb)
+            d_alpha = np.zeros(d_rgb.shape[:2], np.float32)
+        else:
+            loss, d_picture = slope(around.merge(drawn.rgb, drawn.alpha))
+            d_rgb, d_alpha = around.split(d_picture)
+        found = gradient.draw_backward(drawn, d_rgb, d_alpha)
         gradients = parameter_gradients(found, columns[2], columns[3])
         self._strategy.regularise(gradients, columns[2], columns[3])
         self._parameters.step(gradients, means_lr)
@@ -105,37 +106,6 @@ class CpuEngine:
         return self._parameters.degree
 
 
-class _Around:
-    """Columns that are drawn after those in training, in one piece of memory with them."""
-
-    def __init__(self, columns: Columns) -> None:
-        self._columns = columns
-        self._joined: Columns | None = None
-
-    def after(self, own: Columns) -> Columns:
-        """Both, with as many SH bands as `own` has. The arrays are overwritten by the next call."""
-        joined = self._joined
-        if joined is None or joined[4].shape != (len(own[0]) + len(self._columns[0]), *own[4].shape[1:]):
-            joined = self._joined = self._made(own)
-        for column, values in zip(joined, own, strict=True):
-            column[: len(values)] = values
-        return joined
-
-    def _made(self, own: Columns) -> Columns:
-        bands, sh = own[4].shape[1], self._columns[4][:, : own[4].shape[1]]
-        padded = np.zeros((len(sh), bands, 3), np.float32)
-        padded[:, : sh.shape[1]] = sh
-        means, quats, scales, opacities, sh = (
-            np.concatenate([mine, other]) for mine, other in zip(own, (*self._columns[:4], padded), strict=True)
-        )
-        return means, quats, scales, opacities, sh
-
-
-def _first_rows(found: gradient.Gradients, count: int) -> gradient.Gradients:
-    """The gradients of the first Gaussians."""
-    return gradient.Gradients(**{f.name: getattr(found, f.name)[:count] for f in fields(found)})
-
-
 def resolve_device(device: Literal["auto", "cpu", "cuda"]) -> Literal["cpu", "cuda"]:
     """Resolve "auto": the GPU if gsplat and a device are available, else the CPU.
 
@@ -149,15 +119,11 @@ def resolve_device(device: Literal["auto", "cpu", "cuda"]) -> Literal["cpu", "cu
     return "cpu" if device == "cpu" or cuda.missing() else "cuda"
 
 
-def engine_for(device: Literal["cpu", "cuda"], around: Columns | None = None) -> EngineFactory:
-    """The factory of engines for a device.
-
-    Args:
-        around: Gaussians that are drawn too and stay as they are, see `CpuEngine`.
-    """
+def engine_for(device: Literal["cpu", "cuda"]) -> EngineFactory:
+    """The factory of engines for a device."""
     if device == "cpu":
-        return CpuEngine if around is None else partial(CpuEngine, around=around)
+        return CpuEngine
     from ..render import cuda
     from .engine_torch import TorchEngine
 
-    return partial(TorchEngine, device=cuda.splatting.DEVICE, draw=cuda.draw, around=around)
+    return partial(TorchEngine, device=cuda.splatting.DEVICE, draw=cuda.draw)

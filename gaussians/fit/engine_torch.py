@@ -19,11 +19,11 @@ from ..camera import Camera, Vec3
 from ..cloud import SH_BANDS
 from .adam import BETAS, EPSILON, Adam
 from .densify import Strategy
+from .layers import BEHIND, FRONT, THROUGH, UNIT, Layers
 from .loss import BLACK, Slope, reference
-from .parameters import SHN_LR, Columns, Parameters, learning_rates
+from .parameters import SHN_LR, Parameters, learning_rates
 
 F32 = NDArray[np.float32]
-_Tensors = tuple[Tensor, Tensor, Tensor, Tensor, Tensor]
 
 
 class Draw(Protocol):
@@ -44,18 +44,15 @@ class TorchEngine:
         ssim_lambda: weight of D-SSIM in the loss.
         device: torch device.
         draw: rasterises columns that lie on the device.
-        around: columns of Gaussians that are drawn too and stay as they are, of any degree.
     """
 
     shn_lr = SHN_LR  # learning rate of all SH bands but band 0
 
     def __init__(
-        self, parameters: Parameters, strategy: Strategy, ssim_lambda: float, *, device: str, draw: Draw,
-        around: Columns | None = None,
-    ) -> None:  # fmt: skip
+        self, parameters: Parameters, strategy: Strategy, ssim_lambda: float, *, device: str, draw: Draw
+    ) -> None:
         self._strategy, self._ssim_lambda = strategy, ssim_lambda
         self._device, self._draw = device, draw
-        self._around = None if around is None else tuple(torch.tensor(column, device=device) for column in around)
         self._host: Parameters | None = parameters  # None: the device holds the only copy
 
     def send(self, parameters: Parameters) -> None:
@@ -84,7 +81,7 @@ class TorchEngine:
         """See `Engine`."""
         return SH_BANDS[self._values["sh"].shape[1]] if self._host is None else self._host.degree
 
-    def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
+    def train_step(self, camera: Camera, photo: F32, means_lr: float, around: Layers | None = None) -> float:
         """See `Engine`."""
 
         def learnt(rgb: Tensor) -> float:
@@ -95,7 +92,7 @@ class TorchEngine:
                 loss.backward()  # type: ignore[no-untyped-call]
             return loss.item()
 
-        return self._step(camera, BLACK, learnt, means_lr)
+        return self._step(camera, BLACK, learnt, means_lr, around)
 
     def learn(self, camera: Camera, background: Vec3, slope: Slope, means_lr: float) -> float:
         """See `Engine`."""
@@ -105,18 +102,25 @@ class TorchEngine:
             rgb.backward(torch.from_numpy(d_rgb).to(self._device))  # type: ignore[no-untyped-call]
             return loss
 
-        return self._step(camera, background, learnt, means_lr)
+        return self._step(camera, background, learnt, means_lr, None)
 
-    def _step(self, camera: Camera, background: Vec3, learnt: Callable[[Tensor], float], means_lr: float) -> float:
+    def _step(
+        self,
+        camera: Camera,
+        background: Vec3,
+        learnt: Callable[[Tensor], float],
+        means_lr: float,
+        around: Layers | None,
+    ) -> float:
         """Draw, run backward through `learnt`, which returns the loss, and step."""
         if self._host is not None:
             self._upload(self._host)
         leaves = {name: values.detach().requires_grad_() for name, values in self._values.items()}
         scales, opacities = leaves["log_scales"].exp(), leaves["logit_opacities"].sigmoid()
         centers = torch.zeros(len(scales), 2, device=self._device, requires_grad=True)
-        columns = self._with_around((leaves["means"], leaves["quats"], scales, opacities, leaves["sh"]))
-        rgb, _ = self._draw(*columns, camera, background, self._with_room(centers))
-        loss = learnt(rgb)
+        columns = leaves["means"], leaves["quats"], scales, opacities, leaves["sh"]
+        rgb, alpha = self._draw(*columns, camera, background, centers)
+        loss = learnt(rgb if around is None else self._among(rgb, alpha, around))
         with torch.no_grad():
             gradients = {n: torch.zeros_like(x) if x.grad is None else x.grad for n, x in leaves.items()}
             self._strategy.regularise(gradients, scales.detach(), opacities.detach())
@@ -125,20 +129,13 @@ class TorchEngine:
             self._strategy.after_step_torch(self._values, d_centers, (camera.width, camera.height), means_lr)
         return loss
 
-    def _with_around(self, columns: _Tensors) -> _Tensors:
-        """The columns with those around after them, with as many SH bands."""
-        if self._around is None:
-            return columns
-        bands = columns[4].shape[1]
-        sh = self._around[4][:, :bands]
-        sh = torch.cat([sh, sh.new_zeros(len(sh), bands - sh.shape[1], 3)], dim=1)
-        around = (*self._around[:4], sh)
-        means, quats, scales, opacities, sh = (torch.cat(pair) for pair in zip(columns, around, strict=True))
-        return means, quats, scales, opacities, sh
-
-    def _with_room(self, centers: Tensor) -> Tensor:
-        """The centres with those of the Gaussians around, whose gradients nobody wants."""
-        return centers if self._around is None else torch.cat([centers, centers.new_zeros(len(self._around[0]), 2)])
+    def _among(self, rgb: Tensor, alpha: Tensor, around: Layers) -> Tensor:
+        """As `Layers.merge`; gradients are multiplied as by `Layers.split`."""
+        values = torch.from_numpy(around.values.astype(np.float32) / np.float32(UNIT)).to(self._device)
+        front, through, behind = values[..., FRONT], values[..., THROUGH], values[..., BEHIND]
+        picture = front + through[..., None] * (rgb + (1 - alpha)[..., None] * behind)
+        picture.register_hook(lambda slope: slope * around.share)  # type: ignore[no-untyped-call]
+        return picture
 
     def _adam_step(self, gradients: dict[str, Tensor], means_lr: float) -> None:
         """One step of Adam, as `adam.Adam`."""

@@ -19,6 +19,7 @@ from ..camera import Camera
 from ..morton import codes
 from .densify import Strategy
 from .engine import CpuEngine, EngineFactory
+from .layers import Layers
 from .parameters import Parameters
 
 F32 = NDArray[np.float32]
@@ -34,12 +35,15 @@ REFINE_STOP = 0.8  # share of the training after which the numbers of Gaussians 
 class Shot:
     """A posed photograph: `photo [H, W, 3]` uint8, undistorted, of the camera's size.
 
-    `time`: seconds, of a frame of a film; None: the photograph has none.
+    `time`: seconds, of a frame of a film; None: the photograph has none. `share`: of the pixels of the photograph that
+    it is a part of. `around`: what it shows besides the Gaussians in training; None: nothing.
     """
 
     camera: Camera
     photo: NDArray[np.uint8]
     time: float | None = None
+    share: float = 1.0
+    around: Layers | None = None
 
     @property
     def colors(self) -> F32:
@@ -142,11 +146,13 @@ class Trainer:
         if not self._order:
             self._order = self._rng.permutation(len(self._shots)).tolist()
         shot = self._shots[self._order.pop()]
-        camera, photo = half_size(shot) if progress < self.schedule.coarse else (shot.camera, shot.colors)
+        camera, photo, around = shot.camera, shot.colors, shot.around
+        if progress < self.schedule.coarse:
+            (camera, photo), around = half_size(shot), None if around is None else around.half_size()
         degree, final = self._engine.degree, self.schedule.degree
         if degree < final and 0.5 * (degree + 1) / (final + 1) <= progress < REFINE_STOP:  # later, bands are dropped
             self.parameters.raise_degree(degree + 1)
-        loss = self._engine.train_step(camera, photo, MEANS_LR * self._extent * LR_DECAY**progress)
+        loss = self._engine.train_step(camera, photo, MEANS_LR * self._extent * LR_DECAY**progress, around)
         self.steps += 1
         if self.at_refinement and progress < REFINE_STOP:
             parameters = self.parameters

@@ -13,9 +13,10 @@ import pytest
 import torch
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from scenewright.gaussians.camera import Camera
-from scenewright.gaussians.cloud import GaussianCloud, concat
+from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError, UserError
 from scenewright.gaussians.files.captures.colmap import Points
 from scenewright.gaussians.fit import Photos, Settings, fit
@@ -24,9 +25,11 @@ from scenewright.gaussians.fit.blocks import blocks_for, cells, cropped, fit_by_
 from scenewright.gaussians.fit.densify import MCMCStrategy
 from scenewright.gaussians.fit.engine import CpuEngine, EngineFactory
 from scenewright.gaussians.fit.engine_torch import TorchEngine
+from scenewright.gaussians.fit.layers import Layers
 from scenewright.gaussians.fit.parameters import Parameters
 from scenewright.gaussians.fit.train import Shot
 from scenewright.gaussians.render import differentiable, render
+from scenewright.gaussians.render.cpu import gradient
 
 
 def street(count: int = 240, seed: int = 1) -> GaussianCloud:
@@ -100,26 +103,90 @@ def test_points_seen_are_where_the_surface_is() -> None:
     assert np.linalg.norm(by_blocks.points_seen(camera, depth)[row, column] - there) <= pixel
 
 
-@pytest.mark.parametrize("engine", [CpuEngine, partial(TorchEngine, device="cpu", draw=differentiable.draw)])
-def test_a_block_learns_as_if_all_were_trained_and_what_is_around_it_stays(engine: EngineFactory) -> None:
-    """The same gradients as in a training of all Gaussians, of which only the first are looked at."""
-    own, other, shot = street(30), street(40, 2).with_degree(1), photos().shots[0]
-    other = other.replace(ids=other.ids + 30, first_free=70)
-    around = Parameters.of(other).columns()
-    before = [column.copy() for column in around]
+def test_cells_hide_one_another_in_the_order_in_which_rays_meet_them() -> None:
+    rng = np.random.default_rng(3)
+    division = cells(rng.normal(size=(200, 3)).astype(np.float32), 7)
+    for eye, toward in rng.normal(size=(300, 2, 3)):
+        points = eye + np.linspace(0, 4, 200)[:, None] * toward
+        met = np.argmax([cell.holds(points) for cell in division], axis=0)
+        order = [int(met[0]), *(int(k) for k, before in zip(met[1:], met[:-1], strict=True) if k != before)]
+        for i, first in enumerate(order):
+            for second in order[i + 1 :]:
+                assert by_blocks.hides(division[first], division[second], eye)
+                assert not by_blocks.hides(division[second], division[first], eye)
+
+
+def along_camera() -> Camera:
+    """Looks along the street from its end."""
+    return Camera.look_at((-5.0, 0.0, 0.0), (0, 0, 0), (0, 0, 1), 72, 40, name="along")
+
+
+def along() -> tuple[GaussianCloud, list[by_blocks.Cell], Shot]:
+    """The street, its three cells, and a photograph along it, in which depths are sorted as the cells are.
+
+    It is faint, so that no ray ends: among layers, each ends by itself.
+    """
+    cloud = street()
+    cloud = cloud.replace(opacities=0.15 * cloud.opacities)
+    camera = along_camera()
+    return cloud, cells(cloud.means.numpy(), 3), Shot(camera, render(cloud, camera).to_uint8(), share=0.5)
+
+
+def own_and_around(block: int) -> tuple[NDArray[np.bool_], Layers]:
+    """The rows of a cell of the street, and what is around it in the photograph."""
+    cloud, division, shot = along()
+    inside = division[block].holds(cloud.means.numpy())
+    (layered,) = by_blocks.among([shot], cloud[torch.from_numpy(~inside)], block, division)
+    assert layered.around is not None
+    return inside, layered.around
+
+
+@pytest.mark.parametrize("block", [0, 1, 2])
+def test_a_block_among_layers_is_drawn_and_learns_as_among_the_gaussians(block: int) -> None:
+    cloud, _, shot = along()
+    inside, layers = own_and_around(block)
+    columns = Parameters.of(cloud).columns()
+    whole, own = (gradient.draw(c, shot.camera, (0, 0, 0)) for c in (columns, tuple(c[inside] for c in columns)))
+    # Each of three numbers is rounded by at most half of 1/8192.
+    np.testing.assert_allclose(layers.merge(own.rgb, own.alpha), whole.rgb, atol=2e-4)
+    slope = np.random.default_rng(1).normal(size=whole.rgb.shape).astype(np.float32)
+    wanted = gradient.draw_backward(whole, slope, np.zeros(slope.shape[:2], np.float32))
+    found = gradient.draw_backward(own, *layers.split(slope))
+    for name, values in vars(found).items():
+        expected = vars(wanted)[name][inside] * layers.share
+        assert np.abs(values - expected).max() <= 5e-4 * np.abs(expected).max(), name  # of rounding, as above
+
+
+def test_engines_learn_the_same_among_layers() -> None:
+    cloud, _, shot = along()
+    inside, layers = own_and_around(1)
     made = []
-    for start, factory in ((own, partial(engine, around=around)), (concat([own, other.with_degree(0)]), engine)):  # type: ignore[call-arg]
-        quiet = MCMCStrategy(100, np.random.default_rng(0), opacity_reg=0.0, scale_reg=0.0, noise_lr=0.0)
-        stepped = factory(Parameters.of(start), quiet, 0.2)
-        loss = stepped.train_step(shot.camera, shot.colors, 1e-3)
-        made.append((loss, stepped.fetch()))
-    (loss, block), (whole_loss, whole) = made
-    assert loss == pytest.approx(whole_loss, rel=1e-6) and len(block) == 30
-    for name, values in block.arrays().items():
-        close = np.abs(values - whole.arrays()[name][:30]) <= 1e-6
-        # Adam makes a whole step of the sign of a gradient that is rounding alone; torch sums in another order.
-        assert close.mean() >= (1 if engine is CpuEngine else 0.98), name
-    assert all(np.array_equal(a, b) for a, b in zip(before, around, strict=True))
+    factories: list[EngineFactory] = [CpuEngine, partial(TorchEngine, device="cpu", draw=differentiable.draw)]
+    for factory in factories:
+        quiet = MCMCStrategy(400, np.random.default_rng(0), noise_lr=0.0)
+        engine = factory(Parameters.of(cloud[torch.from_numpy(inside)]), quiet, 0.2)
+        made.append((engine.train_step(shot.camera, 1 - shot.colors, 1e-3, layers), engine.fetch()))
+    (loss, one), (other_loss, other) = made
+    assert loss == pytest.approx(other_loss, rel=1e-5)
+    for name, values in one.optimisers.items():
+        expected = other.optimisers[name].first
+        assert np.abs(values.first - expected).max() <= 1e-4 * np.abs(expected).max(), name  # sums in another order
+
+
+def test_layers_of_half_the_size_are_those_of_a_photograph_of_half_the_size() -> None:
+    _, layers = own_and_around(1)
+    half = layers.half_size()
+    assert half.values.shape == (20, 36, 7) and half.share == layers.share
+    np.testing.assert_allclose(half.values[3, 5], layers.values[6:8, 10:12].mean(axis=(0, 1)), atol=0.5)
+
+
+@given(st.integers(3, 40), st.integers(0, 50), st.integers(0, 1))
+def test_some_photographs_are_different_ones_all_along(parts: int, count: int, lap: int) -> None:
+    camera = along_camera()
+    shots = [Shot(camera, np.full((1, 1, 3), i, np.uint8)) for i in range(parts)]
+    chosen = sorted(int(s.photo[0, 0, 0]) for s in by_blocks._some(shots, count, lap))
+    assert len(chosen) == len(set(chosen)) == min(parts, max(3, count))
+    assert max(np.diff([*chosen, chosen[0] + parts])) <= math.ceil(parts / len(chosen))
 
 
 def test_blocks_learn_what_they_are_shown_to_the_same_bytes_and_go_on_after_a_stop(
