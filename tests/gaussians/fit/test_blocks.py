@@ -4,6 +4,8 @@ nothing."""
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -187,6 +189,20 @@ def test_some_photographs_are_different_ones_all_along(parts: int, count: int, l
     chosen = sorted(int(s.photo[0, 0, 0]) for s in by_blocks._some(shots, count, lap))
     assert len(chosen) == len(set(chosen)) == min(parts, max(3, count))
     assert max(np.diff([*chosen, chosen[0] + parts])) <= math.ceil(parts / len(chosen))
+
+
+def test_counted_in_seconds_layers_are_drawn_for_as_many_photographs_as_their_time_allows() -> None:
+    shots = tuple(Shot(along_camera(), np.full((1, 1, 3), i, np.uint8)) for i in range(60))
+
+    def slow(parts: Sequence[Shot], others: GaussianCloud) -> list[Shot]:
+        time.sleep(0.01 * len(parts))
+        return list(parts)
+
+    turn = by_blocks._Turn(0, 0, 0.5, 0.5, shots, slow)
+    shown, taken = by_blocks._within(0.3, turn, street(3))
+    assert 3 <= len(shown) <= 30 and taken >= 0.01 * (3 + len(shown))  # a sleep is never shorter than it says
+    done = fit_by_blocks(photos(), Settings(seconds=1.5, max_gaussians=400, degree=0, gain=None), 3)
+    assert done.steps >= 7 and math.isfinite(done.quality.psnr)  # everything, and three blocks twice
 
 
 def test_blocks_learn_what_they_are_shown_to_the_same_bytes_and_go_on_after_a_stop(
