@@ -19,6 +19,7 @@ from ..gaussians.errors import ScenewrightError
 from . import startup
 from .options import with_values
 from .terminal.output import error_json, terminal
+from .urls import local_words
 
 VERBS = (
     "demo", "info", "embed", "name-all", "select", "ask", "describe", "plan", "schema", "check", "compose", "edit",
@@ -89,6 +90,7 @@ def _run(given: list[str]) -> NoReturn:
         startup.begin()
     try:
         verbs = given[:1] if given and given[0] in VERBS else VERBS  # an option or a slip needs the list of all
+        given = local_words(given)
         code = command_line(verbs)(with_values(given), standalone_mode=False)
     except ScenewrightError as error:
         if terminal.debug:

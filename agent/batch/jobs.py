@@ -6,13 +6,16 @@ import hashlib
 import json
 import re
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from ...gaussians.errors import FileError, UserError
+from ...gaussians.files.remote import cleaned, version
+from ..urls import urls
+from .resources import NOTHING, Resources
 
 TAKEN = frozenset({"receipts", "receipts.jsonl"})  # in the batch's folder
 OUT = "{out}"  # in an argument: the folder of the job
@@ -34,16 +37,24 @@ class Job(BaseModel):
     Attributes:
         id: name of the job, of its folder and in its receipt; letters, digits, dot, dash and underscore.
         run: the verb and its arguments, as on the command line; `{out}` stands for the job's folder.
+        resources: what a worker has to have for it.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     id: Annotated[str, Field(max_length=100)]
     run: tuple[str, ...]
+    resources: Resources = NOTHING
 
     def key(self) -> str:
-        """Tells what the job does: its words, and the content of the files and folders that it names."""
-        found = hashlib.blake2b(json.dumps(self.run).encode(), digest_size=16)
+        """Tells what the job does: its words, and the content of the files, folders and URLs that it names.
+
+        Raises:
+            FileError, BackendError, UserError: a URL cannot be asked.
+        """
+        found = hashlib.blake2b(json.dumps([cleaned(word) for word in self.run]).encode(), digest_size=16)
+        for url in urls(self.run):
+            found.update((version(url, self.run[0] not in NAMING) or "").encode())
         for word in self.run[1:]:
             path = Path(word.partition("=")[2] if word.startswith("--") and "=" in word else word)
             if OUT not in word and len(word) < 4096 and _exists(path):
@@ -83,6 +94,22 @@ def read_jobs(path: Path) -> list[Job]:
     if not found:
         raise UserError(f'{path} holds no jobs; write a line such as {{"id": "a", "run": ["info", "room.ply"]}}')
     return found
+
+
+def needing(jobs: Sequence[Job], needs: Mapping[str, Resources]) -> list[Job]:
+    """The jobs with what their verbs need; what a job itself asks for wins.
+
+    Raises:
+        UserError: a verb is not for batches.
+    """
+    if strange := sorted(set(needs) - VERBS):
+        raise UserError(f"{strange[0]!r} is no verb for batches; use {', '.join(sorted(VERBS))}")
+    return [
+        job.model_copy(update={"resources": needs[job.run[0]].model_copy(update=job.resources.asked())})
+        if job.run[0] in needs
+        else job
+        for job in jobs
+    ]
 
 
 def _job(line: str, where: str) -> Job:

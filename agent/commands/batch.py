@@ -26,7 +26,10 @@ def command(
             help='A job on each line: {"id": "a", "run": ["edit", "room.ply", "make it red", "-o", "{out}/a.ply"]}.',
         ),
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder for results and receipts.")],
+    output: Annotated[
+        str,
+        typer.Option("--output", "-o", metavar="FOLDER|URL", help="Folder for results and receipts, or s3://..."),
+    ],
     workers: Annotated[
         int | None,
         typer.Option("--workers", min=0, help="Processes; one for each core by default, 0: in this process."),
@@ -34,6 +37,14 @@ def command(
     ray: Annotated[
         str | None,
         typer.Option("--ray", metavar="local|ADDRESS", help="Use Ray: one that is started here, or a cluster."),
+    ] = None,
+    needs: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--needs",
+            metavar="VERB:NAME=N,...",
+            help="What jobs of a verb need: fit:num_gpus=1,num_cpus=4,memory=16GB. A job's own resources win.",
+        ),
     ] = None,
     again: Annotated[bool, typer.Option("--again", help="Also do once more what failed.")] = False,
     as_json: Json = False,
@@ -43,12 +54,13 @@ def command(
 
     `{out}` in a job stands for a folder of its own, OUT/ID. A job that fails says so in its receipt, and the rest goes
     on; the same command goes on where it stopped. The same job on the same files is done once. The exit code is 3 if a
-    job failed.
+    job failed. Scenes may be named by URL (s3://, gs://, sftp://, file://), and so may the folder for results.
     """
-    from ..batch.jobs import read_jobs
+    from ..batch.jobs import needing, read_jobs
+    from ..batch.resources import parse_needs
     from ..batch.running import run_batch
 
-    todo = read_jobs(jobs)
+    todo = needing(read_jobs(jobs), dict(map(parse_needs, needs or ())))
     engine = _engine(workers if workers is not None else os.cpu_count() or 1, ray)
     totals = run_batch(todo, output, engine, again=again, on_receipt=_shown)
     failed = [receipt for receipt in totals.receipts if receipt["code"]]
@@ -77,17 +89,23 @@ def _last_line(receipt: dict[str, Any]) -> str:
     return lines[-1].removeprefix("scenewright: ") if lines else "it says nothing"
 
 
-def _told(totals: Totals, failed: list[dict[str, Any]], output: Path) -> list[str]:
+def _receipts(output: str) -> str:
+    from ...gaussians.files.remote import cleaned, is_url
+
+    return f"{cleaned(output.rstrip('/'))}/receipts.jsonl" if is_url(output) else str(Path(output) / "receipts.jsonl")
+
+
+def _told(totals: Totals, failed: list[dict[str, Any]], output: str) -> list[str]:
     lines = [
         f"{totals.jobs} jobs: {totals.done} done in {totals.seconds:.1f} s, {totals.kept} were done before or are the "
-        f"same as another, {len(failed)} failed; receipts: {output / 'receipts.jsonl'}"
+        f"same as another, {len(failed)} failed; receipts: {_receipts(output)}"
     ]
     lines += [f"failed: {receipt['id']}: {_last_line(receipt)}" for receipt in failed[:_NAMED]]
     return [*lines, f"... and {len(failed) - _NAMED} more"] if len(failed) > _NAMED else lines
 
 
-def _data(totals: Totals, failed: list[dict[str, Any]], output: Path) -> dict[str, Any]:
+def _data(totals: Totals, failed: list[dict[str, Any]], output: str) -> dict[str, Any]:
     return {
         "jobs": totals.jobs, "done": totals.done, "kept": totals.kept, "failed": [r["id"] for r in failed],
-        "seconds": round(totals.seconds, 2), "receipts": str(output / "receipts.jsonl"),
+        "seconds": round(totals.seconds, 2), "receipts": _receipts(output),
     }  # fmt: skip

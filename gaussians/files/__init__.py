@@ -22,6 +22,7 @@ from .atomic import writing
 from .format import HEAD_BYTES, Format, Report
 from .formats.morton import morton_sorted
 from .motion_file import load_motion, save_motion
+from .remote import local
 
 __all__ = ["Format", "Report", "known_formats", "load", "load_with_report", "save", "writer", "writing"]
 
@@ -37,7 +38,7 @@ def known_formats() -> tuple[Format, ...]:
 
 def load(path: str | Path) -> Scene:
     """The scene in a file or folder of any known format, with the motion beside it, if there is one for exactly this
-    file; the ids of its Gaussians are the row numbers of the file.
+    file; the ids of its Gaussians are the row numbers of the file. A URL is fetched first (see `remote`).
 
     Raises:
         FileError: the path is missing, unreadable, of an unknown format, or without a usable Gaussian;
@@ -48,7 +49,7 @@ def load(path: str | Path) -> Scene:
 
 def load_with_report(path: str | Path) -> tuple[Scene, Report]:
     """As `load`, with a report of the file's format, its rows and the repairs made while reading."""
-    path = Path(path)
+    path = local(path)
     try:
         scene, report = _detect(path).read(path)
     except OSError as error:
