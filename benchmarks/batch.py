@@ -1,4 +1,5 @@
-"""bench batch: many scenes, one job each: worker processes and Ray against the plain loop, and workers that are killed.
+"""bench batch: many scenes, one job each: worker processes and Ray against the plain loop, and workers and the batch
+itself that are killed.
 
 A job embeds a small scene and recolours the thing in it. What a job costs besides its own seconds is told by jobs that
 do hardly anything.
@@ -6,17 +7,18 @@ do hardly anything.
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import json
 import os
 import random
 import signal
 import subprocess
+import sys
 import tempfile
-import threading
+import time
 from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from ..agent.batch.engines import Engine, Here, OnRay, Processes
@@ -31,10 +33,13 @@ SCENES, QUICK_SCENES = 100, 6
 KINDS = ("armchair", "guitar", "potted plant", "desk lamp", "bicycle")
 WORKERS = 2
 KILLS, QUICK_KILLS = 20, 2
+PAUSES = 0.5, 4.0  # seconds from one kill to the next
+SPEED, KILLED = PARTS = "speed", "killed"
+_LOOK = 0.05
 SPEED_UP, OVERHEAD = 1.7, 0.1  # goals; seconds a job
 
 
-def run(quick: bool) -> Result:
+def run(quick: bool, parts: Sequence[str] = ()) -> Result:
     """The same jobs by each engine that is here."""
     count = QUICK_SCENES if quick else SCENES
     metrics, points, notes = list[Metric](), list[Point](), list[str]()
@@ -44,7 +49,7 @@ def run(quick: bool) -> Result:
         edits = [_edit(path) for path in scenes]
         looks = [Job(id=path.stem, run=("info", str(path), "--json")) for path in scenes]
         clock = dict[str, float]()
-        for name, engine in _engines(notes):
+        for name, engine in _engines(notes) if SPEED in (parts or PARTS) else ():
             done = run_batch(edits, folder / name, engine())
             small = run_batch(looks, folder / f"{name}-small", engine())
             clock[name] = done.seconds
@@ -57,7 +62,11 @@ def run(quick: bool) -> Result:
             if name != "loop":
                 metrics.append(Metric(f"{name}.over_loop", clock["loop"] / done.seconds, "x", "higher", 0.1, SPEED_UP))
             points.append(Point(name, f"{count} scenes", done.seconds, _share(done), 0, name == "processes"))
-        metrics += _killed(edits, folder / "killed", QUICK_KILLS if quick else KILLS)
+        if KILLED in (parts or PARTS):
+            kills = QUICK_KILLS if quick else KILLS
+            metrics += _killed("processes", edits, folder, kills)
+            if _has_ray():
+                metrics += _killed("ray", edits, folder, kills, "--ray", "local")
     return Result(
         title="batches: many scenes, one job each",
         accuracy="share of jobs done",
@@ -66,6 +75,8 @@ def run(quick: bool) -> Result:
         notes=(
             f"{count} scenes of one thing; a job embeds one and recolours the thing. {WORKERS} workers, each with its "
             "share of the cores; the loop has all cores. Starting workers counts.",
+            f"killed: {KILLS} workers, one each {PAUSES[0]} to {PAUSES[1]} s, and the batch itself when "
+            "half of the jobs have their receipts; then the same command again.",
             "overhead: seconds of the workers besides those of jobs that print what a scene holds, for each job.",
             *notes,
         ),
@@ -91,10 +102,14 @@ def _engines(notes: list[str]) -> Iterator[tuple[str, Callable[[], Engine]]]:
     """Each engine by name; what is missing is noted."""
     yield "loop", Here
     yield "processes", lambda: Processes(WORKERS)
-    if importlib.util.find_spec("ray") is None:
+    if not _has_ray():
         notes.append("Ray was not measured: the package ray is not installed.")
         return
     yield "ray", lambda: OnRay("local", WORKERS)
+
+
+def _has_ray() -> bool:
+    return importlib.util.find_spec("ray") is not None
 
 
 def _share(totals: Totals) -> float:
@@ -106,43 +121,72 @@ def _overhead(totals: Totals, workers: int) -> float:
     return max(0.0, totals.seconds * workers - own) / totals.jobs
 
 
-def _killed(jobs: list[Job], out: Path, kills: int) -> list[Metric]:
-    """Workers that are killed at random moments: every job has one receipt and one result."""
-    with _killing(kills) as killed:
-        run_batch(jobs, out, Processes(WORKERS))
-    done = [json.loads(line) for line in (out / "receipts.jsonl").read_text(encoding="utf-8").splitlines()]
-    once = Counter(receipt["id"] for receipt in done if receipt["code"] == 0)
+def _killed(name: str, jobs: list[Job], folder: Path, kills: int, *options: str) -> list[Metric]:
+    """Workers that are killed at random moments, and the whole batch once, which the same command then ends: every job
+    has one receipt and one result, and what had its receipt before keeps both."""
+    file, out = folder / f"{name}.jsonl", folder / f"{name}-killed"
+    file.write_text("".join(job.model_dump_json(include={"id", "run"}) + "\n" for job in jobs), encoding="utf-8")
+    command = [sys.executable, "-m", "scenewright", "batch", str(file), "-o", str(out), "--json"]
+    command += ["--workers", str(WORKERS), *options]
+    killer = _Killer(kills, random.Random(0))
+    head = killer.run(command, until=lambda: len(_receipts(out)) >= len(jobs) // 2)
+    stopped = head.poll() is None
+    head.kill()
+    head.wait()
+    before = _receipts(out)
+    head = killer.run(command, until=lambda: False)
+    told = json.loads(head.stdout.read()) if head.stdout else {}
+    lines = (out / "receipts.jsonl").read_text(encoding="utf-8").splitlines()
+    once = Counter(receipt["id"] for receipt in map(json.loads, lines) if receipt["code"] == 0)
     right = sum(once[job.id] == 1 and (out / job.id / "red.ply").is_file() for job in jobs)
+    after = _receipts(out)
+    again = sum(after.get(path) != when for path, when in before.items())
     return [
-        Metric("killed.workers", killed[0], "count"),
-        Metric("killed.done_once", right / len(jobs), "share", "higher", 0.0, 1.0),
+        Metric(f"{name}.killed.workers", killer.killed, "count"),
+        Metric(f"{name}.killed.batches", float(stopped), "count"),
+        Metric(f"{name}.killed.done before", len(before), "count"),
+        Metric(f"{name}.killed.done again", again + abs(told["kept"] - len(before)), "count", "lower", 0.0, 0.0),
+        Metric(f"{name}.killed.done_once", right / len(jobs), "share", "higher", 0.0, 1.0),
     ]
 
 
-@contextmanager
-def _killing(kills: int) -> Iterator[list[int]]:
-    """Kills a worker of this process now and then; how many were, is in the list afterwards."""
-    killed, ended, chance = [0], threading.Event(), random.Random(0)
-
-    def kill() -> None:
-        while killed[0] < kills and not ended.wait(chance.uniform(0.5, 4.0)):
-            workers = _workers()
-            if workers:
-                os.kill(chance.choice(workers), signal.SIGKILL)
-                killed[0] += 1
-
-    thread = threading.Thread(target=kill, daemon=True)
-    thread.start()
-    try:
-        yield killed
-    finally:
-        ended.set()
-        thread.join()
+def _receipts(out: Path) -> dict[Path, int]:
+    """When each receipt was written."""
+    return {path: path.stat().st_mtime_ns for path in (out / "receipts").glob("*.json")}
 
 
-def _workers() -> list[int]:
-    """Processes that this one started as workers of a batch."""
-    told = subprocess.run(
-        ["ps", "-o", "pid=,args=", "--ppid", str(os.getpid())], capture_output=True, text=True, check=False
-    ).stdout
-    return [int(line.split()[0]) for line in told.splitlines() if "batch.worker" in line]
+class _Killer:
+    """Kills workers of batches now and then, a number in all."""
+
+    def __init__(self, kills: int, chance: random.Random) -> None:
+        self.killed, self._kills, self._chance = 0, kills, chance
+
+    def run(self, command: list[str], until: Callable[[], bool]) -> subprocess.Popen[str]:
+        """Start a batch and kill workers of it until it ends, or until something is so."""
+        head = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True
+        )
+        due = time.monotonic() + self._pause()
+        while head.poll() is None and not until():
+            time.sleep(_LOOK)
+            if self.killed < self._kills and time.monotonic() > due and (workers := _workers(head.pid)):
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(self._chance.choice(workers), signal.SIGKILL)
+                    self.killed += 1
+                due = time.monotonic() + self._pause()
+        return head
+
+    def _pause(self) -> float:
+        return self._chance.uniform(*PAUSES)
+
+
+def _workers(head: int) -> list[int]:
+    """Processes that do jobs of a batch: its own workers, or tasks of the Ray that it started."""
+    told = [
+        line.split(None, 1)
+        for chosen in (["--ppid", str(head)], ["--sid", str(head)])
+        for line in subprocess.run(
+            ["ps", "-o", "pid=,args=", *chosen], capture_output=True, text=True, check=False
+        ).stdout.splitlines()
+    ]
+    return sorted({int(pid) for pid, words in told if "batch.worker" in words or "ray::_work_in" in words})

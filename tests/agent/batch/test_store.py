@@ -1,4 +1,4 @@
-"""Batches by URL: every job is done exactly once in stores where nothing can be renamed, whatever fails or is killed."""
+"""Batches by URL: every job is done exactly once in stores that cannot rename, whatever fails or is killed."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ def test_errors_say_what_to_do_and_no_passwords(monkeypatch: pytest.MonkeyPatch,
 
     memory.pipe_file("/b/a.ply", b"0")
     monkeypatch.setattr(type(memory), "info", refused)
-    with pytest.raises(FileError, match="cannot read memory://b/a.ply") as caught:
+    with pytest.raises(FileError, match=r"cannot read memory://b/a\.ply") as caught:
         fetched("memory://me:pass-word@b/a.ply")
     assert "pass-word" not in str(caught.value)
     monkeypatch.setitem(sys.modules, "fsspec.core", None)
