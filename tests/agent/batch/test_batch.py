@@ -337,3 +337,22 @@ def _open_to_all(processes: list[int]) -> set[str]:
             if words[3] == "0A" and f"socket:[{words[9]}]" in sockets and not address.endswith("0100007F"):
                 found.add(words[1])
     return found
+
+
+@pytest.mark.slow
+def test_results_that_find_no_room_fail_their_jobs_and_are_made_when_there_is_room(chair: Path, tmp_path: Path) -> None:
+    """Files may not grow beyond some bytes, in the batch and in its workers, which stands for a full disk."""
+    jobs, out = tmp_path / "jobs.jsonl", tmp_path / "out"
+    lines = [{"id": f"j{k}", "run": ["convert", str(chair), f"{{out}}/c{k}.splat"]} for k in range(2)]
+    jobs.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    command = ["-m", "scenewright", "batch", str(jobs), "-o", str(out), "--workers", "1"]
+    limited = (
+        f"import os, resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, ({chair.stat().st_size // 8},) * 2); "
+        "os.execv(sys.executable, [sys.executable, *sys.argv[1:]])"
+    )
+    full = subprocess.run([sys.executable, "-c", limited, *command], capture_output=True, text=True, check=False)
+    assert full.returncode == 3, full.stderr
+    assert all(r["code"] == 4 and "File too large" in r["messages"] for r in _receipts(out))
+    assert sorted(p.name for p in out.iterdir()) == [".lock", "receipts", "receipts.jsonl"]
+    subprocess.run([sys.executable, *command, "--again"], capture_output=True, check=True)
+    assert all((out / f"j{k}" / f"c{k}.splat").stat().st_size > 0 for k in range(2))
