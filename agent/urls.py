@@ -6,7 +6,7 @@ batch), and is refused otherwise: its work would be lost with the cache.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from ..gaussians.errors import UserError
@@ -29,18 +29,24 @@ def local_words(words: Sequence[str], own: Path | None = None) -> list[str]:
     if not any("://" in word for word in words):
         return list(words)
     found = list(words)
-    for k, word in enumerate(words):
-        option, value = _parted(word)
-        named = option or (words[k - 1] if k and words[k - 1].startswith("-") else "")
-        if _names_a_file(named, value) and not (words[0] == "batch" and named in ("-o", "--output")):
-            found[k] = f"{option}=" * bool(option) + _local(words, named, value, own)
+    for k, option, url in _named(words):
+        if not (words[0] == "batch" and option in ("-o", "--output")):
+            found[k] = f"{option}=" * (words[k] != url) + _local(words, option, url, own)
     return found
 
 
 def urls(words: Sequence[str]) -> list[str]:
     """The URLs of files among the words of a command line."""
-    values = [_parted(word) for word in words]
-    return [value for option, value in values if _names_a_file(option, value)]
+    return [url for _, _, url in _named(words)]
+
+
+def _named(words: Sequence[str]) -> Iterator[tuple[int, str, str]]:
+    """The place, the option (empty for an argument) and the URL of each word that names a file by URL."""
+    for k, word in enumerate(words):
+        option, value = _parted(word)
+        option = option or (words[k - 1] if k and words[k - 1].startswith("-") else "")
+        if _names_a_file(option, value):
+            yield k, option, value
 
 
 def _parted(word: str) -> tuple[str, str]:
