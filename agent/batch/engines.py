@@ -234,9 +234,9 @@ class OnRay:
         if self._started:
             try:
                 if address == "local":
-                    ray.init(num_cpus=self._workers, include_dashboard=False, **_QUIET)
+                    self._ray.init(num_cpus=self._workers, include_dashboard=False, **_QUIET)
                 else:
-                    ray.init(address=address, **_QUIET)
+                    self._ray.init(address=address, **_QUIET)
             except Exception as error:  # Ray raises whatever its parts raise
                 raise BackendError(f"cannot reach Ray at {address!r}: {error}") from error
 
@@ -290,7 +290,7 @@ def _for_ray(task: Task) -> dict[str, float]:
 
 
 def _work_in(folder: str, task: Task) -> Outcome:
-    with contextlib.suppress(OSError if task.store else ()):  # another machine has not this folder and needs it not
+    if not task.store or os.path.isdir(folder):  # another machine may lack it: what goes by URL does not need it
         os.chdir(folder)
     return work(task)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -44,7 +45,7 @@ class Resources(BaseModel):
         """As numbers; memory in bytes."""
         return {k: float(parse_memory(v)) if k == "memory" else float(v) for k, v in self.asked().items()}
 
-    def lacking(self, there: dict[str, float]) -> str | None:
+    def lacking(self, there: Mapping[str, float]) -> str | None:
         """What a machine does not have of it, in words; None if it has all."""
         for name, wanted in self.amounts().items():
             if wanted > there.get(name, 0.0):
