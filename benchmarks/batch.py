@@ -21,7 +21,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from ..agent.batch.engines import Engine, Here, OnRay, Processes
+from ..agent.batch.engines import TRIES, Engine, Here, OnRay, Processes
 from ..agent.batch.jobs import Job
 from ..agent.batch.running import Totals, run_batch
 from ..gaussians.assets import make
@@ -137,7 +137,9 @@ def _killed(name: str, jobs: list[Job], folder: Path, kills: int, *options: str)
     head = killer.run(command, until=lambda: False)
     told = json.loads(head.stdout.read()) if head.stdout else {}
     lines = (out / "receipts.jsonl").read_text(encoding="utf-8").splitlines()
-    once = Counter(receipt["id"] for receipt in map(json.loads, lines) if receipt["code"] == 0)
+    receipts = [json.loads(line) for line in lines]
+    once = Counter(receipt["id"] for receipt in receipts if receipt["code"] == 0)
+    given_up = sum(len(receipt.get("retries", ())) >= TRIES for receipt in receipts)
     right = sum(once[job.id] == 1 and (out / job.id / "red.ply").is_file() for job in jobs)
     after = _receipts(out)
     again = sum(after.get(path) != when for path, when in before.items())
@@ -146,6 +148,7 @@ def _killed(name: str, jobs: list[Job], folder: Path, kills: int, *options: str)
         Metric(f"{name}.killed.batches", float(stopped), "count"),
         Metric(f"{name}.killed.done before", len(before), "count"),
         Metric(f"{name}.killed.done again", again + abs(told["kept"] - len(before)), "count", "lower", 0.0, 0.0),
+        Metric(f"{name}.killed.given up", given_up, "count"),
         Metric(f"{name}.killed.done_once", right / len(jobs), "share", "higher", 0.0, 1.0),
     ]
 
