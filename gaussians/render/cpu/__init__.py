@@ -68,11 +68,11 @@ def draw_strips(
         first row and end row of the strip, and its sorted footprints (the backward pass needs them).
     """
     colors, count = tuple(np.float32(channel) for channel in background), compiled.workers()
-    scratch = blend.make_scratch(count)
+    scratch, only = blend.make_scratch(count), blend.only_group(columns[5])
     for top, bottom, bins in _strips(columns, camera, count, 0, camera.height):
         strip = tuple(channel[top:bottom] for channel in out)
         sorted_ = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
-        compiled.run(blend.draw, count, *sorted_, colors, strip, scratch, _counter())
+        compiled.run(blend.draw, count, *sorted_, colors, only, strip, scratch, _counter())
         yield top, bottom, bins
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from ...compiled import fetch_add, helper, kernel
 from .lanes import LANES, lane_sum
 from .layout import RECORD, TILE, Array
-from .simd import REST, STATE, WINNER, blend_block, store_block, weigh_block
+from .simd import REST, STATE, WINNER, blend_block, blend_block_alone, store_block, weigh_block
 from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, copy_record, prefetch, slots_touching
 
 PREFETCH = CHUNK  # entries between the prefetch of a record and its use: records arrive while a chunk is blended
@@ -31,12 +31,19 @@ def make_scratch(workers: int) -> tuple[Array, ...]:
     )  # fmt: skip
 
 
+def only_group(groups: Array) -> tuple[bool, np.int32]:
+    """Whether all Gaussians `[N]` are of one group, and which: then the group of a pixel is known without a search."""
+    first = np.int32(groups[0]) if len(groups) else np.int32(-1)
+    return bool((groups == first).all()), first
+
+
 @kernel
-def draw(worker, workers, first, entries, records, size, limits, background, out, scratch, counter):  # type: ignore[no-untyped-def]
+def draw(worker, workers, first, entries, records, size, limits, background, only, out, scratch, counter):  # type: ignore[no-untyped-def]
     """Draw tiles until none is left. Tile t's footprints are `entries[first[t]:first[t + 1]]`, nearest first.
 
-    `size` is (width, height), `limits` (largest alpha, least transmittance, largest q), `out` (rgb `[H, W, 3]`, alpha,
-    depth, group `[H, W]`, the last int32), `scratch` from `make_scratch`, `counter` `[1]` int64 holding 0.
+    `size` is (width, height), `limits` (largest alpha, least transmittance, largest q), `only` from `only_group`, `out`
+    (rgb `[H, W, 3]`, alpha, depth, group `[H, W]`, the last int32), `scratch` from `make_scratch`, `counter` `[1]`
+    int64 holding 0.
     """
     tiles_wide = (size[0] + TILE - 1) // TILE
     chunk, touched, state, alive = scratch[0][worker], scratch[1][worker], scratch[2][worker], scratch[3][worker]
@@ -50,7 +57,9 @@ def draw(worker, workers, first, entries, records, size, limits, background, out
         while start < stop:
             count = min(CHUNK, stop - start)
             _gather(entries, start, count, records, chunk, touched, f4(x), f4(y))
-            start = stop if _draw_chunk(chunk, touched, state, alive, limits) else start + count
+            start = stop if _draw_chunk(chunk, touched, state, alive, limits, only[0]) else start + count
+        if only[0]:
+            _assign_group(state, only[1])
         _finish(state, x, y, size, background, out)
 
 
@@ -89,8 +98,11 @@ def _gather(entries, start, count, records, chunk, touched, x, y):  # type: igno
 
 
 @helper
-def _draw_chunk(chunk, touched, state, alive, limits):  # type: ignore[no-untyped-def]
-    """Blend a chunk into every unfinished block; returns whether the tile is finished."""
+def _draw_chunk(chunk, touched, state, alive, limits, alone):  # type: ignore[no-untyped-def]
+    """Blend a chunk into every unfinished block; returns whether the tile is finished.
+
+    `alone`: there is one group only, which `_assign_group` gives to the pixels in the end.
+    """
     finished = True
     for block in range(BLOCKS):
         if not alive[block]:
@@ -98,9 +110,22 @@ def _draw_chunk(chunk, touched, state, alive, limits):  # type: ignore[no-untype
         slots = slots_touching(touched, block)
         if slots != 0:
             x, y = f4(block % BLOCKS_WIDE * BLOCK_WIDTH), f4(block // BLOCKS_WIDE * BLOCK_HEIGHT)
-            alive[block] = blend_block(chunk, slots, state, block * STATE, x, y, limits) != 0
+            if alone:
+                alive[block] = blend_block_alone(chunk, slots, state, block * STATE, x, y, limits) != 0
+            else:
+                alive[block] = blend_block(chunk, slots, state, block * STATE, x, y, limits) != 0
         finished = finished and not alive[block]
     return finished
+
+
+@helper
+def _assign_group(state, group):  # type: ignore[no-untyped-def]
+    """Give the pixels of a tile that have any weight the only group that there is. A weight leaves less than all light:
+    alpha is at least 1/255."""
+    bits = state.view(np.int32)
+    for block in range(BLOCKS):
+        for lane in range(block * STATE, block * STATE + LANES):
+            bits[WINNER + lane] = group if state[REST + lane] < ONE else -1
 
 
 @helper

@@ -80,6 +80,19 @@ def blend_block(
     (x, y) is the block's corner in the tile, `limits` the tuple that `_step` takes. Returns whether any pixel is
     unfinished.
     """
+    return _blending(chunk, slots, state, limits, groups=True)
+
+
+@intrinsic
+def blend_block_alone(
+    typing_context: Any, chunk: Any, slots: Any, state: Any, offset: Any, x: Any, y: Any, limits: Any
+) -> Any:
+    """As `blend_block`, without looking for the group of the largest weight."""
+    return _blending(chunk, slots, state, limits, groups=False)
+
+
+def _blending(chunk: Any, slots: Any, state: Any, limits: Any, groups: bool) -> Any:
+    """Signature and code of `blend_block`, with or without its groups."""
     f = types.float32
     signature = types.int64(chunk, types.uint64, state, types.int64, f, f, limits)
 
@@ -89,18 +102,24 @@ def blend_block(
         slots, offset, x, y, limits = (arguments[i] for i in (1, 3, 4, 5, 6))
         x, y = _pixels(v, x, y)
         limits = v.spread_all(limits)
-        before = [v.load(v.at(state, offset, channel * LANES)) for channel in range(CHANNELS - 1)]
-        before.append(v.load(v.at(state, offset, WINNER), INTEGERS))
+        floats = CHANNELS - 1 if groups else CHANNELS - 2
+        before = [v.load(v.at(state, offset, channel * LANES)) for channel in range(floats)]
+        if groups:
+            before.append(v.load(v.at(state, offset, WINNER), INTEGERS))
 
         def body(record: ir.Value, slot: ir.Value, values: list[ir.Value]) -> tuple[list[ir.Value], ir.Value]:
-            t, *sums, rest, best, winner = values
+            t, *sums, rest = values[: CHANNELS - 2]
             weight, t, unfinished, field = _step(v, record, x, y, t, limits)
             rest = builder.select(unfinished, t, rest)
             places = (RED, GREEN, BLUE, DEPTH)
             sums = [v.add(total, v.mul(weight, field(p))) for total, p in zip(sums, places, strict=True)]
-            heavier = v.less(best, weight)
-            winner = builder.select(heavier, field(GROUP, I32), winner)
-            return [t, *sums, rest, builder.select(heavier, weight, best), winner], unfinished
+            found = [t, *sums, rest]
+            if groups:
+                best, winner = values[CHANNELS - 2 :]
+                heavier = v.less(best, weight)
+                winner = builder.select(heavier, field(GROUP, I32), winner)
+                found += [builder.select(heavier, weight, best), winner]
+            return found, unfinished
 
         after, alive = _loop(v, chunk, slots, before, body)
         for channel, value in enumerate(after):

@@ -171,7 +171,7 @@ def draw_on(worker, workers, first, entries, records, width, limits, state, aliv
         while begun < stop:
             count = min(SLOTS, stop - begun)
             _gather(entries, begun, count, records, chunk, touched, np.float32(x), np.float32(y))
-            begun = stop if _draw_chunk(chunk, touched, state[tile], alive[tile], limits) else begun + count
+            begun = stop if _draw_chunk(chunk, touched, state[tile], alive[tile], limits, False) else begun + count
 
 
 @kernel

@@ -17,7 +17,7 @@ from scipy.special import lpmv
 
 from scenewright.gaussians import harmonics, rotations
 from scenewright.gaussians.camera import Camera, Render
-from scenewright.gaussians.cloud import GaussianCloud
+from scenewright.gaussians.cloud import GaussianCloud, concat
 from scenewright.gaussians.errors import BackendError, UserError
 from scenewright.gaussians.render import backends, contributions, render
 
@@ -280,3 +280,17 @@ def test_bad_requests_are_refused() -> None:
     for background in ((0.0, float("nan"), 0.0), (0.0, 0.0), (0.0, 0.0, float("inf"))):
         with pytest.raises(UserError, match="three finite numbers"):
             render(cloud, camera, background)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("group", [-1, 0, 5])
+def test_a_cloud_of_one_group_is_drawn_as_one_of_several(group: int) -> None:
+    """The group of a pixel is not searched for where there is only one; one more that nobody sees makes it two."""
+    cloud, camera = random_cloud(3, 300), random_camera(3)
+    cloud = cloud.replace(group=torch.full((len(cloud),), group, dtype=torch.int32))
+    unseen = cloud[:1].replace(
+        opacities=torch.tensor([1e-4]), group=torch.tensor([9], dtype=torch.int32), ids=torch.tensor([len(cloud)])
+    )
+    pair = concat([cloud, unseen])
+    alone, several = (render(drawn, camera, (0.2, 0.4, 0.6)) for drawn in (cloud, pair))
+    assert same_bytes(alone, several)
+    assert set(alone.group.unique().tolist()) == {-1, group}
