@@ -17,17 +17,19 @@ STATES = (
     "falling",
     "turning",
     "open",
+    "fully_open",
     "touches",
     "closest",
     *(n for n in names("query") if named(n).score is not None),
 )
-_ALONE = ("moving", "still", "falling", "turning", "open")  # states that say nothing of another thing
+_ALONE = ("moving", "still", "falling", "turning", "open", "fully_open")  # states that say nothing of another thing
 _STATED = {
     "moving": "moves",
     "still": "stands still",
     "falling": "falls",
     "turning": "turns",
     "open": "is open",
+    "fully_open": "is open all the way",
     "touches": "touches",
     "closest": "is closest to",
 }
@@ -40,11 +42,12 @@ Seconds = Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)]
 
 
 class During(BaseModel):
-    """A time told by what happens: "while it is on the rug". `state` is moving, still, falling, turning, open, touches,
-    closest, or a name of Relation.
+    """A time told by what happens: "while it is on the rug". `state` is moving, still, falling, turning, open,
+    fully_open, touches, closest, or a name of Relation.
 
     `part`: while or unless it is so, from when it first is on, until then, after it was, or until it no longer is.
-    "open" is not being where it is at the start; "closest" the moment of being nearest to the middle of another thing.
+    "open" is not being where it is at the start, "fully_open" as far from there as it comes;
+    "closest" the moment of being nearest to the middle of another thing.
     """
 
     model_config = ConfigDict(
@@ -83,7 +86,7 @@ class When(BaseModel):
     """`when` of any operation on a target: seconds of the scene in which a look holds, or that a movement takes.
 
     A missing end is open. Negative seconds count from the end of the scene. With `during`, `start` counts from when
-    that begins.
+    that begins. `every`: a look comes and goes, once in so many seconds, for the first half of each.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
@@ -92,6 +95,7 @@ class When(BaseModel):
     stop: Seconds | Literal["middle", "end"] | None = None
     lasting: Annotated[float, Field(gt=0, le=3600, allow_inf_nan=False)] | None = None  # seconds, at most until `stop`
     during: During | None = None
+    every: Annotated[float, Field(ge=0.05, le=3600, allow_inf_nan=False)] | None = None
     gradual: bool = False  # a look that changes little by little from start to stop, and stays
 
     def describe(self) -> str:
@@ -103,6 +107,8 @@ class When(BaseModel):
             said.append(f"to {_told(self.stop)}")
         if self.lasting is not None:
             said.append(f"for {self.lasting:g} s")
+        if self.every is not None:
+            said.append(f"once every {self.every:g} s")
         return " ".join([*said, *(["little by little"] if self.gradual else [])])
 
 

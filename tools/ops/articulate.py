@@ -26,9 +26,10 @@ from ..operation import Affine, Context, Length, Outcome, TargetedOp
 from ..placement.bodies import Body, bodies_of
 from ..receipt import Check, at_most
 from ..timing.hinges import Opening, opening_of
-from ..timing.retiming import angles_at, with_tracks
+from ..timing.retiming import angles_at, movement, with_tracks
 from ..timing.spans import length_of, spans_of
 from ..transform import turn
+from ..when import When
 
 F64 = NDArray[np.float64]
 
@@ -118,6 +119,8 @@ class Articulate(TargetedOp):
                 told = "it does not move any more"
         else:
             start, end = self._time(spans_of(self.when, scene, selection, context)[0], motion.start, context)
+            if self._only_lasts and self.change == "open" and (span := movement([own], motion.start, stop)) is not None:
+                start, end = span[0], span[0] + end - start  # it opens by itself, and this is how long it takes
             now = float(angles_at(own, np.array([start]))[0])
             goal = self._goal(most, slides, scene)
             if self.when.stop is None and self.when.lasting is None:  # as fast as it opens by itself
@@ -132,6 +135,12 @@ class Articulate(TargetedOp):
             stop = max(stop, end)
         tracks = [made if t is own else t for t in motion.tracks]
         return with_tracks(scene, tracks, stop), (told,)
+
+    @property
+    def _only_lasts(self) -> bool:
+        """Whether only is said how long it takes."""
+        when = self.when
+        return when is not None and when.lasting is not None and when == When(lasting=when.lasting)
 
     def _time(self, span: tuple[float, float], first: float, context: Context) -> tuple[float, float]:
         start = span[0] if math.isfinite(span[0]) else (first if context.time is None else context.time)

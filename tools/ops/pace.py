@@ -14,11 +14,12 @@ from torch import Tensor
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.query.query import ALL
 from ...gaussians.language.query.selection import Selection, mask_of
-from ...gaussians.motion.motion import Motion, Track, moving_ids
+from ...gaussians.motion.motion import Motion, Track, chained, moving_ids, poses
+from ...gaussians.rows import rows_of_ids
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
 from ..checks import count_matches
-from ..operation import Context, Outcome, TargetedOp
+from ..operation import Context, Length, Outcome, TargetedOp
 from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_most
 from ..timing.retiming import Warp, divided, movement, playing, with_tracks
@@ -29,6 +30,16 @@ F64 = NDArray[np.float64]
 
 _TURNS = 2.1 * math.pi  # radians from which a turn is one of many, whose speed is not how soon it ends
 _NO_TIME = 1e-3  # seconds
+_ON_THE_SPOT = 0.05  # metres: what goes less far takes no turn on its way
+_STRAIGHT = 0.05  # of its way: what strays less to its sides goes straight on
+
+
+_HOW_MUCH = ("factor", "seconds", "share", "distance", "times")
+
+
+def _but(field: str) -> dict[str, Any]:
+    """The fields that say how much, but one, as fields that are not given."""
+    return {name: NOT_GIVEN for name in _HOW_MUCH if name != field}
 
 
 class Pace(TargetedOp):
@@ -37,18 +48,20 @@ class Pace(TargetedOp):
     "stop": it stands still in the time of `when`, and goes on behind it; without `when` at all times. "begin": its
     movement begins at `when`, and takes as long as that lasts. "speed": `factor` times as fast. "later": by `seconds`,
     negative is earlier. "reverse": played backwards. "return": it goes back the way it came. "go_on": it keeps its last
-    speed until the end of `when`. Everything is the whole scene, which then gets longer or shorter.
+    speed until the end of `when`. "part": it goes only a `share` of its way, or a `distance`, and stands still there.
+    "repeat": it does the same again and again, "back_and_forth": there and back, `times` times or until the end of the
+    scene. "mirror": it turns right where it turned left. Everything is the whole scene, which then gets longer or
+    shorter.
     """
 
     model_config = ConfigDict(
         json_schema_extra=either(
-            {"change": {"enum": ["speed"]}, "factor": given(), "seconds": NOT_GIVEN},
-            {"change": {"enum": ["later"]}, "seconds": given(), "factor": NOT_GIVEN},
-            {
-                "change": {"enum": ["stop", "begin", "reverse", "return", "go_on"]},
-                "factor": NOT_GIVEN,
-                "seconds": NOT_GIVEN,
-            },
+            {"change": {"enum": ["speed"]}, "factor": given(), **_but("factor")},
+            {"change": {"enum": ["later"]}, "seconds": given(), **_but("seconds")},
+            {"change": {"enum": ["part"]}, "share": given(), **_but("share")},
+            {"change": {"enum": ["part"]}, "distance": given(), **_but("distance")},
+            {"change": {"enum": ["repeat", "back_and_forth"]}, **_but("times")},
+            {"change": {"enum": ["stop", "begin", "reverse", "return", "go_on", "mirror"]}, **_but("")},
         )
     )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
@@ -57,12 +70,21 @@ class Pace(TargetedOp):
     )
     makes_motion: ClassVar[bool] = True
     op: Literal["pace"] = "pace"
-    change: Literal["stop", "begin", "speed", "later", "reverse", "return", "go_on"]
+    change: Literal[
+        "stop", "begin", "speed", "later", "reverse", "return", "go_on", "part", "repeat", "back_and_forth", "mirror"
+    ]
     factor: Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)] | None = None
     seconds: Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)] | None = None
+    share: Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)] | None = None
+    distance: Length | None = None
+    times: Annotated[int, Field(ge=1, le=100)] | None = None
 
     @model_validator(mode="after")
     def _says_how_much(self) -> Self:
+        if (self.change == "part") != ((self.share is None) != (self.distance is None)):
+            raise ValueError("part needs either a share or a distance, and nothing else has one")
+        if self.times is not None and self.change not in ("repeat", "back_and_forth"):
+            raise ValueError("times goes with repeat and back_and_forth")
         for name, change in (("factor", "speed"), ("seconds", "later")):
             if (getattr(self, name) is not None) != (self.change == change):
                 raise ValueError(f"{name} goes with {change}, and {change} needs it")
@@ -110,7 +132,14 @@ class Pace(TargetedOp):
                     made[i], end = self._turned(tracks[i], motion, spans)
                     stop = max(stop, end)
                 continue
-            warp, end = self._warp(motion, span, spans)
+            if self.change == "mirror":
+                for i, track in zip(held, self._mirrored(scene, own, group, span), strict=True):
+                    made[i] = track
+                continue
+            if self.change in ("part", "repeat", "back_and_forth"):
+                warp, end = self._again(scene, own, group, span)
+            else:
+                warp, end = self._warp(motion, span, spans)
             for i in held:
                 made[i] = playing(tracks[i], warp)
             stop = end if self._whole else max(stop, end)
@@ -161,6 +190,57 @@ class Pace(TargetedOp):
             return Warp((first,), (first,), 1.0, self.factor), first + (high - first) / self.factor
         gained = first + (last - first) * self.factor
         return Warp((first, last), (first, gained), 1.0, 1.0), high + last - gained
+
+    def _again(self, scene: Scene, own: list[Track], group: I64, span: Span) -> tuple[Warp, float]:
+        """Which old time is shown when, of what goes a part of its way or goes it several times."""
+        assert scene.motion is not None
+        (low, high), whole = span, scene.motion.stop
+        if self.change == "part":
+            until = self._until(scene, own, group, span)
+            return Warp((until,), (until,), 1.0, 0.0), until
+        back = self.change == "back_and_forth"
+        taken = (high - low) * (2 if back else 1)
+        count = self.times if self.times is not None else max(math.ceil((whole - low) / taken), 1)
+        if self.times is None and count == 1 and not back:
+            raise InstructionError(f"{self.target.describe()} moves until the end: say how many times")
+        new, old = [low], [low]
+        for turn in range(count):
+            first = low + turn * taken
+            new += [first + (high - low)] + ([first + taken] if back else [])
+            old += [high] + ([low] if back else [])
+            if not back and turn + 1 < count:  # what does not end where it began jumps there
+                new.append(first + taken + _NO_TIME)
+                old.append(low)
+        end = new[-1] if self.times is not None else whole
+        return Warp(tuple(new), tuple(old), 0.0, 0.0), end
+
+    def _until(self, scene: Scene, own: list[Track], group: I64, span: Span) -> float:
+        """When the middle of a thing has gone the part of its way that is asked for, seconds."""
+        times = np.linspace(span[0], span[1], max(int((span[1] - span[0]) * 200), 2))
+        way = _way_of(scene, own, group, times)
+        gone = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
+        asked = gone[-1] * self.share if self.share is not None else 0.0
+        if self.distance is not None:
+            asked = self.distance.in_units(scene.frame)
+        if asked >= gone[-1]:
+            metres = gone[-1] * (scene.frame.metres_per_unit or 1.0)
+            raise InstructionError(f"{self.target.describe()} only goes {metres:.2g} m: say less, or move it there")
+        return float(np.interp(asked, gone, times))
+
+    def _mirrored(self, scene: Scene, own: list[Track], group: I64, span: Span) -> list[Track]:
+        """Tracks whose turns to the left are turns to the right: mirrored at the plane in which a thing sets out."""
+        times = np.linspace(span[0], span[1], 200)
+        way, up = _way_of(scene, own, group, times), scene.frame.up_vector
+        level = (way - way[0]) - ((way - way[0]) @ up)[:, None] * up
+        length = np.linalg.norm(level, axis=1)
+        gone = np.flatnonzero(length > 0.1 * max(float(length.max()), 1e-9))
+        if length.max() * (scene.frame.metres_per_unit or 1.0) < _ON_THE_SPOT:
+            raise InstructionError(f"{self.target.describe()} goes nowhere: say how it is to turn")
+        first = level[gone[0]] / length[gone[0]]
+        side = np.cross(up, first)
+        if float(np.abs(level @ side).max()) < _STRAIGHT * float(length.max()):
+            raise InstructionError(f"{self.target.describe()} goes straight on and takes no turn")
+        return [_reflected(track, side, way[0]) for track in own]
 
     def _stopped(self, motion: Motion, spans: list[Span], low: float, high: float) -> tuple[Warp, float]:
         """It stands still in the spans, and goes on behind each of them; what stands still anyway does not get late."""
@@ -219,6 +299,23 @@ class Pace(TargetedOp):
         lost = len(moving_ids(was)) - len(moving_ids(after)) if self.change != "stop" else 0
         said = f"{max(lost, 0)} Gaussians that moved before do not move any more"
         return count_matches(before, outcome.scene, outcome), at_most("still moves", max(lost, 0), 0, "Gaussians", said)
+
+
+def _way_of(scene: Scene, own: list[Track], group: I64, times: F64) -> F64:
+    """`[T, 3]` where the middle of some Gaussians is, scene units."""
+    rows = rows_of_ids(scene.cloud.ids, torch.from_numpy(group))
+    middle = scene.cloud.means[rows].double().mean(dim=0).cpu().numpy()
+    turns, shifts = chained(own, times)
+    return np.asarray(turns @ middle + shifts)
+
+
+def _reflected(track: Track, side: F64, point: F64) -> Track:
+    """A track mirrored at the plane through `point` with the normal `side`; what it moves is not mirrored itself."""
+    mirror = np.eye(3) - 2 * np.outer(side, side)
+    turns, shifts = poses(track, track.times)
+    made = mirror @ turns @ mirror
+    moved = (turns @ (point - mirror @ point) + shifts - point) @ mirror + point
+    return Track.poses_at(track.ids, track.times, made, moved, track.pivot, track.smooth, track.name)
 
 
 def _things(scene: Scene, selection: Selection, ids: I64, whole: bool) -> list[I64]:

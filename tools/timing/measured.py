@@ -35,6 +35,7 @@ def measured_through_time(
     own: Tensor,
     spans: Sequence[Span],
     moved: Sequence[tuple[I64, Affine]] = (),
+    since: float | None = None,
 ) -> Done:
     """A result with checks at sampled times in its receipt.
 
@@ -42,6 +43,7 @@ def measured_through_time(
         own: ids of Gaussians that may differ from before at some time.
         spans: in which they look different, and outside of which they do not; none if they may differ at all times.
         moved: the bodies that a movement takes along, with their maps.
+        since: seconds from which they do not move as before; None: the movement is added to how they move anyway.
 
     Raises:
         CheckFailedError: one of them fails.
@@ -53,7 +55,7 @@ def measured_through_time(
     if spans:
         checks += _in_and_out(before, done.scene, own, spans)
     if moved and motion is not None:
-        checks.append(_arrived(before, done.scene, motion, moved))
+        checks.append(_arrived(before, done.scene, motion, moved, since))
     receipt = done.receipt.model_copy(update={"checks": (*done.receipt.checks, *checks)})
     if failed := [c for c in checks if not c.passed]:
         told = "; ".join(f"{c.name}: measured {c.value:.4g} {c.unit} ({c.sentence})" for c in failed)
@@ -117,14 +119,16 @@ def _told(time: float) -> str:
     return f"{time:.2f} s" if math.isfinite(time) else ("the start" if time < 0 else "the end")
 
 
-def _arrived(before: Scene, after: Scene, motion: Motion, moved: Sequence[tuple[I64, Affine]]) -> Check:
+def _arrived(
+    before: Scene, after: Scene, motion: Motion, moved: Sequence[tuple[I64, Affine]], since: float | None
+) -> Check:
     """At the end of the movement every centre is where the map takes what would be there without it."""
     worst, extent, time = 0.0, 1.0, 0.0
     ends = {int(t.ids[0]): float(t.times[-1]) for t in motion.tracks if len(t.runs)}
     for ids, body in moved:
         time = ends[int(ids.min())]
         names = torch.from_numpy(np.sort(ids))
-        was, now = (at(s, time).cloud for s in (before, after))
+        was, now = at(before, time if since is None else since).cloud, at(after, time).cloud
         a, b = (c.means[rows_of_ids(c.ids, names)].double().cpu().numpy() for c in (was, now))
         if a.shape != b.shape:
             return at_most("arrived in time", math.inf, 0, "units", "not all of it is there when it arrives")

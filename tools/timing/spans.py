@@ -61,10 +61,25 @@ def spans_of(when: When | None, scene: Scene, target: Selection, context: Contex
     found = [(a, b) for a, b in found if b - a > SHORTEST]
     if not found:
         raise InstructionError(f"no time is left {when.describe()}: it would end before it starts")
+    if when.every is not None:
+        found = _in_turns(found, when.every, whole)
     first = found[0][0]
     if whole.known and first > whole.stop:
         raise InstructionError(f"the scene lasts until {whole.stop:g} s, and {first:g} s is later: say an earlier time")
     return found
+
+
+_BLINKS = 5.0  # seconds for which something comes and goes in a scene without an end
+
+
+def _in_turns(found: list[Span], every: float, whole: Length) -> list[Span]:
+    """The first half of each period in the spans."""
+    made = list[Span]()
+    for start, stop in found:
+        first = start if math.isfinite(start) else whole.start
+        last = stop if math.isfinite(stop) else whole.stop if whole.known else first + _BLINKS
+        made += [(t, min(t + every / 2, last)) for t in np.arange(first, last - SHORTEST, every)]
+    return [(float(a), float(b)) for a, b in made if b - a > SHORTEST] or found
 
 
 def _moment(said: float | str | None, whole: Length, default: float) -> float:
@@ -135,13 +150,15 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
     up, field = scene.frame.up_vector, scene.language
     assert field is not None
     if during.state == "closest":
-        time, _ = nearest_time(scene, groups[0], anchors[0][0])
+        time, gap = nearest_time(scene, groups[0], anchors[0][0])
+        if gap > _PASSED / (scene.frame.metres_per_unit or 1.0):
+            raise InstructionError(f"it does not come near {during.anchors[0].describe()}: send it there")
         return [(time, math.inf)]
     stand = viewer_stand(context.viewer, up, field.typical_size, field.middle)
     found: list[Span] = []
     unit = 1.0 / (scene.frame.metres_per_unit or 1.0)
     for group in groups:
-        if during.state in ("falling", "turning", "open"):
+        if during.state in ("falling", "turning", "open", "fully_open"):
             course = course_of(scene, group)
             found += falls(course, unit) if during.state == "falling" else _own(course, during.state, unit)
         elif during.state == "touches":  # "the wall" may be several
@@ -150,13 +167,15 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
             found += [s for anchor in anchors[0] for s in intervals(scene, group, during.state, (anchor,), stand)]
         else:
             found += intervals(scene, group, during.state, [a[0] for a in anchors], stand)
-    exact = _edges(scene, groups) if during.state in ("moving", "still", "falling", "open") else []
+    exact = _edges(scene, groups) if during.state in ("moving", "still", "falling", "open", "fully_open") else []
     return joined(sorted((_snapped(a, exact), _snapped(b, exact)) for a, b in found), _APART)
 
 
 _ROUGH = 0.1  # seconds: an edge that was measured is the key of a track that is nearer
 _TURNS = 0.2  # radians a second about the vertical from which a thing turns
 _AWAY = 0.02  # metres, or radians, from where it is at the start: then it is open
+_PASSED = 0.5  # metres between what stops beside a thing and that thing at most
+_WIDE = 0.99  # of as far as it opens: then it is open all the way
 _REACHED = 0.35  # metres: what comes this near and no nearer has reached it
 
 
@@ -181,6 +200,11 @@ def _own(course: Course, state: str, unit: float) -> list[Span]:
     if state == "turning":
         return spans(lambda t: np.abs(course.turns(t) @ course.up), times, _TURNS)
     first = course.centers(np.array([course.start]))
+    if state == "fully_open":
+        far = np.linalg.norm(course.centers(times) - first, axis=1)
+        if float(far.max()) < _AWAY * unit:
+            return []
+        return spans(lambda t: np.linalg.norm(course.centers(t) - first, axis=1), times, _WIDE * float(far.max()))
     return spans(lambda t: np.linalg.norm(course.centers(t) - first, axis=1), times, _AWAY * unit)
 
 
@@ -199,6 +223,20 @@ def _touching(scene: Scene, group: int, anchor: int, unit: float) -> list[Span]:
     if least > _REACHED * unit or first - least < _AWAY * unit:
         return []
     return spans(lambda t: -pair.gaps(t), course.grid(), -least - 0.005 * unit)
+
+
+def comes_to(scene: Scene, group: int, goal: Query, context: Context) -> bool:
+    """Whether a thing that moves ends beside another, so that it goes there by itself."""
+    from ...gaussians.motion.events import Encounter
+
+    if scene.motion is None:
+        return False
+    unit, last = 1.0 / (scene.frame.metres_per_unit or 1.0), np.array([scene.motion.start, scene.motion.stop])
+    for anchor in _groups(_meant(scene, goal, context), scene):
+        first, gap = (float(g) for g in Encounter.of(scene, group, (anchor,)).gaps(last))
+        if gap <= _REACHED * unit and first - gap > _AWAY * unit:
+            return True
+    return False
 
 
 def _rest(found: list[Span], start: float, stop: float) -> list[Span]:

@@ -20,7 +20,7 @@ from ...gaussians.errors import InstructionError
 from ...gaussians.harmonics import rotate
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.motion.at import at, bodies
-from ...gaussians.motion.motion import Look, Motion, Track, chained, composed
+from ...gaussians.motion.motion import Look, Motion, Track, chained, composed, moving_ids
 from ...gaussians.rotations import from_matrix, multiply, normalize
 from ...gaussians.rows import mask_of_ids, rows_of_ids, rows_where
 from ...gaussians.scene import Scene
@@ -30,10 +30,14 @@ from ..execute import Done, target_of
 from ..field_update import recount, with_measures
 from ..judging.changes import Changes, changes_between
 from ..operation import Context, EditOp
+from ..ops.move import Move
 from ..ops.opacity import HIDDEN
+from ..ops.pace import Pace
 from ..receipt import Receipt
+from ..when import When
 from .measured import measured_through_time
-from .spans import Span, length_of, moving_one, spans_of
+from .retiming import Warp, divided, movement, playing
+from .spans import Span, comes_to, length_of, moving_one, spans_of
 from .ways import path_of
 
 CarryOut = Callable[..., Done]  # carry_out(scene, op, context, selection=None)
@@ -63,6 +67,11 @@ def carry_through_time(
     if op.makes_motion:
         done = carry_out(scene, op, context, chosen)
         return measured_through_time(scene, done, chosen.ids, ())
+    if when is not None and (own := _own_way(scene, op, chosen, context)) is not None:
+        done = carry_out(scene, own, context, chosen)
+        return measured_through_time(scene, done, chosen.ids, ())
+    if when is not None:
+        op = _in_its_time(scene, op, chosen)
     if when is None:
         return _for_all_times(scene, now, op, context, chosen, carry_out)
     if op.op in _UNTIMED:
@@ -231,12 +240,59 @@ def _for_a_while(scene: Scene, op: EditOp, context: Context, chosen: Selection, 
             groups = (*language.groups, *more.groups[len(language.groups) :])
             language = recount(replace(more, groups=groups), cloud)
     edit = Motion(tuple(tracks), tuple(looks), (), whole.start, stop)
-    after = scene.replace(cloud=cloud, language=language, motion=composed(scene.motion, edit))
+    earlier, since = scene.motion, None
+    if earlier is not None and tracks and _goes_elsewhere(op):
+        since = float(min(t.times[0] for t in tracks))
+        earlier = _arrested(earlier, placed, since)
+    after = scene.replace(cloud=cloud, language=language, motion=composed(earlier, edit))
     receipt = _receipt(op, done.receipt, after, notes)
     selection = done.selection if done.selection is not given else chosen
     made = Done(after, receipt, selection)
     touched = still.cloud.ids[changes.any]
-    return measured_through_time(scene, made, torch.cat([chosen.ids, touched]), look_spans if not moved else (), moved)
+    return measured_through_time(
+        scene, made, torch.cat([chosen.ids, touched]), look_spans if not moved else (), moved, since
+    )
+
+
+def _goes_elsewhere(op: EditOp) -> bool:
+    """Whether an operation says where something goes, so that it does not go where it would have gone."""
+    return isinstance(op, Move) and (op.toward is not None or op.place is not None)
+
+
+def _arrested(motion: Motion, ids: np.ndarray, time: float) -> Motion:
+    """A motion in which some Gaussians stay from a time on where they are then."""
+    tracks, inside = divided(motion, ids)
+    warp = Warp((time,), (time,), 1.0, 0.0)
+    made = [playing(t, warp) if own else t for t, own in zip(tracks, inside, strict=True)]
+    return motion.replace(tracks=tuple(t for t in made if not t.still))
+
+
+def _own_way(scene: Scene, op: EditOp, chosen: Selection, context: Context) -> EditOp | None:
+    """The change of pace that is meant where something is sent to where it goes by itself; None if it is not."""
+    when = op.time()
+    if not isinstance(op, Move) or op.distance is not None or scene.motion is None or when is None:
+        return None
+    goal = op.toward or (op.place.anchors[0] if op.place is not None and len(op.place.anchors) == 1 else None)
+    ids = np.intersect1d(chosen.ids.cpu().numpy(), moving_ids(scene.motion))
+    if goal is None or len(chosen.groups) != 1 or not len(ids):
+        return None
+    if not comes_to(scene, chosen.groups[0], goal, context):
+        return None
+    return Pace(target=op.target, change="begin", when=when)
+
+
+def _in_its_time(scene: Scene, op: EditOp, chosen: Selection) -> EditOp:
+    """Where something that moves by itself is sent elsewhere, and nobody says when: it sets out when it does now."""
+    when, motion = op.time(), scene.motion
+    timeless = when is None or (when.start is None and when.stop is None and when.during is None)
+    if motion is None or not timeless or not _goes_elsewhere(op):
+        return op
+    tracks, inside = divided(motion, chosen.ids.cpu().numpy())
+    span = movement([t for t, own in zip(tracks, inside, strict=True) if own], motion.start, motion.stop)
+    if span is None:
+        return op
+    lasting = when.lasting if when is not None and when.lasting is not None else span[1] - span[0]
+    return op.model_copy(update={"when": When(start=span[0], lasting=lasting)})
 
 
 def _still_there(still: Scene, chosen: Selection) -> Selection:

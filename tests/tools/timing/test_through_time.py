@@ -103,6 +103,11 @@ CLEAN: list[Json] = [
     {"op": "pace", "target": A_CHAIR, "change": "stop", "when": {"start": 2}},
     {"op": "spin", "target": A_CHAIR, "turns_per_second": 1},
     {"op": "articulate", "target": {"groups": [TABLE]}, "degrees": 30, "when": {"start": 0, "stop": 1}},
+    {"op": "order", "target": {"groups": [CHAIR, VASE], "pick": "all"}, "order": "reversed"},
+    {"op": "sway", "target": {"groups": [VASE]}, "how": "hop", "times": 2, "when": {"start": 1}},
+    {"op": "tip", "target": {"groups": [VASE]}, "when": {"start": 1}},
+    {"op": "orbit", "target": {"groups": [VASE]}, "around": {"groups": [TABLE]}, "when": {"start": 1, "stop": 3}},
+    {"op": "follow", "target": {"groups": [VASE]}, "leader": {"groups": [CHAIR]}},
 ]
 
 
@@ -124,6 +129,10 @@ def test_every_operation_that_makes_motion_is_tried_here() -> None:
         ({"change": "later", "seconds": 0.5}, {1.5: 0.0, 2.5: 0.25, 3.5: 0.5}),
         ({"change": "reverse"}, {0.0: 0.5, 1.0: 0.5, 2.0: 0.25, 3.0: 0.0}),
         ({"change": "return"}, {3.0: 0.5, 4.001: 0.25, 5.001: 0.0}),
+        ({"change": "part", "share": 0.5}, {1.0: 0.0, 2.0: 0.25, 3.0: 0.25}),
+        ({"change": "part", "distance": {"value": 10, "unit": "cm"}}, {2.0: 0.1, 4.0: 0.1}),
+        ({"change": "repeat", "times": 2}, {2.0: 0.25, 2.99: 0.4975, 4.001: 0.25, 5.0: 0.5}),
+        ({"change": "back_and_forth", "times": 1}, {2.0: 0.25, 3.0: 0.5, 4.0: 0.25, 5.0: 0.0}),
     ],
 )
 def test_motion_is_played_at_other_times(
@@ -133,6 +142,116 @@ def test_motion_is_played_at_other_times(
     start = middle(moving, 0.0)[0]
     for time, place in places.items():
         assert middle(made.scene, time)[0] - start == pytest.approx(place, abs=2e-3)
+
+
+def of_two(moving: Scene) -> Scene:
+    """The chair slides from 1 to 3 s, and the vase, as far, from 2 to 3 s."""
+    assert moving.motion is not None
+    ids = moving.cloud.ids[moving.cloud.group == VASE].numpy()
+    also = Track.along(ids, (2.0, 3.0), ((0, 0, 0), (0.5, 0, 0)), smooth=False)
+    return moving.replace(motion=moving.motion.replace(tracks=(*moving.motion.tracks, also)))
+
+
+@pytest.mark.parametrize(
+    ("more", "begins"),
+    [
+        ({"order": "reversed"}, (2.0, 1.0)),
+        ({"order": "listed", "first": [{"groups": [VASE]}]}, (2.0, 1.0)),
+        ({"order": "together"}, (1.0, 1.0)),
+        ({"order": "together", "when": {"start": 0.5}}, (0.5, 0.5)),
+        ({"order": "kept", "gap": 0.5}, (1.0, 1.5)),
+    ],
+)
+def test_several_things_begin_in_another_order(
+    moving: Scene, context: Context, more: Json, begins: tuple[float, float]
+) -> None:
+    scene = of_two(moving)
+    made = done(scene, {"op": "order", "target": {"groups": [CHAIR, VASE], "pick": "all"}, **more}, context).scene
+    for group, begin, taken in zip((CHAIR, VASE), begins, (2.0, 1.0), strict=True):
+        for share in (0.0, 0.5, 1.0):
+            way = middle(made, begin + share * taken, group) - middle(scene, 0.0, group)
+            assert way[0] == pytest.approx(0.5 * share, abs=2e-3)
+
+
+def test_an_order_needs_several_things_that_move(moving: Scene, context: Context) -> None:
+    with pytest.raises(InstructionError, match="several things that move"):
+        done(moving, {"op": "order", "target": {"groups": [CHAIR, VASE], "pick": "all"}}, context)
+
+
+def test_what_turns_left_on_its_way_turns_right(corner: Scene, context: Context) -> None:
+    ids = corner.cloud.ids[corner.cloud.group == VASE].numpy()
+    turns = [np.eye(3), np.eye(3), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]]]
+    here = middle(corner, 0.0, VASE)
+    places = np.array([[0, 0, 0], [0.4, 0, 0], [0.4, 0, 0], [0.4, 0.3, 0]])
+    shifts = [here + p - np.array(r) @ here for p, r in zip(places, turns, strict=True)]
+    track = Track.poses_at(ids, (0.0, 1.0, 1.5, 2.5), turns, shifts, here)
+    scene = corner.replace(motion=Motion((track,), (), (), 0.0, 3.0))
+    made = done(scene, {"op": "pace", "target": {"groups": [VASE]}, "change": "mirror"}, context).scene
+    for time in (0.5, 1.2, 2.0, 3.0):
+        was, now = (middle(s, time, VASE) - here for s in (scene, made))
+        assert np.allclose(now, was * [1, -1, 1], atol=1e-4)
+    straight = of_two(corner.replace(motion=Motion((), (), (), 0.0, 4.0)))
+    with pytest.raises(InstructionError, match="straight"):
+        done(straight, {"op": "pace", "target": {"groups": [VASE]}, "change": "mirror"}, context)
+
+
+def test_what_is_sent_elsewhere_does_not_go_where_it_would_have_gone(moving: Scene, context: Context) -> None:
+    beside = {"relation": "next_to", "anchors": [{"groups": [ARMCHAIR]}]}
+    data = {"op": "move", "target": A_CHAIR, "place": beside, "when": {"start": 2}}
+    made = done(moving, data, context).scene
+    assert np.allclose(middle(made, 1.9), middle(moving, 1.9), atol=1e-6)
+    assert made.motion is not None
+    last = middle(made, made.motion.stop)
+    assert np.allclose(middle(made, made.motion.stop + 2), last)
+    assert np.linalg.norm(last - middle(made, 0.0, ARMCHAIR)) < 1.5
+
+
+def test_a_look_that_blinks_comes_and_goes(moving: Scene, context: Context) -> None:
+    data = {"op": "opacity", "target": {"groups": [VASE]}, "value": 0.0, "when": {"start": 1, "stop": 3, "every": 1}}
+    made = done(moving, data, context)
+    there = [int((at(made.scene, t).cloud.group == VASE).sum()) > 0 for t in (0.5, 1.2, 1.7, 2.2, 2.7, 3.5)]
+    assert there == [True, False, True, False, True, True]
+
+
+def test_what_follows_goes_the_way_of_the_other(moving: Scene, context: Context) -> None:
+    along = {"op": "follow", "target": {"groups": [VASE]}, "leader": A_CHAIR, "how": "along"}
+    made = done(moving, along, context).scene
+    for time in (0.5, 2.0, 3.5):
+        ways = [middle(made, time, g) - middle(moving, 0.0, g) for g in (VASE, CHAIR)]
+        assert np.allclose(ways[0], ways[1], atol=2e-3)
+    behind = done(moving, {**along, "how": "behind"}, context).scene
+    gone = np.linalg.norm(middle(behind, 4.0, VASE) - middle(moving, 0.0, VASE))
+    assert gone == pytest.approx(0.5, abs=0.02)  # as far as the other, straight to where that set out
+    with pytest.raises(InstructionError, match="does not move"):
+        done(moving, {**along, "leader": {"groups": [TABLE]}}, context)
+
+
+def test_what_goes_round_another_thing_keeps_its_distance(moving: Scene, context: Context) -> None:
+    data = {"op": "orbit", "target": {"groups": [VASE]}, "around": {"groups": [ARMCHAIR]}, "turns": 1,
+            "when": {"start": 1, "stop": 3}}  # fmt: skip
+    made = done(moving, data, context).scene
+    assert np.allclose(middle(made, 3.0, VASE), middle(moving, 0.0, VASE), atol=1e-4)
+    opposite = middle(made, 2.0, VASE) - middle(moving, 0.0, VASE)
+    assert np.linalg.norm(opposite[:2]) > 0.2 and abs(opposite[2]) < 1e-4
+
+
+@pytest.mark.parametrize("how", ["hop", "bob", "shake", "swing", "wobble"])
+def test_what_sways_ends_where_it_was(moving: Scene, context: Context, how: str) -> None:
+    data = {"op": "sway", "target": {"groups": [VASE]}, "how": how, "when": {"start": 1, "stop": 2}}
+    made = done(moving, data, context).scene
+    places = [middle(made, t, VASE) for t in np.linspace(0.9, 2.1, 25)]
+    assert np.allclose(places[0], places[-1], atol=1e-5)
+    assert max(np.linalg.norm(p - places[0]) for p in places) > 2e-3
+
+
+def test_what_tips_over_lies_on_the_level_on_which_it_stood(moving: Scene, context: Context) -> None:
+    data = {"op": "tip", "target": {"groups": [VASE]}, "direction": "left", "when": {"start": 1, "stop": 2}}
+    made = done(moving, data, context).scene
+    rows = moving.cloud.group == VASE
+    was, now = (at(s, 3.0).cloud.means[rows] for s in (moving, made))
+    assert float(now[:, 2].min()) == pytest.approx(float(was[:, 2].min()), abs=0.03)
+    assert float(now[:, 2].max()) < float(was[:, 2].max())
+    assert float(now[:, 0].mean()) < float(was[:, 0].mean())
 
 
 def test_one_thing_is_played_backwards_in_the_time_of_the_scene(moving: Scene, context: Context) -> None:
