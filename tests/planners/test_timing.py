@@ -51,8 +51,9 @@ REFUSED = (
     "frobnicate the ball at 2 s",
     "make the fan spin and stand still at the same time",
     "the light should go out at 2 s",
-    "the drawer should stay open at the end",
-    "robot turns right instead of left at 2 s",
+    "the drawer should be open at the end",
+    "the fan should run for two seconds only",
+    "turn the robot by 180 degrees instead of 90 at 2 s",
 )
 TIMELESS = (
     "I'd like a second lamp to the left of the sofa",

@@ -6,48 +6,18 @@ Each rule takes a clause only if it accounts for all that is said beside the ver
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from typing import Any, Literal
+from dataclasses import replace
 
 from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....gaussians.world.words import head, singular
 from ..tagging.words import bag
+from . import loosely, movements
 from . import manner as manners
 from .clauses import ALL_OF_IT, MOVING, Clause, clauses
+from .command import Command, Fields, pace, plain
 from .manner import MOTION, Manner, Thing
 from .moments import Moment
-
-Fields = dict[str, Any]
-Kind = Literal["motion", "path", "look"]
-
-
-@dataclass(frozen=True)
-class Command:
-    """What a command means.
-
-    Attributes:
-        ops: the operations, without their time.
-        kind: how its time is read: of motion that is there, of a way, or of a look.
-        needs: whether it means this only with a time.
-        text: a plain command that the rest of the grammar reads; then `ops` is empty.
-        during: a time that the command itself tells, as the fields of `During`.
-        inverse: whether the plain command says what is so at all other times.
-        fades: whether it changes little by little.
-        ends: whether a time "at" which it is said to be is that of its end.
-        target: what "it" in `text` is, where the plain grammar has no words for it.
-    """
-
-    ops: tuple[Fields, ...] = ()
-    kind: Kind = "motion"
-    needs: bool = False
-    text: str = ""
-    during: dict[str, Any] | None = None
-    inverse: bool = False
-    fades: bool = False
-    target: Query | None = None
-    ends: bool = False
-
 
 Rule = Callable[[Clause, Manner, Moment], Iterator[Command]]
 
@@ -68,8 +38,9 @@ def commands(said: str, thing: Thing, moment: Moment, told: bool) -> Iterator[Co
         said: words parted by spaces, without times.
         told: whether it comes with a time, in numbers or by what happens.
     """
+    yield from movements.ordered(said, thing, moment)
     for clause in clauses(said, thing):
-        for manner in manners.read(clause.tail, thing):
+        for manner in _beside(clause, thing):
             for rule in _RULES:
                 for command in rule(clause, manner, moment):
                     if told or not command.needs:
@@ -77,18 +48,53 @@ def commands(said: str, thing: Thing, moment: Moment, told: bool) -> Iterator[Co
         meets = clause.sense == "reach" and clause.verb is not None and clause.verb.first in _MEETS
         if meets and told and not clause.ordered and not clause.negated:
             whom = thing(" ".join(clause.tail))  # "the ball reaches the wall at 2 s"
-            if whom is not None and (moment.start is not None or moment.lasting is not None):
-                yield replace(_pace(clause.target, "begin"), ends=True)
-    if told or moment.always:
-        for clause in clauses(said, thing):
+            if whom is not None and moment.stop is not None and moment.start is None and moment.lasting is None:
+                yield pace(clause.target, "begin")  # "the ball must have reached the wall by 2 s"
+            elif whom is not None and (moment.start is not None or moment.lasting is not None):
+                yield replace(pace(clause.target, "begin"), ends=True)
+    for clause in clauses(said, thing):
+        if told or moment.always or clause.sense == "blink":
             yield from _colored(clause)
 
 
+def loose_commands(said: str, thing: Thing, moment: Moment, told: bool) -> Iterator[tuple[Command, Moment]]:
+    """As `commands`, of words in any order; with the time that goes with each."""
+    for found, beside in loosely.readings(said, thing):
+        for clause, manner, when in loosely.with_time(found, beside, moment):
+            timed = told or when.told
+            for rule in _RULES if when is moment else (_lasting, _spun, _stopped):
+                for command in rule(clause, manner, when):
+                    about_time = all(op["op"] in _LOOSE for op in command.ops) and not command.text
+                    if timed or (about_time and not command.needs):
+                        yield command, when
+
+
+_LOOSE = ("pace", "spin", "sway", "articulate")  # which words in any order may ask for without a time
+
+
+def _lasting(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
+    """ "the door needs 3 s for opening": what it does anyway, in this time."""
+    sense = manner.doing if clause.verb is None else clause.sense
+    known = (sense in MOTION and sense != "move") or (
+        clause.aspect == "event" and sense in ("do", "be", "move", "stay")
+    )
+    if known and moment.taken and moment.start is None and manner.only("doing") and not clause.negated:
+        yield pace(clause.target, "begin", needs=True)
+
+
+def _beside(clause: Clause, thing: Thing) -> Iterator[Manner]:
+    """What stands beside a verb; the object of one that goes round or after another thing."""
+    if clause.sense in ("orbit", "follow"):
+        for end in range(len(clause.tail), 0, -1):
+            whom = thing(" ".join(clause.tail[:end]))
+            if whom is not None and not whom.last:
+                for manner in manners.read(clause.tail[end:], thing):
+                    yield replace(manner, whom=whom, goal=manner.goal or "whom", at=manner.at or "whom")
+        return
+    yield from manners.read(clause.tail, thing)
+
+
 _MEETS = bag("reach touch hit strike meet arrive bump crash collide")
-
-
-def _pace(target: Query, change: str, needs: bool = False, **more: Any) -> Command:
-    return Command(({"op": "pace", "target": target, "change": change, **more},), needs=needs)
 
 
 def _all(clause: Clause) -> Query:
@@ -109,9 +115,11 @@ def _paced(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
         return
     if manner.state not in ("", "open", "moving") or (changed and clause.aspect != "speed" and not manner.compare):
         return
+    if clause.aspect == "speed" and clause.ordered:  # "drop its speed by a third"
+        sense = {"fall": "reduce", "sink": "reduce", "rise": "increase"}.get(sense, sense)
     factor = _factor(sense, manner)
     if factor is not None and not moment.slowly:  # "faster little by little" is no one speed
-        yield _pace(_all(clause), "speed", factor=factor)
+        yield pace(_all(clause), "speed", factor=factor)
 
 
 def _factor(sense: str, manner: Manner) -> float | None:
@@ -121,7 +129,7 @@ def _factor(sense: str, manner: Manner) -> float | None:
     if sense in _SPEEDS:
         return None if manner.fields - {"compare"} else _SPEEDS[sense]
     if manner.percent is not None:
-        if manner.compare in ("speed", "fast") or not (slow or quick):
+        if manner.by == "to" or (manner.by != "by" and manner.compare in ("speed", "fast")) or not (slow or quick):
             return manner.percent
         return 1 - manner.percent if slow else 1 + manner.percent
     value = manner.times if manner.times is not None else manner.share
@@ -131,6 +139,8 @@ def _factor(sense: str, manner: Manner) -> float | None:
         return {"little": (0.75, 1.33), "much": (1 / 3, 3.0), "": (0.5, 2.0)}[manner.degree][0 if slow else 1]
     if manner.compare == "slow" or (slow and value > 1):
         return 1 / value
+    if manner.by == "by" and manner.share is not None and (slow or quick):
+        return 1 - value if slow else 1 + value
     return value
 
 
@@ -139,11 +149,23 @@ def _shifted(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command
     by = manner.later
     if sign is not None and manner.lasting is not None and not clause.negated:
         by = sign * manner.lasting
-    known = clause.sense in (*MOTION, "be", "start", "stop", "do", "delay", "advance", "play")
+    known = clause.sense in (
+        *MOTION,
+        "be",
+        "start",
+        "stop",
+        "do",
+        "delay",
+        "advance",
+        "play",
+        "reach",
+        "arrive",
+        "leave",
+    )
     if by is None or not known or clause.negated or (sign is None) != (manner.lasting is None):
         return
-    if manner.only("later", "lasting", "doing", "goal", "at", "whom") and _on_floor(manner):
-        yield _pace(clause.target, "later", seconds=by)
+    if manner.only("later", "lasting", "doing", "goal", "at", "whom") and (_on_floor(manner) or not clause.ordered):
+        yield pace(clause.target, "later", seconds=by)
 
 
 def _on_floor(manner: Manner) -> bool:
@@ -157,8 +179,10 @@ def _reversed(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Comman
     if clause.sense == "reverse" and manner.only("backwards", "other_way"):
         if clause.aspect == "way":
             yield Command(({"op": "spin", "target": clause.target, "other_way": True},))
+        elif clause.verb and clause.verb.first in ("swap", "switch", "mirror"):
+            return  # several things swap something
         elif clause.aspect or (clause.verb and clause.verb.first in ("reverse", "rewind") and not clause.target.last):
-            yield _pace(clause.target, "reverse")
+            yield pace(clause.target, "reverse")
         return
     if clause.sense == "change" and clause.aspect == "way" and manner.only("other_way"):
         yield Command(({"op": "spin", "target": clause.target, "other_way": True},))
@@ -171,7 +195,7 @@ def _reversed(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Comman
     if clause.sense in ("spin", "look") or clause.aspect == "way":
         yield Command(({"op": "spin", "target": clause.target, "other_way": True},))
     else:
-        yield _pace(_all(clause), "reverse")
+        yield pace(_all(clause), "reverse")
 
 
 def _returned(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
@@ -181,7 +205,7 @@ def _returned(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Comman
     first = clause.verb.first if clause.verb else ""
     if clause.sense == "be" or (clause.ordered and first in ("put", "move", "bring", "take", "turn", "return")):
         return
-    yield _pace(clause.target, "return")
+    yield pace(clause.target, "return")
 
 
 # -- turning -----------------------------------------------------------------------------------------------------------
@@ -198,11 +222,16 @@ def _spun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
         "state",
         "doing",
         "degree",
+        "compare",
     ):
         return
     if manner.state not in ("", "moving") or manner.doing not in ("", "spin"):
         return
     spin = {"op": "spin", "target": clause.target}
+    if "instead" in clause.tail and manner.degrees is not None:
+        return  # "turn by 180 degrees instead of 90" is said of a turn that is there
+    if manner.compare and manner.rate is None:
+        return
     if manner.rate is not None and sense in (
         *MOTION,
         "be",
@@ -248,14 +277,14 @@ def _stopped(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command
         moves = sense in (*MOTION, "start", "leave") or (sense == "be" and manner.state == "moving")
         if moves and manner.only("doing", "state") and manner.state in ("", "open", "moving"):
             vague = clause.verb is not None and clause.verb.first in _PLAIN - {"move", "slide", "turn"}
-            yield _pace(MOVING if target == ALL_OF_IT else target, "stop", needs=vague)  # "the bench should not go"
+            yield pace(MOVING if target == ALL_OF_IT else target, "stop", needs=vague)  # "the bench should not go"
         return
     if sense == "stop" and manner.state in ("", "still") and manner.only("state", "doing", "refrains"):
-        yield _pace(target, "stop", needs=clause.ordered and _bare_name(clause))
+        yield pace(target, "stop", needs=clause.ordered and _bare_name(clause))
     elif sense == "stop" and manner.at in _BESIDE and manner.only("goal", "at", "whom", "state"):
         during = {"state": "closest", "anchors": (manner.whom,), "part": "from"}
         spans = moment.start is not None and moment.stop is not None  # then it only says where it is
-        yield _pace(target, "stop") if spans else replace(_pace(target, "stop"), during=during)
+        yield pace(target, "stop") if spans else replace(pace(target, "stop"), during=during)
     meant = clause.kept or sense != "be" or clause.aux != () or not moment.empty  # "the still ball" says nothing
     rests = sense in ("stay", "be", "continue") and manner.state == "still" and manner.only("state") and meant
     refrains = manner.refrains or (manner.doing != "" and clause.verb is not None and clause.verb.first != "keep")
@@ -265,7 +294,7 @@ def _stopped(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command
     rests |= stays and manner.only() and "there" in clause.tail
     rests |= stays and manner.goal != "" and manner.only("goal", "at", "whom")
     if rests or (kept and manner.only("doing", "refrains")) or (off and _runs(clause)):
-        yield _pace(target, "stop")
+        yield pace(target, "stop")
 
 
 _BESIDE = bag("on over at by near before inside in beside against") | {
@@ -289,7 +318,7 @@ def _continued(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Comma
     sense, fields = clause.sense, manner.fields
     if clause.negated:
         if sense == "stop" and manner.only("doing"):
-            yield _pace(clause.target, "go_on")
+            yield pace(clause.target, "go_on")
         return
     on = (sense == "continue" and (not clause.ordered or manner.doing != "")) or (
         sense == "stay" and manner.doing != ""
@@ -298,7 +327,7 @@ def _continued(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Comma
     on |= sense in MOTION and clause.form == "ing" and moment.always and not fields
     on |= sense in MOTION and bool({"keep", "keeps"} & set(clause.aux))
     if on and not manner.refrains and manner.only("doing", "endless", "state") and manner.state in ("", "moving"):
-        yield _pace(clause.target, "go_on")
+        yield pace(clause.target, "go_on")
 
 
 def _begun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
@@ -307,12 +336,14 @@ def _begun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
         return
     if manner.last and sense in (*MOTION, "start") and manner.only("last", "doing") and not target.moving:
         others = MOVING.model_copy(update={"exclude": (target,)})
-        yield replace(_pace(target, "begin"), during={"state": "moving", "of": others, "part": "after"})
+        yield replace(pace(target, "begin"), during={"state": "moving", "of": others, "part": "after"})
     on = (sense == "on" and manner.only()) or (sense == "be" and manner.state == "on" and manner.only("state"))
     if on and _runs(clause):
-        yield _pace(target, "begin", needs=True)
+        yield pace(target, "begin", needs=True)
     if sense == "arrive" and manner.only() and (moment.start is not None or moment.lasting is not None):
-        yield replace(_pace(target, "begin", needs=True), ends=True)
+        yield replace(pace(target, "begin", needs=True), ends=True)
+    if moment.lasting is not None and not moment.taken and moment.start is None and clause.aspect != "event":
+        return  # "it runs for two seconds" does not tell when it stops
     starts = sense == "start" and manner.only("doing")
     moves = (
         sense in MOTION
@@ -324,7 +355,7 @@ def _begun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     drops = sense == "fall" and clause.ordered and not manner.fields
     lasts = clause.sense in ("be", "do") and clause.aspect == "event" and moment.taken and not manner.fields
     if starts or moves or drops or lasts:
-        yield _pace(target, "begin", needs=True)
+        yield pace(target, "begin", needs=True)
 
 
 # -- doors, drawers and lids -------------------------------------------------------------------------------------------
@@ -355,12 +386,17 @@ def _opened(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]
         amount["distance"] = manner.length
     elif manner.share is not None or manner.percent is not None:
         amount["share"] = min(manner.share or manner.percent or 1.0, 1.0)
+    if change == "open" and moment.start == "end" and not (clause.kept or sense in ("open", "continue", "stay")):
+        return  # "it is to be open at the end" says nothing of when it opens
     gap = change == "close" and target.last  # "close it" may be said of a gap
     kept = clause.kept or sense in ("stay", "continue")
+    if kept and change == "open" and moment.start == "end" and moment.stop is None:
+        yield replace(_held_open(target), timeless=True)
+        return
     if kept and change == "open" and not moment.empty:
         return  # "stay open until the end" says nothing of when it opens
     if kept and moment.stop is not None:
-        yield _pace(target, "stop")
+        yield pace(target, "stop")
     elif kept and change == "open" and moment.empty and not moment.always and not amount and not clause.kept:
         yield _held_open(target)
     else:
@@ -388,9 +424,14 @@ def _gone(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     if clause.negated or sense not in ("go", "move", "rise", "sink", "fall", "be", "spin", "look"):
         return
     if sense in ("spin", "look"):
-        if sense == "spin" and manner.degrees is not None and manner.only("degrees", "way"):
+        if (
+            sense == "spin"
+            and manner.degrees is not None
+            and "instead" not in clause.tail
+            and manner.only("degrees", "way")
+        ):
             side = f" {manner.way}" if manner.way in ("to the left", "to the right") else ""
-            yield _said(clause, "path", f"rotate {{}} {manner.degrees:g} degrees{side}", needs=True)
+            yield plain(clause, "path", f"rotate {{}} {manner.degrees:g} degrees{side}", needs=True)
         return
     if not manner.only("goal", "at", "whom", "way", "length", "backwards", "doing") or (
         sense == "be" and not manner.goal
@@ -401,7 +442,11 @@ def _gone(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
         way = {"rise": "up", "sink": "down"}.get(sense, "")
         if sense == "fall" and manner.length is not None:
             way = "down"
-    if (not manner.goal and not way) or (manner.goal and manner.at in ("off",)):
+    if sense == "fall" and way in ("to the left", "to the right", "forward"):
+        return  # it tips over
+    if (not manner.goal and not way) or (
+        manner.goal and manner.at in ("off", "around", "round", "after", "with", "along with", "together with")
+    ):
         return
     far = "" if manner.length is None else f" {manner.length.value:g} {manner.length.unit}"
     to = f" {manner.goal}" if manner.goal else f" {way}"
@@ -409,7 +454,7 @@ def _gone(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     lively = (
         not clause.ordered and sense != "be" and first not in _PLAIN and not (clause.verb and clause.form == "past")
     )
-    yield _said(clause, "path", f"move {{}}{far}{to}" if manner.goal else f"move {{}}{to}{far}", needs=not lively)
+    yield plain(clause, "path", f"move {{}}{far}{to}" if manner.goal else f"move {{}}{to}{far}", needs=not lively)
 
 
 # -- how it looks ------------------------------------------------------------------------------------------------------
@@ -434,20 +479,21 @@ def _hidden(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]
     ):
         return
     if sense == "fade":
-        yield _said(clause, "look", "hide {}", fades=True)
+        yield plain(clause, "look", "hide {}", fades=True)
         return
-    yield _said(clause, "look", "hide {}", needs=True, inverse=shown != clause.negated)
+    yield plain(clause, "look", "hide {}", needs=True, inverse=shown != clause.negated)
 
 
 def _colored(clause: Clause) -> Iterator[Command]:
     """ "the vase turns blue", "bed in navy blue": what the plain grammar reads as a change of its look."""
     if (
-        clause.sense not in ("look", "paint", "be", "stay", "show", "change", "fade")
+        clause.sense not in ("look", "paint", "be", "stay", "show", "change", "fade", "blink")
         or clause.negated
         or not clause.tail
         or clause.aspect
     ):
         return
+    every = {"every": 0.5} if clause.verb is not None and clause.verb.first in ("blink", "flicker") else {}
     tail = re.sub(
         r"^(?:(?:in|into|to|all|completely|entirely|painted|coloured|colored|a|an|of|look|dyed|tinted|be|the "
         r"colou?r|turned|fully) )+",
@@ -456,27 +502,11 @@ def _colored(clause: Clause) -> Iterator[Command]:
     )
     tail = re.sub(r" (?:in colou?r|too|as well|all over)$", "", tail)
     for verb in ("make", "paint"):
-        yield _said(clause, "look", f"{verb} {{}} {tail}")
+        yield plain(clause, "look", f"{verb} {{}} {tail}", **every)
 
 
-def _said(clause: Clause, kind: Kind, text: str, **more: Any) -> Command:
-    """A plain command, with `{}` for what it is about."""
-    moving = clause.target.moving is not None
-    name = "it" if moving else articled(clause.np)
-    return Command(kind=kind, text=text.format(name), target=clause.target if moving else None, **more)
-
-
-def articled(np: str) -> str:
-    """A name with an article, as the rest of the grammar wants it."""
-    if np in ("him", "her", "he", "she"):
-        return "it"
-    return np if _DETERMINED.match(np) else f"the {np}"
-
-
-_DETERMINED = re.compile(
-    r"^(?:the|a|an|this|that|these|those|all|every|both|my|our|it|them|each|any|everything|whatever|anything|one|"
-    r"two|three)\b"
-)
 _RULES: tuple[Rule, ...] = (
-    _paced, _shifted, _reversed, _returned, _opened, _spun, _stopped, _continued, _gone, _begun, _hidden,
+    movements.mirrored, movements.repeated, movements.swayed, movements.tipped, movements.orbited, movements.followed,
+    movements.parted, movements.blinked, _paced, _shifted, _reversed, _returned, _opened, _spun, _stopped, _continued,
+    _gone, _begun, _hidden,
 )  # fmt: skip

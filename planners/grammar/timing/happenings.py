@@ -90,6 +90,9 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     def who(phrase: str) -> Query | None:
         return _who(phrase, thing)
 
+    if word in ("each time", "every time") and (once := clause_of("once", said, thing)) is not None:
+        return None if once.part == "after" else clause_of("when", said, thing)  # of several ends only one is known
+
     for clause in told(said.split(" "), who):
         for manner in manners.read(clause.tail, who):
             found = _state(clause, manner)
@@ -104,7 +107,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     return _touching(word, said, who) or _noun_event(word, said, who)
 
 
-_OWN = ("moving", "still", "falling", "turning", "open")
+_OWN = ("moving", "still", "falling", "turning", "open", "fully_open")
 
 
 def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
@@ -119,7 +122,7 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
         return "moving", _ENDED
     if sense in ("be", "stay", "look", "stop") and fields == {"state"}:
         if manner.state == "open":
-            return ("moving", _ENDED) if _FULLY.search(" ".join(clause.tail)) else ("open", _HOLDS)
+            return ("fully_open" if _FULLY.search(" ".join(clause.tail)) else "open"), _HOLDS
         states: dict[str, tuple[str, _Course]] = {
             "closed": ("open", _LACKS),
             "still": ("still", _LASTS),

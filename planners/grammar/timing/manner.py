@@ -40,6 +40,11 @@ class Manner:
         doing: the sense of "to swing", "rolling"; `refrains`: "from rolling".
         lasting: seconds that are named without a word for what they are ("delay it by 2 s").
         last: after all others.
+        forth: there and back; `looping`: again and again.
+        instead: to its other side ("right instead of left").
+        clockwise: "clockwise" or "counter-clockwise".
+        far: whether a share is of its way ("half as far"), `halfway` where it is told as a place.
+        by: whether an amount is a difference ("by a third") or what it comes to ("to a third"), if that is said.
     """
 
     times: float | None = None
@@ -66,11 +71,18 @@ class Manner:
     refrains: bool = False
     lasting: float | None = None
     last: bool = False
+    by: Literal["", "by", "to"] = ""
+    forth: bool = False
+    looping: bool = False
+    instead: bool = False
+    clockwise: str = ""
+    far: bool = False
+    halfway: bool = False
 
     @property
     def fields(self) -> frozenset[str]:
         """The names of what is said."""
-        return frozenset(k for k, v in vars(self).items() if v not in (None, "", False))
+        return frozenset(k for k, v in vars(self).items() if k not in ("by", "halfway") and v not in (None, "", False))
 
     def only(self, *names: str) -> bool:
         """Whether nothing else is said."""
@@ -112,7 +124,7 @@ _STATES: dict[State, str] = {
     "off": "off", "on": "on",
 }  # fmt: skip
 _FIXED: tuple[tuple[str, dict[str, Any]], ...] = (
-    (r"in slow motion|in slo ?mo", {"times": 0.5, "compare": "speed"}),
+    (r"in slow ?motion|in slow? ?-? ?mo", {"times": 0.5, "compare": "speed"}),
     (r"(?:at )?double time", {"times": 2.0, "compare": "speed"}),
     (r"(?:the )?(?:other|opposite|wrong) way (?:round )?in time|backwards?(?: in time)?|in reverse(?: order)?|reversed|"
      r"rewound|back to front|from (?:the )?(?:end|finish) to (?:the )?(?:start|beginning)|from back to front",
@@ -127,6 +139,20 @@ _FIXED: tuple[tuple[str, dict[str, Any]], ...] = (
      r"the (?:same )?way (?:it|he|she|they) came| to (?:the |its |his )?(?:start|beginning|origin|home|(?:starting|old|"
      r"original|first|initial) (?:point|position|place|spot)))?|the way (?:it|he|she|they) came|(?:to )?where (?:it|he|"
      r"she|they) came from", {"back": True}),
+    (r"(?:back and forth|forwards? and back(?:wards?)?|to and fro|there and back(?: again)?|forth and back|in and "
+     r"out|out and "
+     r"in|up and down again)(?: (?:again and again|repeatedly|over and over(?: again)?))?", {"forth": True}),
+    (r"(?:again and again|over and over(?: again)?|repeatedly|in a (?:continuous |endless )?loop|on (?:a )?(?:loop|"
+     r"repeat)|"
+     r"on loop|in loops?)", {"looping": True}),
+    (r"to the opposite side", {"instead": True}),
+    (r"half as far|half (?:of )?(?:the|its|that) (?:way|distance|length|path)", {"share": 0.5, "far": True}),
+    (r"(?:at |by )?(?:halfway|half way|midway)(?: (?:through|along|of it|there|down|up|over|across))?(?: (?:its|"
+     r"the) (?:way|path|"
+     r"route))?", {"share": 0.5, "halfway": True}),
+    (r"in half", {"share": 0.5}),
+    (r"in half (?:of )?(?:the|its) time", {"times": 2.0, "compare": "speed"}),
+    (r"in (?:twice|double) (?:the|its) time", {"times": 0.5, "compare": "speed"}),
     (r"halfway|half way|half|partway|part way|partly|half open|midway", {"share": 0.5}),
     (r"a crack|slightly ajar", {"share": 0.1}), (r"a little|a bit|slightly|a little bit", {"share": 0.25}),
     (r"ajar", {"share": 0.15, "state": "open"}),
@@ -164,11 +190,13 @@ _PER = re.compile(r"^(?:full |complete |whole )?(?:turns? |revs? |rotations? |re
                   r"\d+(?:\.\d+)?) )?(?P<unit>seconds?|secs?|s|minutes?|min|m)(?= |"
                   r"$)")  # fmt: skip
 _ROUNDS = re.compile(
-    r"^(?:full |complete |whole )?(?:turns?|revs?|rotations?|revolutions?|rounds?|times?|spins?|laps?|circles?|twirls?|"
+    r"^(?:full |complete |whole )?(?:turns?|hops?|jumps?|shakes?|bounces?|cycles?|revs?|rotations?|revolutions?|"
+    r"rounds?|times?|spins?|laps?|circles?|twirls?|"
     r"loops?|pirouettes?)(?= |$)"
 )
 _PREPOSITIONS = (
-    "toward|towards|in direction of|in the direction of|into the direction of|to|up to|over to|across to|down to|"
+    "around|round|all around|all round|along with|together with|with|after|toward|towards|in direction of|in the "
+    "direction of|into the direction of|to|up to|over to|across to|down to|"
     "out to|back to|along to|"
     "onto|on to|on top of|on|into|in|inside|next to|beside|by|near|close to|behind|in front of|under|underneath|below|"
     "beneath|against|above|over|across|away from|at|in the middle of|in the center of|in the centre of|on the "
@@ -218,13 +246,15 @@ def _read(said: str, so_far: Manner, thing: Thing, depth: int) -> Iterator[Manne
         return
     if depth > 9:
         return
-    for fields, rest in _starts(said, thing):
-        clash = any(getattr(so_far, k) not in (None, "", False) and k not in ("compare", "degree") for k in fields)
+    for fields, rest in starts(said, thing):
+        clash = any(
+            getattr(so_far, k) not in (None, "", False) and k not in ("compare", "degree", "by") for k in fields
+        )
         if not clash:
             yield from _read(rest, replace(so_far, **fields), thing, depth + 1)
 
 
-def _starts(said: str, thing: Thing) -> Iterator[tuple[dict[str, Any], str]]:
+def starts(said: str, thing: Thing) -> Iterator[tuple[dict[str, Any], str]]:
     """What the first words say, and the words behind them."""
     if found := _RPM.match(said):
         yield {"rate": float((found["a"] or found["b"]).replace(",", ".")) / 60}, said[found.end() :]
@@ -268,7 +298,8 @@ def _numbers(said: str) -> Iterator[tuple[dict[str, Any], str]]:
                 yield {"rate": turns / _seconds(per)}, rest[per.end() :]
         if found.kind in ("NUMBER", "FRACTION") and (rounds := _ROUNDS.match(rest)):
             yield {"turns": found.value}, rest[rounds.end() :]
-        yield from (({**f}, rest) for f in _kinds(found, behind[0]))
+        by = next(({"by": w} for w in ("by", "to") if w in words[:skip]), {})
+        yield from (({**f, **by}, rest) for f in _kinds(found, behind[0]))
         return
     if (a := re.match(r"^(?:one|a|an|each|every) (?:full )?(?:turn|rotation|revolution|round|spin)(?= )", said)) and (
         per := _PER.match(said[a.end() :].strip())

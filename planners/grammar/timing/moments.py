@@ -28,6 +28,7 @@ class Moment:
         taken: whether `lasting` is how long a change takes ("in two seconds") and not how long it holds ("for two").
         slowly: whether it is to change little by little.
         always: whether it says that it holds at all times.
+        own: whether it is to be when the thing moves anyway ("instead of to the wall").
         said: the words that were cut.
     """
 
@@ -38,12 +39,13 @@ class Moment:
     slowly: bool = False
     quickly: bool = False
     always: bool = False
+    own: bool = False
     said: tuple[str, ...] = ()
 
     @property
     def told(self) -> bool:
         """Whether it says when, how long, or that it is to be slow."""
-        return self.slowly or not (self.start is None and self.stop is None and self.lasting is None)
+        return self.slowly or self.own or not (self.start is None and self.stop is None and self.lasting is None)
 
     @property
     def empty(self) -> bool:
@@ -246,7 +248,9 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
     (r"(?P<a>halfway) (?:through|in)(?: (?:it|the (?:clip|scene|film|video|animation)))?", _start),
 )
 _COMPILED = tuple((re.compile(rf"(?:^|(?<= )){pattern}(?= |$)"), made) for pattern, made in _PHRASES)
+OWN = "in its own time"  # what `restated` makes of "instead of to the wall"
 _ADVERBS = (
+    (re.compile(rf"(?:^|(?<= )){OWN}(?= |$)"), "own"),
     (re.compile(rf"(?:^|(?<= )){_ALWAYS}(?= |$)"), "always"),
     (re.compile(rf"(?:^|(?<= ))(?<!more )(?<!less )(?<!too )(?<!as )(?<!very ){_SLOWLY}(?= |$)"), "slowly"),
     (re.compile(rf"(?:^|(?<= )){_QUICKLY}(?= |$)"), "quickly"),

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import cache
 
 from pydantic import BaseModel, ValidationError
 
@@ -16,21 +17,27 @@ from ....gaussians import late_re as re
 from ....gaussians.errors import UserError
 from ....gaussians.language.query.nested import queries, with_queries
 from ....gaussians.language.query.query import Query
+from ....gaussians.world import kinds
+from ....gaussians.world.spelling import best_slip
 from ....tools.registry import OPS
 from ....tools.registry import parse as parse_op
 from ....tools.when import During, Part, When
 from ..parsing import Refusal
 from ..restating.speech.frames import unframed
+from ..tagging.spelling import is_word
 from ..tagging.words import bag, split
 from ..vocabulary.nouns import is_known
+from ..vocabulary.quantities import NUMBERS
 from . import happenings, moments
 from .clauses import AUXILIARIES
-from .commands import Command, Fields, commands
+from .command import Command, Fields
+from .commands import commands, loose_commands
 from .happenings import IT, Happening
 from .manner import MOTION
 from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
 from .restated import restated
-from .verbs import SENSES, any_of, has_form
+from .sentences import folded
+from .verbs import SENSES, any_of, forms, has_form
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
 
@@ -48,6 +55,7 @@ _TIMELY = (
     *(m for m in MOTION if m != "move"),
     *("stop", "prevent", "stay", "start", "continue", "faster", "slower", "double", "triple", "halve", "reverse"),
     *("delay", "advance", "play", "fade", "off", "on", "hide", "show"),
+    *("tip", "orbit", "follow", "repeat", "blink", "cross"),
 )
 _JOINT = r"(?: ,)*(?: (?:and|then|and then|after(?: that|wards)?|but|finally|or)(?: ,)*)+ "
 _NORMAL = (
@@ -68,8 +76,11 @@ _REMARKS = re.compile(  # what goes without saying behind a time: "..., then bac
     rf"again)?|"
     rf"(?:it |to |let it |i want it )*(?:stays?|remains?|holds?|keeps?|hold|keep|leave|stand|rest|lies?|waits?|"
     rf"stops?)(?: "
-    rf"(?:it|there|"
+    rf"(?:it|there|red|blue|green|yellow|white|black|pink|purple|orange|gone|hidden|invisible|him|her|them|up|off|out|down|where|is|are|"
     rf"still|so|open|shut|closed|like that|that way|in place|put|there for good|that))*|"
+    rf"(?:keep|let|have) (?:it|him|her|them) {any_of(MOTION, 'ing')}(?: (?:at|with) the (?:same|usual|normal) "
+    rf"(?:speed|pace|rate))?(?: on)?|(?:it |to |let it )*{any_of(MOTION, 'plain', 's')} (?:further|farther|along|"
+    rf"onwards?|on again)|"
     rf"(?:only (?:then|afterwards) )?(?:(?:let it |let him |let her |it )?(?:opens?|goes?|moves?|rolls?|walks?|drives?|"
     rf"falls?|spins?|turns?|runs?)(?: on)?|(?:let it |it )?(?:starts?|begins?) (?:to )?"
     rf"{any_of(MOTION, 'plain', 'ing')})|"
@@ -89,8 +100,9 @@ _BACK_WHEN = re.compile(
     r"left|is gone|ends?|does not|is past|has passed|moves? on|rolls? off)(?: it)?$"
 )
 _NOISE = re.compile(
-    r"(?:^| )(?:lol|haha|pls|plz|please|thanks|thank you|dear|mate|ok|okay|you know|cheers|kindly|if you can|if "
+    r"(?:^| )(?:lol|haha|done|pls|plz|please|thanks|thank you|dear|mate|ok|okay|you know|cheers|kindly|if you can|if "
     r"possible|"
+    r"can u|could u|would u|u|hmm+|um+|uh|er|btw|"
     r"would you mind|would you|could you|honey|bro|dude|hey|hi)(?= |$)"
 )
 _RANGE = re.compile(  # "2s-3s", "from 0-1"
@@ -102,8 +114,11 @@ _RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], .
     # what people write, and the same in words that the readers know
     (re.compile(pattern), plain)
     for pattern, plain in (
-        (r"(?<=\d) ?= ?", " "), (r"(?: [.!?])+$", ""), (r" ?[!?] ?", " . "), (r"^(?P<x>[\w' ]+?) : ", r"\g<x> "),
-        (r"\bits (?=(?:on|in|under|at|near|next|behind|still|not|over|off|open|closed|\w+ing)\b)", "it is "),
+        (r"(?<=\d) ?= ?", " "), (r"(?: [.!?])+$", ""), (r" ?[!?] ?", " . "), (r"^(?P<x>[\w'.= ]+?) : ", r"\g<x> "),
+        (r"\bits (?=(?:fully|completely|wide|all the way|halfway|on|in|under|at|near|next|behind|still|not|over|off|"
+         r"open|closed|\w+ing)\b)", "it is "),
+        (r"\b(?P<w>after|before) (?=\w+ing\b)(?!(?:after|before) (?:being|having|everything|anything|nothing|something|"
+         r"evening|morning|spring|ceiling|painting)\b)", r"\g<w> it is "),
         (r"\b(?P<w>while|when|once|until|whenever|as long as) (?=(?:on|in|under|touching|still|standing still|open|"
          r"closed|"
          r"moving|(?!the|every|any|nothing|some)\w+ing)\b(?! (?:is|has|starts|stops)))", r"\g<w> it is "),
@@ -137,7 +152,8 @@ _RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], .
     )
 )  # fmt: skip
 _THINGS_ALL = (
-    r"(?:whatever|anything|everything|any thing|every thing|all of the things|all (?:the )?(?:things|objects|stuff)|"
+    r"(?:whatever|what|anything|everything|any thing|every thing|all of the things|all (?:the )?(?:things|objects|"
+    r"stuff)|"
     r"the "
     r"(?:things?|objects?|stuff)|things|stuff|every object|objects|all)"
 )
@@ -145,7 +161,9 @@ _DETERMINERS = r"(?:the|every|all|all the|any|that|this|both|each)"
 _MOVES = (
     rf"(?:is |are |s |still )*(?:{any_of(MOTION, 'plain', 's', 'ing')}|in motion|on the move|not standing still|"
     rf"animated|not "
-    rf"static|not still)(?: around| about| down)?"
+    rf"static|not still)(?: around| about| down| here| there| (?:across|over|on|along|through|in|about|around) "
+    rf"(?:the )?"
+    rf"(?:floor|ground|room|scene|air|picture|clip|here|there))*"
 )
 _RESTS = (
     r"(?:(?:is |are |s )?(?:standing still|stands? still|static|stationary|not moving|immobile|still|motionless|"
@@ -171,7 +189,7 @@ _CONTRARY = re.compile(
 )
 _RIDDING = re.compile(r"^(?:delete|remove|take|get rid of|throw|put|move|erase|bin|save|catch)\b")
 _REMARK = re.compile(
-    r"^(?P<np>.+?) (?:is|are|looks?|seems?|opens?|starts?|moves?|goes|comes?|turns?|feels?)(?: \w+){0,2} (?:too|"
+    rf"^(?P<np>.+?) (?:is|are|looks?|seems?|starts?|feels?|{any_of(MOTION, 's', 'plain')})(?: \w+){{0,2}} (?:too|"
     r"much too|way "
     r"too|so|very|not|really|a bit) .+$|^(?:leave|keep|hold) (?P<kept>.+?) (?:up )?(?:on|in|at|under|over|by|there|"
     r"where)\b.*$"
@@ -229,12 +247,17 @@ class TimeReader:
             return None
         if _CONTRARY.search(said):
             raise Refusal("it cannot be both at the same time", said, verdict="impossible")
+        said = self._unfronted(said)
         found = self._whole(said)
         if found is not None:
             return found
         parts = _parts(said)
         if len(parts) > 1 and (joined := self._joined(parts)) is not None:
             return joined
+        if (spelled := _spelled(said)) != said and (right := self._whole(spelled)) is not None:
+            return right
+        if (loose := self._loosely(said)) is not None:
+            return None if all(op.get("when") is None for op in loose) and self._is_plain(cleaned) else loose
         numbers = moments.TIMED.search(said)
         if numbers is not None:
             raise Refusal(f"what is to happen “{numbers[0]}” is not understood", numbers[0])
@@ -262,9 +285,11 @@ class TimeReader:
         words = phrase.split()
         if not words or len(words) > 9 or _NEVER & set(words) or words[0] in _NEVER_FIRST or words[-1] in _NEVER_LAST:
             return None
-        if _SECONDS.search(phrase) or (len(words) > 1 and _is_verb(words[0])):
+        if _PART_OF_TIME.search(phrase) or _SECONDS.search(phrase) or (len(words) > 1 and _is_verb(words[0])):
             return None
         for i, word in enumerate(words):
+            if i == len(words) - 1 and i and kinds.find(" ".join(words[1 if _DETERMINED.match(words[0]) else 0 :])):
+                continue  # "the tv stand"
             joined = i > 0 and words[i - 1] in ("and", "or")
             if _is_verb(word) and (len(words) == 1 or joined or (i and self.thing(" ".join(words[:i])))):
                 return None  # "the robot stop", "the rug and stay there"
@@ -281,6 +306,18 @@ class TimeReader:
         if found is None or (not found.text and not found.last and not found.colors) or found.invert or found.grow:
             return None
         return found if moves is None else _which_moves(found, moves)
+
+    def _unfronted(self, said: str) -> str:
+        """An order with its object in it: "whatever walks there, make it pink"."""
+        if (found := _FRONTED.match(said)) is None:
+            return said
+        np = _HERE.sub("", _bare(found["np"]))
+        named = self.thing(np)
+        if named is None or named.last:
+            return said
+        if named.moving and not named.text:
+            np = "everything that moves"
+        return f"{found['order']}{np}{found['rest']}"
 
     # -- one command -------------------------------------------------------------------------------------------------
 
@@ -325,6 +362,27 @@ class TimeReader:
                 if found:
                     return found
         return self._about_moving(said)
+
+    def _is_plain(self, cleaned: str) -> bool:
+        """Whether the rest of the grammar understands an instruction."""
+        with suppress(Refusal, UserError):
+            return not is_misread(self._understand(cleaned))
+        return False
+
+    def _loosely(self, said: str) -> tuple[Fields, ...] | None:
+        """One command about motion in any order of its words; None if its readings differ in what is to be done."""
+        for rest, moment, happening in self._readings(said):
+            told, found = moment.told or happening is not None, list[tuple[Fields, ...]]()
+            if happening is not None and happening.said.startswith("before ") and _RIDDING.match(rest):
+                continue
+            for command, when in loose_commands(_bare(rest), self.thing, moment, told):
+                with suppress(Refusal, UserError, ValidationError):
+                    if ops := self._made(command, when, happening):
+                        found.append(ops)
+            if found:
+                meant = {tuple((op["op"], op.get("change")) for op in ops) for ops in found}
+                return found[0] if len(meant) == 1 else None
+        return None
 
     def _readings(self, said: str) -> Iterator[tuple[str, Moment, Happening | None]]:
         """The words without what they say of time, and what that is; the most cut first."""
@@ -386,6 +444,14 @@ class TimeReader:
             if re.search(r"\b(?:off|out|on)$", command.text) and any(op["op"] in ("delete", "relight") for op in ops):
                 return None  # "the light should go out"
             kind = "path" if ways else kind
+        if command.timeless:
+            moment = Moment()
+        if command.every is not None:
+            lasting = command.blinks * command.every if command.blinks else moment.lasting
+            moment = replace(moment, lasting=lasting, taken=False, slowly=False)
+            kind = "motion"  # neither little by little nor a way
+        if command.always_lasts and moment.stop is None and moment.lasting is None:
+            moment = replace(moment, stop="end")
         if command.fades:
             moment = replace(moment, slowly=True)
         if command.during is not None:
@@ -401,12 +467,20 @@ class TimeReader:
             and all(op.get("change") in ("stop", "begin") for op in ops)
         ):  # "stop when it is turning" begins then
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
+        waits = moment.lasting is not None and all(op.get("change") == "stop" for op in ops)
+        if happening is not None and waits and happening.during.part == "until":  # "pause for 1 s before it turns"
+            happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
         if moment.taken and moment.lasting is not None and all(op.get("change") == "speed" for op in ops):
             ops = [
                 {k: v for k, v in op.items() if k != "factor"} | {"change": "begin"} for op in ops
             ]  # "faster, in 1 s"
         times = _inverse(moment, happening) if command.inverse else [(moment, happening)]
-        return tuple(op for time in times for op in self._with_time(ops, *time, kind)) or None
+        made = tuple(op for time in times for op in self._with_time(ops, *time, kind))
+        if command.every is not None:
+            made = tuple(
+                {**op, "when": (op.get("when") or When()).model_copy(update={"every": command.every})} for op in made
+            )
+        return made or None
 
     def _with_time(
         self, ops: Sequence[Fields], moment: Moment, happening: Happening | None, kind: str
@@ -463,6 +537,13 @@ class TimeReader:
         return None
 
 
+_FRONTED = re.compile(
+    r"^(?P<np>.+?)(?: ,)? (?:(?:could|can|would|will) you |please |just |then |i want (?:you to )?|let us )*"
+    r"(?P<order>(?:make|turn|paint|colou?r|dye|hide|remove|delete|stop|freeze|slow|speed|move|let|have|give|spin|open|"
+    r"close|play|keep|start|delay|fade|show|pause|get rid of|reverse|lift|push|pull|slide) )"
+    r"(?:it|that|them|him|her)(?P<rest> (?!(?:is|are|has|was|moves?|should|does)\b).*)$"
+)
+_HERE = re.compile(r"(?: (?:over )?(?:here|there)|,)+$")
 _DETERMINED = re.compile(
     r"^(?:the|all|every|both|my|our|these|those|each|any|everything|one|two|three|four|five|his|her|their|its)\b"
 )
@@ -472,6 +553,7 @@ _SECONDS = re.compile(r"\b(?:\d\S* ?)(?:s|secs?|seconds?)\b")
 _THINGS = bag("sink mirror switch block swing slide paint light float lift step lead brake sail")  # names of verbs
 
 
+_PART_OF_TIME = re.compile(r"\b(?:start|beginning|speed|motion|movement) of\b")
 _AT_A_TIME = re.compile(r"at (?!once\b)")
 _COMES_BACK = re.compile(r"\b(?:back|returns?|comes?|again|normal|reappears?|appears?|shows?)\b")
 _GOES_ON = re.compile(
@@ -488,12 +570,34 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
     """
     if _COMES_BACK.search(remark):
         return command.kind == "look" and not command.inverse
+    if re.search(rf"\b(?:keep|let|have) (?:it|him|her|them) {any_of(MOTION, 'ing')}", remark):
+        return {op.get("change") for op in command.ops} == {"go_on"}
     if re.search(r"\bstops?\b", remark):
         return command.kind == "path"
     changes = {op.get("change") for op in command.ops}
     if changes and changes <= ({"begin", "open", "stop"} if ends else {"begin", "open"}):
         return True
     return (changes == {"stop"} and re.search(r"\bnot\b", remark) is not None) or not _GOES_ON.search(remark)
+
+
+def _spelled(said: str) -> str:
+    """The words with those that are none as the word of time or motion from which they differ by a slip."""
+    known = _timely_words()
+    return " ".join(w if w in known or len(w) < 3 or not w.isalpha() or is_word(w) else best_slip(w, known) or w
+                    for w in said.split(" "))  # fmt: skip
+
+
+@cache
+def _timely_words() -> frozenset[str]:
+    verbs = {word for sense in SENSES.values() for verb in sense.split(", ") for word in verb.split()}
+    inflected = {form for verb in verbs if verb.isalpha() for form, _ in forms(verb)}
+    return frozenset(inflected | _SPELLED_WORDS | set(NUMBERS))
+
+
+_SPELLED_WORDS = bag(
+    "the and should must while until after before between during when once then than second seconds twice times half "
+    "speed faster slower later earlier backwards slowly quickly everything whole again only from with into"
+)
 
 
 def _is_verb(word: str) -> bool:
@@ -525,6 +629,7 @@ def _tidy(said: str) -> str:
     said = restated(said)
     for pattern, plain in _RESTATED:
         said = pattern.sub(plain, said)
+    said = folded(said)
     said = re.sub(
         r"^(?:can|could|would|will|may|should|must|shall) (?=(?:the|my|our|this|that|all|every|it) )",
         "",
@@ -592,6 +697,8 @@ def is_misread(ops: Sequence[Fields]) -> bool:
     names = [q.text for op in ops for v in op.values() if isinstance(v, BaseModel) for _, q in queries((v,))]
     names += [q.get("text", "") for op in ops for q in _plain_queries(op)]
     names += [str(op.get("asset", "")) for op in ops]
+    if any(_TIME_NOUNS & set(str(op.get("asset", "")).split()) for op in ops):
+        return True  # "put a pause of 1 s into it"
     last = [name.split()[-1] for name in names if name.split()]
     return any(word in _NO_NAMES or (_is_verb(word) and not is_known(word)) for word in last)
 
@@ -603,8 +710,10 @@ def _is_strange(ops: Sequence[Fields]) -> bool:
     return any(len(w) > 1 and (not is_known(w[-1]) or AUXILIARIES & set(w)) for w in words)
 
 
+_TIME_NOUNS = bag("pause break delay stop halt faster slower second seconds")
 _NO_NAMES = bag(
-    "end start beginning motion slow once twice while finish closed falls walks opens stops moves appear flash"
+    "end start beginning motion slow once twice while finish closed falls walks opens stops moves appear flash blink "
+    "blinks flashes knock slower faster speed"
 )
 
 
@@ -648,7 +757,7 @@ def _when(moment: Moment, during: During | None, kind: str, op: Fields) -> When 
         lasting = SLOW if moment.slowly else BRIEF if moment.quickly and kind == "path" else None
     stop: End | None = None if lasting is not None else moment.stop
     if kind == "path" and start is None and stop is None and lasting is None and during is None:
-        start, stop = 0.0, "end" if moment.always else None
+        return When(stop="end" if moment.always else None)
     if start is None and stop is None and lasting is None and during is None:
         return None
     return When(start=start, stop=stop, lasting=lasting, during=during, gradual=gradual)

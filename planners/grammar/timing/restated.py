@@ -9,10 +9,11 @@ from collections.abc import Callable
 
 from ....gaussians import late_re as re
 from .manner import MOTION
-from .moments import DURATION
+from .moments import DURATION, OWN
 from .verbs import SENSES, any_of, forms
 
 _PLAIN = any_of(MOTION, "plain")
+_S = any_of(MOTION, "s")
 _ING = any_of((*MOTION, "stop"), "ing")
 _IT = "(?:it|he|she|they)"
 _EVENT = "(?:motion|movement|animation|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|move)"
@@ -38,6 +39,17 @@ def _between(found: re.Match[str]) -> str:
         before = re.sub(rf" (?={_PLAIN}$)", " start to ", before)
     ends = [end if re.search(r"\bs(?:ec|$)", end) else f"{end} seconds" for end in (found["a"], found["b"])]
     return f"{before} from {ends[0]} to {ends[1]}"
+
+
+def _plain_of(verb: str) -> str:
+    """A verb in its plain form."""
+    return next((v for vs in SENSES.values() for v in vs.split(", ") for form, _ in forms(v) if form == verb), verb)
+
+
+def _unwished(said: str) -> str:
+    """A name without the wish before it, and without "should" behind it."""
+    said = re.sub(r"^(?:i|we) (?:would like|want|would love|would prefer|need) |^(?:let|make|have) ", "", said)
+    return re.sub(r" (?:should|must|shall|ought|needs|has)(?: to)?$", "", said)
 
 
 def _counted(found: re.Match[str]) -> str:
@@ -66,6 +78,33 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"^be so (?:kind|good|nice) as to ", ""),
     (rf"^(?:let|have|make) (?P<np>the [a-z ]+?) (?:run|play|do|make) its (?:{_EVENT}|path|way) "
      r"(?:backwards?|in reverse)$", r"play \g<np> 's motion backwards"),
+    (r"^(?:i|we) (?:wish|hope|ask|request|demand|suggest|propose)(?: that)? (?=the |my |it )", "i want "),
+    (r"^(?:(?:could|can|would|will) you (?:perhaps |please |maybe )?)?(?:arrange|see to it|set it up|(?:would |will "
+     r")?it be possible|"
+     r"is it possible|(?:is|would) there (?:be )?(?:a|any) way|make it possible|we need|i need) for (?P<x>.+?) to "
+     r"(?=[a-z])", r"let \g<x> "),
+    (r"^(?:how|what) about (?:we )?(?:have|let|make|get) ", "let "),
+    (r"^(?:let|have|make) only (?P<x>(?:the |my )?[a-z ]+?) (?P<v>[a-z]+)$", r"only \g<x> \g<v>"),
+    (r"^(?:there is )?no need for (?P<x>(?:the |my )?[a-z ]+?) to (?=[a-z])", r"do not let \g<x> "),
+    (rf"^(?:skip|leave out|omit|cancel|drop|cut out|lose) (?:the (?:part|bit|moment) (?:where|when|in which) "
+     rf")(?P<x>the [a-z ]+?) "
+     rf"(?P<v>{_S})(?: again)?$", lambda m: f"do not let {m['x']} {_plain_of(m['v'])}"),
+    (r"^(?:skip|leave out|omit|cancel|drop|cut out) the (?P<v>opening|closing|falling|rolling|walking|moving|"
+     r"spinning) of (?P<x>the "
+     r"[a-z ]+)$", lambda m: f"do not let {m['x']} {_plain_of(m['v'])}"),
+    (r"^(?:drop|start|launch) (?P<x>(?:the |all )[a-z ]+?) (?:at (?:exactly )?the same (?:time|moment|instant) as|"
+     r"together with|along "
+     r"with) (?P<y>(?:the |all )[a-z ]+)$", r"let \g<x> start at the same time as \g<y>"),
+    (r"\b(?:heads?|heading|sets? (?:off|out)|departs?|leaves?|makes? its way) (?:for|towards?) (?=the |my )", "go to "),
+    (rf"\b(?P<w>when|once|while|until|as soon as) "
+     rf"(?P<v>{any_of(('stop', 'start', 'reach', 'leave', 'open', 'close'), 's')})(?= the |$)",
+     r"\g<w> it \g<v>"),
+    (rf"^(?P<x>(?:the )?[a-z ]+?) (?:is |are )?(?P<v>starts?|begins?|starting|{_S})(?: [a-z]+){{0,2}} (?:too "
+     rf")?(?:early|late|soon)(?: for my "
+     rf"taste)? , (?:please )?(?:(?:make|have|do) it (?:at )?|at |better (?:at |make it )?)?(?P<d>{DURATION})(?: "
+     rf"(?:would|is|would be|"
+     rf"might) (?:be )?(?:better|nicer|good|nice|fine))?$", r"start the \g<x> at \g<d>"),
+    (r"^start the the ", "start the "),
     # how fast
     (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {_IT} (?:(?:does|do|is|are|did) )?"
      r"(?:at present|at the moment|right now|currently|so far)\b", r"\g<a>"),
@@ -89,7 +128,43 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r" (?:,|-|–|—|;|and|then|so)(?: and| then)* (?:it |he |she )?(?:just |simply |then )*(?:stands?|stays?|remains?|"
      r"rests?|waits?|lies?|sits?)(?: just| simply)*(?: (?:there|still|so|put))* from (?:then|there|that (?:point|"
      r"moment|time)) on(?:wards?)?$", ""),
+    (r"^(?P<x>(?:everything|all|all that|whatever|anything)(?: that| which)? (?P<np>the [a-z ]+?) (?:does|is doing))\b",
+     r"the movement of \g<np>"),
+    # how, in passing
+    (r"(?: ,(?: just| a bit| kind of| sort of)? like| (?:, )?as if| (?:, )?as though) (?:a|an|some|it|there|someone|"
+     r"somebody|they|you|he|she|in a|"
+     r"on a|in the|for)\b(?! (?:is|was) now)[^.]*$", ""),
+    (r"\b(?:to (?:the|its|his) )?(?P<a>left|right)(?:wards?)? ,? ?(?:instead of|rather than|and not|not)(?: "
+     r"turning)? (?:to (?:the|"
+     r"its|his) )?(?!(?P=a))(?:left|right)\b", "to the opposite side"),
+    (rf"^(?:move|shift|push|put|set|reschedule) (?P<x>the {_EVENT} of the [a-z ]+?|the [a-z ]+? 's {_EVENT}) to "
+     rf"(?P<d>{_POINT})$",
+     lambda m: f"start {m['x']} at {m['d']}" + ("" if re.search(r"s(?:ec|$)", m["d"]) else " seconds")),
+    (rf"^(?:let |make |have )?(?P<x>(?:the |my )?[a-z ]+?) (?:(?:should|must|may|shall|can|to) )?(?:(?:only|just) "
+     rf"(?:{_PLAIN}|{_S}) "
+     rf"(?:for|during|in)|(?:{_PLAIN}|{_S}) (?:only|just) (?:for|during|in)) the first "
+     rf"(?P<d>{DURATION})$", r"stop \g<x> at \g<d>"),
+    (r"\b(?:changes?|switch(?:es)?|reverses?) (?:its |the |his )?direction(?: of (?:rotation|travel|spin))?(?= |"
+     r"$)(?! of)",
+     "turn the other way"),
+    (r"\bafter (?=(?:only |just )?(?:[\d.]+|one|two|three|a|half a) ?(?:m|cm|metres?|meters?|centimet(?:re|"
+     r"er)s?)\b)", "at "),
+    # where to, and where not to
+    (r"(?: ,)? (?:instead of|rather than|and not|not) (?:to |at |into |against |on |in |toward |towards |by |beside |"
+     r"next to )?(?P<np>(?:the|its|that|a) (?!right$|left$|other way)(?![a-z ]*(?:second|time|speed|way|start|end|"
+     r"beginning)s?\b)"
+     r"[a-z]+(?: [a-z]+){0,2})(?: like now| as now| as before| like before)?$", f" {OWN}"),
     # when
+    (rf"^(?:(?:move|push|shift|set|put|change|bring|pull)(?: forward| back)? )?the (?:start|beginning|onset) (?:of|"
+     rf"for) "
+     rf"(?P<x>(?:the |my )?[a-z ]+?)(?: 's)? (?:(?:should|must|shall) be )?(?:(?:to|at|is) )?(?P<d>{DURATION})(?: "
+     rf"mark)?$",
+     r"start the \g<x> at \g<d>"),
+    (rf"^start of (?P<x>[a-z ]+?)(?: :)?(?: to| at)? (?P<d>{DURATION})$", r"start the \g<x> at \g<d>"),
+    (r"^start the the ", "start the "),
+    (rf"\blasts? (?:only |just |for )*(?P<d>{DURATION})$", r"take \g<d>"),
+    (rf"^(?P<x>.+?) (?:be|being|to be) the (?P<r>last|first)(?: one| thing| of them)? to (?P<v>{_PLAIN})\b(?P<y>.*)$",
+     lambda m: f"let {_unwished(m['x'])} {m['v']} {m['r']}{m['y']}"),
     (rf"^(?P<before>.+?)(?: (?P<how>more (?:gently|slowly)|slower|faster))?(?: ,)? (?:beginning|starting|setting off) "
      rf"(?:only )?(?:at|from) (?P<a>{_POINT}) and (?:only )?(?:being|ending|finishing|stopping|coming to rest|done)"
      rf"(?: (?:fully|completely|all the way|wide|open|closed|shut|done|there|finished|only|just))* (?:at|by) "

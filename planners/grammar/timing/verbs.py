@@ -33,20 +33,35 @@ SENSES: dict[str, str] = {
     "rise": "rise, ascend, climb, levitate, lift, lift off, lift up, raise, hoist, elevate, float up, rise up, "
         "soar",
     "sink": "sink, descend, lower, sink down",
-    "fall": "fall, drop, tumble, plunge, topple, fall down, fall over, fall off, drop down, drop off, come "
+    "fall": "fall, drop, tumble, plunge, fall down, fall off, drop down, drop off, come "
         "down, plummet",
-    "bob": "bob, wobble, shake, tremble, bob up and down",
+    "bob": "bob, wobble, shake, tremble, bob up and down, hover up and down, move up and down, "
+        "go up and down, jump up and down, hop up and down, float up and down, bounce up and down, vibrate, jiggle, "
+        "rattle, quiver, shiver, rock, totter, teeter, "
+        "leap",
+    "tip": "tip over, topple over, knock over, keel over, tumble over, tip, overturn, push over, turn over, fall over, "
+        "topple, fall flat, knock down",
+    "orbit": "orbit, circle, circle around, circle round, orbit around",
+    "follow": "follow, chase, pursue, trail, run after, go after, drive after, walk after, follow behind, drive "
+    "behind, "
+        "walk behind, follow along behind, tag along with, tag along behind, trail behind, follow after",
+    "repeat": "repeat, loop, ping pong, cycle",
+    "blink": "blink, flicker, strobe, flash",
     "do": "do, make, perform, complete",
     # its time
     "stop": "stop, halt, freeze, pause, arrest, immobilize, immobilise, block, interrupt, stop moving, wait, "
         "hold still, hold, hold on, cease, come to a stop, come to a halt, come to rest, come to a rest, "
-        "come to a standstill, come to an end, settle, take a break, end, finish, park, be done, rest",
+        "come to a standstill, come to an end, settle, take a break, hang back, hold off, hang on, stand by, bring "
+        "to a halt, bring to a stop, bring to a standstill, bring to rest, come to a complete stop, "
+        "stop dead, end, finish, park, be done, rest",
     "prevent": "prevent, hinder, stop, keep, block, hold",
     "stay": "stay, remain, stand, keep, sit, lie",
     "start": "start, begin, commence, set off, set out, get going, get moving, kick off, launch, trigger, "
-        "activate, take off, depart, start up, initiate, happen, start off",
+        "activate, take off, depart, start up, initiate, happen, start off, kick in, set in, get started, come on, "
+        "spring into action, get under way",
     "continue": "continue, go on, carry on, keep, keep on, continue on, resume",
-    "faster": "speed up, accelerate, hurry, hurry up, quicken, hasten, speed, get faster, pick up speed, become "
+    "faster": "speed up, step up, rush, accelerate, step on it, rev up, hurry, hurry up, quicken, hasten, speed, "
+    "get faster, pick up speed, become "
         "faster",
     "slower": "slow, slow down, decelerate, brake, get slower, become slower, slow up",
     "change": "change, set, adjust, alter",
@@ -56,8 +71,9 @@ SENSES: dict[str, str] = {
     "triple": "triple, treble",
     "halve": "halve",
     "reverse": "reverse, rewind, invert, flip, mirror, switch, swap",
-    "delay": "delay, postpone, hold back, put off, defer, push back, move back, put back",
-    "advance": "advance, bring forward, move forward, pull forward, prepone",
+    "delay": "delay, postpone, hold back, shift back, set back, hold up, retard, put off, defer, push back, move "
+    "back, put back",
+    "advance": "advance, bring forward, shift forward, hasten, move forward, pull forward, prepone",
     "play": "play, run, show, render, replay, do",
     # how it looks
     "hide": "disappear, vanish, go away, hide, despawn, conceal, remove, kill, lose, take out, take away, get "
@@ -68,7 +84,7 @@ SENSES: dict[str, str] = {
         "come into view, come into sight, become visible, reappear, turn visible",
     "fade": "fade, fade out, fade away, dissolve, melt away, dissolve away",
     "look": "turn, become, go, get, flash, glow, shine, look, change to, change into, change color to, change "
-        "colour to, turn to, turn into, blink, light up",
+        "colour to, turn to, turn into, light up",
     "paint": "paint, color, colour, dye, tint, stain, recolor, recolour, turn, make, repaint, flash, spray, "
         "change, light up",
     "off": "turn off, switch off, shut off, shut down, go off, turns off, power off, power down",
@@ -102,7 +118,7 @@ _IRREGULAR = {
     "speed": "sped speeded", "shake": "shook shaken",
 }  # fmt: skip
 _OTHER_S = {"be": "is are", "do": "does", "have": "has"}
-_DOUBLED = bag("stop drop run spin hop step get shut hit set sit bob slip pop begin cut put trot slam flip swap")
+_DOUBLED = bag("stop drop run spin hop step get shut hit set sit bob slip pop begin cut put trot slam flip swap tip")
 
 
 @dataclass(frozen=True)
