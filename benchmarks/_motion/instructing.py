@@ -316,7 +316,7 @@ def metrics(which: str) -> list[Metric]:
     """The shares of a set of instructions; none if the set is not there.
 
     Args:
-        which: "instructions" or "held_instructions".
+        which: "instructions", "held_instructions" or "later_instructions".
     """
     found = instructed(cases(which))
     if not found:
