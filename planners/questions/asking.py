@@ -27,6 +27,7 @@ from .reading.restating import restated
 from .reading.situation import Situation, read_situation
 from .reading.time import several
 from .reading.time.comparing import comparisons
+from .reading.time.everyday import everyday
 from .reading.time.frames import plain
 from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
@@ -108,7 +109,8 @@ def route(text: str, survey: Survey, timeline: Timeline | None = None) -> Readin
 
 def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     """The answer to a question about a scene with time: of its motion, else of the scene at a moment."""
-    words = static.without_relative(plain_words(text), survey, timeline)
+    said = everyday(" ".join(plain_words(text)))
+    words = static.without_relative(tuple(said.split()), survey, timeline)
     asked = Asked(text, words=words, timeline=timeline)
     for sentence in several.question_alone(text):
         if (told := _timed(sentence, survey, timeline)).answer.answer is not None:
@@ -118,7 +120,7 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     moved = _of_motion(asked, survey)
     if moved is not None and moved.answer.answer is not None:
         return moved
-    for made in (_compared, _of_two):
+    for made in (_shared, _compared, _of_two):
         if (made_of := made(words, survey, timeline)) is not None:
             return made_of
     still = _of_moments(asked, survey, timeline)
@@ -148,12 +150,20 @@ _NO_NUMBER = bag("is are was were does do did has have had will can list which w
 _ASKED_FOR = re.compile(
     r"\b(?:how|what)\b|^(?:list|which|who)\b.*\b(?:when|time|second|moment|distance|speed|number|angle)\b"
 )
+# What is no question for yes or no, though it may hold a statement: "it stops at last , when would that be".
+_WANTS_MORE = re.compile(
+    r"^(?:sort|order|rank|list|name|count|describe|give|find|show|state|put|draw|pinpoint|determine|calculate|estimate|"
+    r"measure|add|sum|compare|explain)\b|"
+    r", (?:and |so |then )?(?:at (?:what|which) \w+|by how|when|how|where|what|which) "
+    r"(?:\w+ )*?(?:is|was|are|does|do|did|would|will|might|could|should)\b(?!.* , (?:is|does|do|did|was|has) )"
+)
 
 
 def _of_motion(asked: Asked, survey: Survey) -> Reading | None:
     """The answer to a question about what moves, or the first reason why there is none; None if it is no such one."""
     refused: Reading | None = None
     no_number = asked.words[0] in _NO_NUMBER and not _ASKED_FOR.search(asked.said)
+    wants_more = _WANTS_MORE.search(asked.said) is not None
     for kind in kinds.OF_MOTION:
         for slots in (found for template in kind.templates for found in template.match(asked.words, READERS)):
             try:
@@ -161,7 +171,9 @@ def _of_motion(asked: Asked, survey: Survey) -> Reading | None:
             except NotResolved as error:
                 refused = refused or Reading(_unnamed(error, survey), kind.name)
                 continue
-            if isinstance(given, Answer) and isinstance(given.answer, float) and no_number:
+            if isinstance(given, Answer) and (
+                (isinstance(given.answer, float) and no_number) or (given.answer_type == "yesno" and wants_more)
+            ):
                 continue
             if isinstance(given, Answer) and given.answer is None:
                 refused = refused or Reading(given, kind.name)
@@ -197,7 +209,10 @@ def _chosen(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
     for name in found[1]:
         if (query := thing(name)) is None or (meant := survey.find(query)).verdict == "absent":
             return None
-        offered.update({t.id: re.sub(r"^(?:the|a|an|my) ", "", name) for t in meant.things})
+        for met in meant.things:
+            bare = re.sub(r"^(?:the|a|an|my) ", "", name)
+            if offered.get(met.id) is None or set(bare.split()) <= set(met.label.split()):
+                offered[met.id] = bare  # of two names of one thing its own
     ids = [i for i in told.answer.evidence.ids if i in offered]
     if not ids:
         return Reading(nothing(f"None of them: {told.answer.text}"[:4000]), told.kind)
@@ -223,6 +238,20 @@ def _of_two(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
         if isinstance(a, float) and isinstance(b, float) and abs(a - b) < _ONE_TIME:
             return first if a > b else second
     return None
+
+
+def _shared(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
+    """The share of the scene's time that something takes; None if the words ask for none."""
+    if (found := several.share(" ".join(words))) is None:
+        return None
+    told = _timed(found[0], survey, timeline)
+    lasts = timeline.stop - timeline.start
+    if not isinstance(told.answer.answer, float) or told.answer.unit != "s" or lasts <= 0:
+        return None
+    part, percent = told.answer.answer / lasts, found[1]
+    value = {"answer": 100 * part if percent else part, "unit": "%" if percent else ""}
+    text = f"{100 * part:.0f} % of {at(lasts)}. {told.answer.text}"[:4000]
+    return replace(told, answer=told.answer.model_copy(update={**value, "text": text}))
 
 
 def _compared(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
@@ -263,7 +292,7 @@ def _at_moment(moment: static.AtMoment, text: str, survey: Survey, timeline: Tim
             return _timed(f"what is {under['x']} on at {moment.times[0]} s", survey, timeline)
         if found.restated.startswith("how long"):
             return replace(found, answer=nothing(NOT_READ), kind="")  # of a thing, or for how long
-        if found.restated and _is_lost(set(moment.words.split()) - set(found.restated.split())):
+        if found.restated and _is_lost(moment.words, found.restated):
             return Reading(
                 Answer(answer=None, answer_type=answer.answer_type, text=NOT_READ, confidence=0.0, source="none")
             )
@@ -293,7 +322,7 @@ _LOST = bag(
     "rpm times "
     "often first last never ever again not faster slower longer farther later earlier far turn turns round rounds "
     "floor wall "
-    "ceiling"
+    "ceiling final initial frame clip once when then else"
 )
 
 
@@ -324,9 +353,13 @@ def _loosely(words: Words, survey: Survey, timeline: Timeline) -> Reading | None
     return replace(found, answer=found.answer.model_copy(update={"confidence": sure, "text": text}), restated=plainer)
 
 
-def _is_lost(left_out: set[str]) -> bool:
-    """Whether words that a plainer question leaves out tell a time or name a thing."""
-    return bool(_LOST & left_out) or any(world.find(singular(w)) is not None for w in left_out if len(w) > 2)
+def _is_lost(said: str, plainer: str) -> bool:
+    """Whether words that a plainer question leaves out tell a time or a number, or name a thing or a part of one."""
+    left_out = set(said.split()) - set(plainer.split())
+    parts = {m[1] for m in re.finditer(r"'s (?:\w+ )?(\w+)", said)}
+    if _LOST & left_out or parts & left_out or any(w[0].isdigit() for w in left_out):
+        return True
+    return any(world.find(singular(w)) is not None for w in left_out if len(w) > 2)
 
 
 def _uncounted(words: str, survey: Survey) -> str | None:

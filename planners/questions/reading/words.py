@@ -207,7 +207,11 @@ _REORDERED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], 
         ),
         (r"^that (?=(?:the|this|there|a|an|these|those|all|both)\b)", "whether "),
         (r" , [\w ]{1,30} i mean(?: , not \w+)?(?: ,)?(?= |$)", ""),
-        (r"^(?:counting|including|if (?:you|we) (?:count|include)|with) [\w ]+? , (?=how many )", ""),
+        (
+            r"^(?:counting|including|if (?:you|we) (?:count|include)|with) (?![^,]*\b(?:seconds?|secs?|s|minutes?)\b)"
+            r"[\w ]+? , (?=how many )",
+            "",
+        ),
         (
             r"^(?:excluding|not counting|not including|apart from|besides|except(?: for)?|other than|aside from|"
             r"ignoring|leaving out) ([\w ]+?) , (.+)$",

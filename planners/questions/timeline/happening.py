@@ -157,6 +157,22 @@ def bobs(body: Body) -> float:
     return float(np.ptp(level)) if len(changes) >= 2 else 0.0
 
 
+def steps(body: Body) -> F64:
+    """`[S]` times at which a body that bobs as it moves along is highest: one of each step."""
+    least = bobs(body) / 3
+    times = np.concatenate([body.course.grid(s) for s in body.moving]) if body.moving and least else np.zeros(0)
+    heights = body.course.centers(times) @ body.course.up if len(times) else times
+    found, low, top = list[float](), np.inf, -np.inf
+    for time, height in zip(times, heights, strict=True):
+        if height > low + least and height > top:
+            top, highest = height, time
+        elif top > -np.inf and height < top - least:
+            found.append(float(highest))
+            low, top = height, -np.inf
+        low = min(low, height)
+    return np.array(found)
+
+
 # -- doors, drawers and lids -----------------------------------------------------------------------------------------
 
 

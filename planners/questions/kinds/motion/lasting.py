@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from .....gaussians import late_re as re
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
@@ -13,8 +16,10 @@ from ...reading.time.deeds import AT_ONCE
 from ...survey import Survey
 from ...timeline.asked import PLACES, Told, Untold, agreed, at, cap, kind, number, spoken, verb, within
 from ...timeline.bodies import Body
+from ...timeline.happening import steps
 from .when import COUNTED_TURNS, moment, turns_of
 
+_ONCE = re.compile(r"\bonce\b")
 _WAITS = (
     "wait",
     "waits",
@@ -46,6 +51,9 @@ def _of_one(told: Told, body: Body) -> Answer:
         turns = turns_of(counted)
         seconds = turns * sum(b - a for a, b in found) * 2 * math.pi / events.turned(body.course)
         return number(seconds, "s", f"{at(seconds)}: {body.name} turns {turns:g} times in that time.", [body])
+    if deed.kind == "bob" and _ONCE.search(told.asked.said) and len(risen := steps(body)) > 1:
+        seconds = float(np.diff(risen).mean())
+        return number(seconds, "s", f"{at(seconds)}: {body.name} bobs {len(risen)} times.", [body], float(risen[0]))
     if when is not None:
         found = within(found, told.window())
         found = found[-1:] if deed.kind == "still" and when.conj == "before" else found
@@ -105,6 +113,8 @@ def _between(told: Told) -> Answer | None:
         assert deed is not None
         times.append(moment(deed, found[-1] if deed.stops else found[0]))
         bodies.append(body)
+    if bodies[0] is bodies[1] and times[0] == times[1]:
+        return None  # one happening is read twice
     apart = abs(times[1] - times[0])
     said = [f"{b.name} {verb(told, w)} at {at(t)}" for b, w, t in zip(bodies, (first, second), times, strict=True)]
     return number(apart, "s", f"{at(apart)}: {said[0]} and {said[1]}.", bodies, min(times))

@@ -116,7 +116,11 @@ def _fits(option: str, body: Body, span: Span, told: Told) -> bool:
         "away from me": way @ stand.forward,
         "away": way @ stand.forward,
     }
-    plain = option.removesuffix("s") if option in ("forwards", "backwards") else option
+    plain = (
+        option.removesuffix("s")
+        if option in ("forwards", "backwards")
+        else re.sub(r" (?:us|you|the viewer)$", " me", option)
+    )
     if plain not in ways:
         return False
     return float(ways[plain]) > 0.02 * told.timeline.unit

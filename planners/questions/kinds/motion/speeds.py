@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .....gaussians import late_re as re
 from .....gaussians.motion import events
@@ -16,9 +17,10 @@ from ...reading.time.deeds import AT_ONCE, Deed
 from ...reading.time.moments import When
 from ...timeline.asked import Told, Untold, agreed, at, cap, during, kind, names, number, spoken, verb, within, yes_no
 from ...timeline.bodies import Body
-from ...timeline.happening import MOMENT, STEP, bobs, hinged, opened, peak
+from ...timeline.happening import MOMENT, STEP, bobs, hinged, opened, peak, steps
 from .when import moment
 
+F64 = NDArray[np.float64]
 _PER_SECOND = {  # by the first letters of a unit: its sign, and how many of it are a metre a second
     "km": ("km/h", 3.6),
     "kph": ("km/h", 3.6),
@@ -311,6 +313,9 @@ def _often(told: Told) -> Answer | None:
     deed = told.frame.what.deed
     said = " ".join(told.asked.words)
     body = told.one()
+    if deed is not None and deed.kind == "bob" and len(risen := _within(steps(body), told.window())):
+        text = f"{len(risen)} times: {body.name} bobs {spoken(list(body.moving))}."
+        return number(float(len(risen)), "", text, [body], float(risen[0]))
     counts_turns = re.search(
         r"\b(?:turns?|rotations?|revolutions?|spins?|rounds?|circles?|laps|loops|cycles|revs|twists)\b", said
     )
@@ -331,6 +336,10 @@ def _often(told: Told) -> Answer | None:
     found = within(found, told.window())
     times = f"{len(found)} time{'s' if len(found) != 1 else ''}"
     return number(float(len(found)), "", f"{times}: {spoken(found)}.", [body], found[0][0] if found else None)
+
+
+def _within(times: F64, window: Span | None) -> F64:
+    return times if window is None else times[(times >= window[0]) & (times <= window[1])]
 
 
 def _faster(told: Told) -> Answer | None:

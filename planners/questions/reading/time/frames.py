@@ -140,7 +140,8 @@ _ASKING = re.compile(
 )
 _COMPARED = ("fall", "turn", "open", "close", "rise")
 _ASKED_LAST = re.compile(r" , (?:which|what|when|where|who|how)(?: one| thing)?$")
-_LAGS = ("gap", "delay", "interval")  # from the start of one to the start of the next, of what takes hardly any time
+# From the start of one to the start of the next, of what takes hardly any time.
+_LAGS = ("gap", "delay", "interval", "lag", "lapse")
 _BEGINS_WITH_TIME = re.compile(
     r"(?:(?:right|just|shortly|directly|immediately) )?(?:after|before|when|while|as|once|until)\b"
 )
@@ -347,9 +348,10 @@ _SIDES_OF = tuple(  # of two happenings that a time lies between
     )
 )  # fmt: skip
 _GAP = re.compile(
-    r"^(?:and )?(?:what is )?(?:the )?(?:time|seconds|secs|delay|gap|interval|pause|hold)(?: difference)?"
+    r"^(?:and )?(?:what is )?(?:the )?(?:time|seconds|secs|delay|gap|interval|pause|hold|lag|lapse|time lag|"
+    r"time gap)(?: difference)?"
     r"(?: in seconds)? "
-    r"(?=between )"
+    r"(?=between |from )"
 )
 _SOON = re.compile(r"^how (?:soon|much later) (?:is it )?(?=after )")
 _MUCH_LATER = re.compile(
@@ -565,7 +567,7 @@ def _between(said: str, unit: str) -> Iterator[Frame]:
     rests = [(start, said[m.end() :]) for m in (_GAP.match(said), _MUCH_LATER.match(said)) if m is not None]
     rests += [(start, said[m.end() :]) for m in (_SOON.match(said),) if m is not None]
     rests += [(start, rest) for found, rest in _cued(said) if found.asks == "how_long"]
-    gap = re.search(r"\b(?:pause|gap|delay|break|wait|rest|interval|hold)\b.* between ", said)
+    gap = re.search(r"\b(?:pause|gap|delay|break|wait|rest|interval|hold|lag|lapse)\b.* (?:between|from) ", said)
     for frame, rest in rests:
         for row in _SIDES_OF:
             if (found := row.match(rest)) is not None:

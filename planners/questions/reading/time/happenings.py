@@ -43,7 +43,8 @@ _SILENT = _BE | bag(
     "taken took use "
     "uses used require requires spend spends there which that who to of for in by with at then actually exactly "
     "immediately really already yet now even also too here itself again ever just total i we you and so please , own "
-    "long amount completely fully finally suddenly eventually still all both happen happens happened the a this its "
+    "once long amount completely fully finally suddenly eventually still all both happen happens happened the a this "
+    "its "
     "it's about when complete completes completed perform performs performed"
 )
 _ARTICLES = bag("the a this that its all both own")
@@ -156,6 +157,8 @@ def _around(deed: Deed, before: str, after: str) -> Iterator[Happening]:
     states = deed.kind in ("is_open", "is_closed", "still", "move")
     if states and deed.verb in _AMBIGUOUS | PARTICLES and not _is_state(deed, before, _ends(after)):
         return
+    if deed.kind == "still" and deed.verb == "stopped" and not _is_state(deed, before, ""):
+        return  # "it has stopped" is that it ended
     if deed.kind in ("open", "close") and deed.verb in ("open", "shut") and _is_state(deed, before, ""):
         return
     if deed.kind == "move" and deed.phase and not after and re.search(r"\b(?:in|at|by|until) the$", before):

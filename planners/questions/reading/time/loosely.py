@@ -83,7 +83,7 @@ _SILENT = _AUX | bag(
     "made manage manages managed begin clearly visibly eventually finally little bit time moment second seconds long "
     "does going seem seems seen see observe observed watch watching question answer give let thing things object "
     "objects "
-    "complete completely fully guy once something poor dear old nice big small tiny thanks ok okay hey hello hi "
+    "complete completely fully guy something poor dear old nice big small tiny thanks ok okay hey hello hi "
     "mummy mum mom "
     "mommy daddy dad papa grandma grandpa granny grandad teacher miss sir madam professor doctor guys friend folks "
     "kids dude "
@@ -94,7 +94,8 @@ _HARD = bag(
     "not no never nothing none nobody neither nor without except besides only than more less fewer faster slower "
     "longer "
     "shorter farther earlier later sooner first last next second third again back same different other another else if "
-    "because why half quarter between every each both most least one two three four five six seven eight nine ten"
+    "because why half quarter between every each both most least one two three four five six seven eight nine ten "
+    "final initial twice"
 )
 _PLACES = (
     r"(?:on top of|next to|in front of|out of|up to|away from|close to|off of|on|onto|in|into|inside|at|to|toward|"
@@ -167,6 +168,8 @@ def _main(said: str, unit: str, names: Collection[str], timed: bool) -> Iterator
     """Plain questions without a time."""
     cued = next(((asks, m) for asks, row in _CUES if (m := row.search(said)) is not None), None)
     yes_no = _YES_NO.match(said)
+    if yes_no is not None and cued is not None and cued[0] == "when":
+        return  # "was it moving when the clip began" asks for no time
     if cued is None or (yes_no is not None and not _ASKED.search(said)):
         asks, rest = "yesno", said
         if yes_no is None and not re.search(r"\w", said):
@@ -177,7 +180,8 @@ def _main(said: str, unit: str, names: Collection[str], timed: bool) -> Iterator
         if _ASKED.search(rest):
             return
         unit = (found.groupdict().get("u") or "") or unit
-        asks = "how_far" if asks == "how_far_in" else asks
+        if asks == "how_far_in":
+            asks = "how_long" if re.match(r"(?:milli)?sec|minute", unit) else "how_far"
     parts = _parts(re.sub(r" +", " ", rest).split(), names)
     if parts is None:
         return

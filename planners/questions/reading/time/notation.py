@@ -20,8 +20,10 @@ _IRREGULAR = {
     "take": "took taken", "rise": "rose risen", "sit": "sat", "lie": "lay lain", "set": "", "give": "gave given",
     "do": "did does done", "have": "has had having", "stick": "stuck", "draw": "drew drawn", "wind": "wound",
     "spend": "spent", "find": "found", "hold": "held", "grind": "ground", "shake": "shook shaken", "quit": "",
-    "be": "is are was were been am 's", "undergo": "underwent undergone", "speed": "sped",
+    "be": "is are was were been am 's", "undergo": "underwent undergone", "spring": "sprang sprung",
+    "burst": "", "put": "", "say": "said", "show": "shown", "see": "saw seen", "grow": "grew grown", "speed": "sped",
 }  # fmt: skip
+_PAST = bag(" ".join(_IRREGULAR.values())) - bag("does am is are 's having")
 _DOUBLED = bag(
     "stop travel drop plop flop run spin hop step get shut hit set sit bob slip pop begin quit skid flip tip jog ram "
     "whir"
@@ -31,7 +33,7 @@ CLASSES = {
     "GO": "move go travel roll walk run drive slide glide fly shift wander march float drift budge advance stroll hop "
     "creep crawl step stride cruise proceed jump head journey trundle race stir jog pace skid",
     "COME": "come get pull pop stick poke protrude jut",
-    "TURN": "turn spin rotate revolve swing whirl twirl swivel pivot circle gyrate wheel",
+    "TURN": "turn spin rotate revolve swing whirl twirl swivel pivot circle gyrate wheel veer pirouette",
     "FALL": "fall drop tumble plunge topple plummet sink descend plop flop",
     "BUMP": "bump crash bang knock slam smash run ram collide roll drive walk bounce",
     "START": "start begin commence resume",
@@ -62,6 +64,16 @@ def _forms(verb: str) -> Iterator[str]:
     stem = verb[:-1] if dropped else verb + verb[-1] if verb in _DOUBLED else verb
     yield "lying" if verb == "lie" else stem + "ing"
     yield from _IRREGULAR.get(verb, verb[:-1] + "ied" if consonant_y else stem + "ed").split()
+
+
+def inflected(verb: str, like: str) -> str:
+    """A verb in the form of another verb: "move" like "rolling" is "moving"."""
+    found = list(_forms(verb))
+    if like.endswith("ing") and like not in ("bring", "cling", "fling", "sling", "spring", "swing"):
+        return found[2]
+    if like.endswith("s") and not like.endswith("ss"):
+        return found[1]
+    return found[3] if len(found) > 3 and (like.endswith("ed") or like in _PAST) else verb
 
 
 @cache

@@ -13,7 +13,7 @@ from .....gaussians.world import kinds
 from .....gaussians.world.words import singular
 from .deeds import said_in
 from .happenings import thing
-from .moments import NUMBER, SECONDS
+from .moments import NUMBER, SECONDS, without_time
 
 _RANKED = re.compile(
     r"\b(?:first|earlier|sooner|later|last|next|faster|slower|quicker|longer|shorter|farther|wider|more|less|most|"
@@ -43,6 +43,12 @@ _OPPOSED = re.compile(
     r"\b(?:open|opened|closed|shut|opening|closing|still|moving|stopped|left|right|up|down|in|out|on|off|not|clockwise|"
     r"counterclockwise|before|after|forwards?|backwards?)$"
 )
+_SHARE = re.compile(
+    r"^(?:for |during )?(?:(?:what|which)(?: is the)?|(?:what is )?the) "
+    r"(?P<s>share|fraction|percentage|percent|proportion|portion) of "
+    r"(?:the |its )?(?:whole |total |entire )?(?:clip|video|film|movie|scene|time|shot|recording|running time)"
+    r" ?(?:for |in |during )?(?:which |that )?(?P<x>.+)$"
+)
 _WHICH_ONE = re.compile(
     r"^(?:so |and )?(?:which|what)(?: one| of them)?(?: is it| was it| exactly)?(?: ,? ?(?:dear|please|then))?$"
 )
@@ -68,6 +74,14 @@ _WHEN_THAT = re.compile(
     r"^(?:so |and )?(?:when|what time|how long|how far|how fast|where|which|what) (?:is|was) "
     r"(?:that|it|this)(?: exactly)?$"
 )
+_MEANT = re.compile(
+    r"^(?P<x>.+?)(?:[,;:–—]|\.\.\.)? (?:i mean|or rather|in other words|or should i say|i ?\.? ?e\.?|"
+    r"or nah,? like|like|no,? wait|wait,? no|scratch that|correction)[, ]+"
+    r"(?P<q>(?:is|are|was|were|does|do|did|has|have|will|when|how|where|which|what)\b.+)$",
+    re.IGNORECASE,
+)
+_THEN = re.compile(r" (?:then|by then)(?=[?. ]|$)")
+_IT = re.compile(r" (?:it|he|she|they) ")
 _SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z\"'(a-z])")
 
 
@@ -81,10 +95,17 @@ def choice(said: str) -> tuple[str, tuple[str, ...]] | None:
         )
     if (found := _CHOICE.match(said)) is None:
         return None
-    options = tuple(re.split(r"(?: ,)? or | , ", found["o"]))
+    options = tuple(_full(o, found["q"]) for o in re.split(r"(?: ,)? or | , ", found["o"]))
     if len(options) < 2 or (len(options) < 3 and _RANKED.search(said)) or any(thing(o) is None for o in options):
         return None
     return _OF_THESE.sub(r"\1", found["q"]) + (found["u"] or ""), options
+
+
+def _full(option: str, question: str) -> str:
+    """An option with the noun that the question says: "which drawer moves, the top one or the bottom one"."""
+    noun = re.match(r"^(?:what|which) (?:of the )?(?P<n>\w+)", question)
+    one = re.match(r"^(?:the )?(?P<x>top|bottom|middle|upper|lower|left|right|first|second|third)(?: one)?$", option)
+    return f"the {one['x']} {singular(noun['n'])}" if noun is not None and one is not None else option
 
 
 def either(said: str) -> tuple[str, str] | None:
@@ -103,6 +124,14 @@ def either(said: str) -> tuple[str, str] | None:
                 aux = "does" if found["aux"] in ("did", "do") else found["aux"]
                 return f"{found['aux']} {found['x']}", f"{aux} {subject} {other}"
     return None
+
+
+def share(said: str) -> tuple[str, bool] | None:
+    """A question for a share of the scene's time as one for a time, and whether percent are asked; None: it is none."""
+    if (found := _SHARE.match(said)) is None:
+        return None
+    rest = re.sub(r" for$", "", found["x"])
+    return f"how long {rest}", found["s"].startswith("percent")
 
 
 def both(said: str) -> tuple[str, str] | None:
@@ -137,7 +166,44 @@ def question_alone(text: str) -> Iterator[str]:
             else:
                 yield asked[0]
             return
+    yield from _meant(text)
     yield from _behind_a_comma(text)
+
+
+def _meant(text: str) -> Iterator[str]:
+    """ "Does the lamp come to harm, I mean does it fall?": the second question, of the one thing that is named."""
+    if (found := _MEANT.match(text.strip())) is None:
+        return
+    words = re.findall(r"[\w.]+", found["x"].lower())
+    named = _one_named(words)
+    question = found["q"]
+    if _TOLD.search(found["x"]):
+        time, bare = without_time(" ".join(words))
+        if time is None or not _THEN.search(question):
+            return
+        when = " ".join(_without(words, bare.split()))
+        question = _THEN.sub(f" {when}", question)
+    if named or not _IT.search(question):
+        yield _IT.sub(f" {named} ", question, count=1)
+
+
+def _one_named(words: list[str]) -> str:
+    """The thing that a question is about: behind its first word, or the only one that is named; "" if none is."""
+    for stop in range(min(len(words), 8), 2, -1):
+        said = " ".join(words[1:stop])
+        if words[1] in ("the", "that", "this") and kinds.find(singular(words[stop - 1])) and thing(said) is not None:
+            return said
+    named = {w for w in words if kinds.find(singular(w)) is not None and not any(True for _ in said_in(w))}
+    return f"the {next(iter(named))}" if len(named) == 1 else ""
+
+
+def _without(words: list[str], less: list[str]) -> list[str]:
+    """Words without others, each of which is taken out once."""
+    kept = list(words)
+    for word in less:
+        if word in kept:
+            kept.remove(word)
+    return kept
 
 
 def _which_one(before: str) -> Iterator[str]:
