@@ -94,7 +94,9 @@ def _metrics(name: str, rig: Rig, f: Figures, goals: bool) -> list[Metric]:
         Metric(f"{key}.whole", f.whole, "dB", "higher", 0.03, WHOLE if goals else None),
         Metric(f"{key}.inside", f.inside, "dB", "higher", 0.05, INSIDE if goals else None),
         Metric(f"{key}.found", f.found, "share", "higher", 0.0),
-        Metric(f"{key}.same thing", f.overlap, "IoU", "higher", 0.05, OVERLAP if goals else None),
+        Metric(f"{key}.pixels", f.overlap, "IoU", "higher", 0.05),
+        Metric(f"{key}.assigned", f.assigned, "IoU", "higher", 0.05, OVERLAP if goals else None),
+        Metric(f"{key}.kept", f.kept, "IoU", "higher", 0.05, OVERLAP if goals else None),
         Metric(f"{key}.residual", f.residual, "share"),
         Metric(f"{key}.keys", f.keys, "count"),
         Metric(f"{key}.cpu", f.cpu, "s", "lower", 0.3),
@@ -110,6 +112,13 @@ def _means(rig: Rig, every: Sequence[Figures]) -> list[Metric]:
     found = [f.path for f in every if f.found]
     metrics = [
         Metric(f"fit.mean.{rig}.{name}", fmean(getattr(f, name) for f in every), unit, "higher", 0.03)
-        for name, unit in (("whole", "dB"), ("inside", "dB"), ("found", "share"), ("overlap", "IoU"))
+        for name, unit in (
+            ("whole", "dB"),
+            ("inside", "dB"),
+            ("found", "share"),
+            ("overlap", "IoU"),
+            ("assigned", "IoU"),
+            ("kept", "IoU"),
+        )
     ]
     return [*metrics, Metric(f"fit.mean.{rig}.path", fmean(found), "m", "lower", 0.2)] if found else metrics

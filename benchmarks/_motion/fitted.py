@@ -22,6 +22,7 @@ from ...gaussians.motion.motion import poses
 from ...gaussians.render import render
 from ...gaussians.scene import Scene
 from .films import Film, Frame, Rig, film, middles
+from .identity import belonging
 
 LEAST_MASK = 20  # pixels of a mask within which PSNR is measured
 ONLY = "SCENEWRIGHT_BENCH_ONLY"  # rooms and rigs to fit, e.g. "ball-12,toy-4"; none: all
@@ -37,6 +38,7 @@ class Figures:
         worst: the largest such distance.
         found: share of the moving things whose path is within half their way.
         overlap: intersection over union of the pixels of what moves, over all held-out frames.
+        assigned, kept: the same of Gaussians, see `identity.Belonging`.
         residual: share of the Gaussians that have a displacement of their own.
         kinds: of the tracks.
         keys: of all tracks.
@@ -50,6 +52,8 @@ class Figures:
     worst: float
     found: float
     overlap: float
+    assigned: float
+    kept: float
     residual: float
     kinds: tuple[str, ...]
     keys: int
@@ -80,7 +84,7 @@ def judged(scene: Scene, made: Film, cpu: float) -> Figures:
     pictures = [_compared(scene, frame) for frame in made.held_out]
     away, found = _paths(scene, made)
     union = sum(p.union for p in pictures)
-    motion = scene.motion
+    motion, same = scene.motion, belonging(scene, made)
     single = sum(len(r.ids) for r in motion.residuals) if motion is not None else 0
     return Figures(
         whole=fmean(p.whole for p in pictures),
@@ -89,6 +93,8 @@ def judged(scene: Scene, made: Film, cpu: float) -> Figures:
         worst=float(np.max(away)) if len(away) else math.nan,
         found=found,
         overlap=sum(p.shared for p in pictures) / max(union, 1),
+        assigned=same.assigned,
+        kept=same.kept,
         residual=single / len(scene.cloud),
         kinds=tuple(t.kind for t in motion.tracks) if motion is not None else (),
         keys=sum(len(t.times) for t in motion.tracks) if motion is not None else 0,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from scenewright.benchmarks._motion import films, fitted, rooms
+from scenewright.benchmarks._motion import films, fitted, identity, rooms
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.motion.at import at
 
@@ -69,3 +69,22 @@ def test_a_film_of_a_furnished_room_shows_two_things_that_move():
     assert np.linalg.norm(path[1] - path[0]) > 0.5  # metres
     frame = films.Clouds(scene).frame(films.standing(stage, 12, (48, 36))[6], 1.0)
     assert frame.mask.any() and frame.photo.any()
+
+
+def test_gaussians_belong_to_what_they_show_and_no_longer_when_they_stay_behind():
+    made = films.film("ball", "4", (64, 48), fps=1.0, detail=0.15)
+    things = np.full(len(made.scene.cloud), -1, np.int32)
+    things[np.isin(made.scene.cloud.ids.numpy(), made.scene.motion.tracks[0].ids)] = 0
+    cloud = made.scene.cloud.replace(group=torch.from_numpy(things))
+    true = identity.belonging(made.scene.replace(cloud=cloud), made)
+    assert (
+        true.assigned > 0.9 and true.kept > 0.9
+    )  # of a ball of 5 pixels, not 1: Gaussians at its edge show the rug too
+    unlabelled = made.scene.replace(cloud=cloud.replace(group=torch.full_like(cloud.group, -1)))
+    nothing = identity.belonging(unlabelled, made)
+    assert nothing.assigned == 0 and nothing.kept == true.kept
+    still = identity.belonging(made.scene.replace(cloud=cloud, motion=None), made)
+    assert still.kept < 0.1  # what showed the ball at first shows it no longer
+    some = np.where(np.arange(len(things)) % 2, things, -1).astype(np.int32)
+    half = identity.belonging(made.scene.replace(cloud=cloud.replace(group=torch.from_numpy(some))), made)
+    assert 0.3 < half.assigned < 0.7

@@ -1,5 +1,5 @@
 """Paths on one axis (`line_of`): a hinge or a slide replaces a free path where the pictures lose less by it than the
-numbers that it saves are worth.
+numbers that it saves are worth, or hardly anything.
 
 The lines to try are told by the poses: the one that most of them lie on. Values and line are then refined by the
 rendered difference, and both paths are compared by the Bayesian information criterion (Schwarz 1978).
@@ -29,6 +29,7 @@ GRID, WIDE = 9, 4.0  # values that are tried all along a line that is not longer
 SPAN = 0.3  # of the body's size: how far from a value others are tried in the first round, a third of it in the next
 LINE_STEPS, LINE_RATE = 5, 0.02  # steps of the line in each round; their size: radians, or of the body's size
 LINE_TIMES = 6  # greatest number of times by which it is refined
+KEEPS = 0.97  # of what a free path gains on standing still, from which a line is as good as it
 INDEPENDENT = 25  # pixels of which one counts as an observation: neighbours err alike
 
 
@@ -39,29 +40,33 @@ def line_of(tracker: Tracker, body: Body) -> Line | None:
     runs = body.runs[1:]
     if len(runs) < 2:  # one place to go to lies on any line
         return None
-    best: tuple[float, Line | None] = (0.0, None)
+    best: tuple[float, Line | None] = (np.inf, None)
     kinds: tuple[Kind, ...] = ("slide", "hinge")
     for kind in kinds:
         line = _told(body, kind, tracker.size)
         if line is None:
             continue
         line = _refined(tracker, body, line)
-        gain = _worth(tracker, body, line, runs)
-        if gain > best[0]:
-            best = gain, line
+        error, enough = _judged(tracker, body, line, runs)
+        if enough and error < best[0]:
+            best = error, line
     return best[1]
 
 
-def _worth(tracker: Tracker, body: Body, line: Line, runs: list[tuple[int, int]]) -> float:
-    """By how much the information criterion prefers the line to the free path."""
+def _judged(tracker: Tracker, body: Body, line: Line, runs: list[tuple[int, int]]) -> tuple[float, bool]:
+    """The squared difference with the line, and whether it is enough: the information criterion prefers it to the free
+    path, or it keeps nearly all that the free path gains on standing still. The criterion alone takes the errors of a
+    body's shape, which all times share, for as many observations, and a free path bends to hide them."""
     on = body.on(line)
-    free = bound = pixels = 0.0
+    free = bound = rest = pixels = 0.0
     for t, _ in runs:
-        (a, b), count = tracker.errors(t, [(body.quats[t], body.offsets[t]), (on.quats[t], on.offsets[t])])
-        free, bound, pixels = free + a, bound + b, pixels + count
+        poses = [(b.quats[k], b.offsets[k]) for b, k in ((body, t), (on, t), (body, 0))]
+        errors, count = tracker.errors(t, poses)
+        free, bound, rest, pixels = free + errors[0], bound + errors[1], rest + errors[2], pixels + count
     n = max(pixels / INDEPENDENT, 2.0)
     saved = 6 * len(runs) - (len(runs) + (4 if line.kind == "hinge" else 2))
-    return saved * float(np.log(n)) - n * float(np.log((bound + 1e-9) / (free + 1e-9)))
+    preferred = saved * float(np.log(n)) > n * float(np.log((bound + 1e-9) / (free + 1e-9)))
+    return bound, preferred or rest - bound > KEEPS * (rest - free) > 0
 
 
 def _told(body: Body, kind: Kind, size: float) -> Line | None:

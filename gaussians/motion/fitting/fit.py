@@ -35,6 +35,7 @@ from ..motion import Motion, Residual, Track
 from .axes import line_of
 from .bodies import Body, Columns, Labelled
 from .footage import Footage
+from .rolling import rolled
 from .seeds import LEAST, Flags, gone, halves, seeds
 from .sharing import shared
 from .simplify import track_of
@@ -208,13 +209,14 @@ class _Film:
         return labels, bodies, tried
 
     def _follow(self, labelled: Labelled, bodies: list[Body]) -> None:
-        """Mend the path of each body, and put it on one axis where the frames tell no more; in place."""
+        """Mend the path of each body, put it on one axis where the frames tell no more, or let it roll; in place."""
         for k in range(len(bodies)):
             tracker = self._tracker(labelled, bodies, k + 1)
             body = bodies[k].seen_from(tracker.pivot)
             line = line_of(tracker, body)
             if line is None:
                 tracker.mend(body)
+                body = rolled(tracker, body) or body
             bodies[k] = body if line is None else body.on(line)
 
     def _sort_out(self, labelled: Labelled, bodies: list[Body]) -> None:

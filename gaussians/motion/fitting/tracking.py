@@ -241,7 +241,7 @@ class Tracker:
                 stay = np.r_[body.offsets[t - 1] - offset, 0, 0, 0]
                 drawn = np.concatenate([drawn, stay[None], self._turns])
             turns = np.stack([turned(quat, d[3:]) for d in drawn])
-            scores = self._scores(turns, offset + drawn[:, :3], t, BLURS[0 if k < ROUNDS // 2 else 1])
+            scores = self.scores(turns, offset + drawn[:, :3], t, BLURS[0 if k < ROUNDS // 2 else 1])
             best = drawn[np.argsort(scores, kind="stable")[:ELITE]]
             mean, spread = best.mean(axis=0), best.std(axis=0) + 1e-6
             if wide and k == 0:  # places may be far apart: go on around the best
@@ -252,7 +252,7 @@ class Tracker:
         choices = [middle, (quat, offset), nearest, *known]
         body.quats[t], body.offsets[t] = choices[int(self.errors(t, choices)[0].argmin())]
 
-    def _scores(self, turns: F64, offsets: F64, t: int, blur: float) -> F64:
+    def scores(self, turns: F64, offsets: F64, t: int, blur: float) -> F64:
         """`[M]` mean difference of colours of the body's points at poses, where cameras see them."""
         matrices = keys.matrices(turns)
         points = np.einsum("mij,nj->mni", matrices, self._points) + self.pivot + offsets[:, None, :]

@@ -14,6 +14,7 @@ from scenewright.gaussians.motion import keys
 from scenewright.gaussians.motion.fitting.axes import line_of
 from scenewright.gaussians.motion.fitting.bodies import Body, Line, moved, placed, pose_gradient, turned
 from scenewright.gaussians.motion.fitting.footage import Footage
+from scenewright.gaussians.motion.fitting.rolling import rolled, rolling
 from scenewright.gaussians.motion.fitting.sharing import shared
 from scenewright.gaussians.motion.fitting.simplify import track_of
 from scenewright.gaussians.motion.fitting.start import start_points
@@ -161,6 +162,38 @@ def test_a_rough_path_of_a_door_is_put_on_its_hinge_and_a_free_one_stays_free(sw
     assert np.abs(np.abs(line.values) - np.abs(body.line.values)).max() < 0.1  # radians
     loose = Body(rough.pivot, rough.quats.copy(), rough.offsets + np.linspace(0, 1, 6)[:, None] * [0, 0, 1.0])
     assert line_of(tracker, loose) is None
+
+
+def test_the_turns_of_what_rolls_are_told_by_its_way_and_those_of_what_does_not_are_its_own():
+    rng, times = np.random.default_rng(6), np.linspace(0, 1, 9)
+    ball = rng.normal(size=(160, 3))
+    ball *= 0.15 / np.linalg.norm(ball, axis=1, keepdims=True)
+    x, y = np.meshgrid(np.linspace(-1.2, 1.2, 19), np.linspace(-1.2, 1.2, 19))
+    floor = np.stack([x, y, np.full_like(x, -0.15)], axis=-1).reshape(-1, 3)
+    means, count = np.concatenate([ball, floor]).astype(np.float32), len(ball) + len(floor)
+    colors = np.concatenate([rng.uniform(0, 1, (8, 3))[(ball > 0) @ [1, 2, 4]], np.full((len(floor), 3), 0.5)])
+    columns = (
+        means, np.tile(np.float32([1, 0, 0, 0]), (count, 1)),
+        np.repeat(np.r_[np.full(len(ball), 0.03), np.full(len(floor), 0.09)], 3).reshape(-1, 3).astype(np.float32),
+        np.full(count, 0.9, np.float32), ((colors - 0.5) / SH_C0).astype(np.float32)[:, None],
+    )  # fmt: skip
+    labels = np.r_[np.ones(len(ball)), np.zeros(len(floor))].astype(np.int32)
+    offsets = np.stack([0.14 * np.arange(9), 0.08 * np.sin(np.arange(9)), np.zeros(9)], axis=1)
+    cameras = [Camera.look_at((a, -2.0, 1.2), (0.5, 0, 0), (0, 0, 1), 40, 32, 60) for a in (-0.8, 0.5, 1.8)]
+    for quats, rolls in ((rolling(offsets, np.array([0, 0, 1.0]), 0.15), True),
+                         (np.tile([1.0, 0, 0, 0], (9, 1)), False)):  # fmt: skip
+        body, shots, seconds = Body(np.zeros(3), quats, offsets), [], []
+        for t in range(9):
+            for at in cameras:
+                drawn = gradient.draw(placed(columns, labels, [body], t), at, (0.0, 0.0, 0.0)).rgb
+                shots.append(Shot(at, (drawn.clip(0, 1) * 255).round().astype(np.uint8), times[t]))
+                seconds.append(times[t])
+        tracker = Tracker(columns, np.flatnonzero(labels), labels == 0, Footage.of(shots, seconds), 0)
+        own = Body(tracker.pivot, np.tile([1.0, 0, 0, 0], (9, 1)), body.seen_from(tracker.pivot).offsets)
+        found = rolled(tracker, own)
+        assert (found is not None) == rolls
+        if found is not None:
+            assert np.degrees(2 * np.arccos(np.clip(np.abs((found.quats * quats).sum(axis=1)), 0, 1))).max() < 20
 
 
 def test_first_frames_without_depth_are_refused_in_words():
