@@ -249,9 +249,8 @@ def _for_a_while(scene: Scene, op: EditOp, context: Context, chosen: Selection, 
     selection = done.selection if done.selection is not given else chosen
     made = Done(after, receipt, selection)
     touched = still.cloud.ids[changes.any]
-    return measured_through_time(
-        scene, made, torch.cat([chosen.ids, touched]), look_spans if not moved else (), moved, since
-    )
+    seen = [(a, math.inf) if when.gradual and _is_finite((a, b)) else (a, b) for a, b in look_spans]  # it stays faded
+    return measured_through_time(scene, made, torch.cat([chosen.ids, touched]), () if moved else seen, moved, since)
 
 
 def _goes_elsewhere(op: EditOp) -> bool:
@@ -347,7 +346,7 @@ def _looks(
 
 def _worn(ids: np.ndarray, start: dict[str, Tensor], goal: dict[str, Tensor], span: Span, gradual: bool) -> list[Look]:
     """The looks of one span; little by little, in steps that then stay."""
-    if not gradual or not (math.isfinite(span[0]) and math.isfinite(span[1])):
+    if not (gradual and _is_finite(span)):
         return [Look(ids, *span, goal.get("sh"), goal.get("opacities"))]
     edges = np.linspace(span[0], span[1], _STEPS + 1)
     made = []
@@ -357,6 +356,10 @@ def _worn(ids: np.ndarray, start: dict[str, Tensor], goal: dict[str, Tensor], sp
         until = math.inf if step == _STEPS else float(edges[step + 1])
         made.append(Look(ids, float(edges[step]), until, mixed.get("sh"), mixed.get("opacities")))
     return made
+
+
+def _is_finite(span: Span) -> bool:
+    return math.isfinite(span[0]) and math.isfinite(span[1])
 
 
 def _unturned(cloud: GaussianCloud, motion: Motion | None, time: float) -> Tensor:

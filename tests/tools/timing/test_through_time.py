@@ -61,6 +61,19 @@ def test_a_look_holds_in_its_time_and_nothing_else_changes(moving: Scene, contex
     assert told["as before at other times"].value == 0 and told["changed in time"].value > 0
 
 
+def test_what_fades_out_before_the_end_stays_so(moving: Scene, context: Context) -> None:
+    faded = {"start": 1.0, "stop": 2.5, "gradual": True}
+    made = done(moving, {"op": "opacity", "target": {"groups": [VASE]}, "value": 0.0, "when": faded}, context)
+    seen = [int((at(made.scene, t).cloud.group == VASE).sum()) for t in (0.5, 3.5)]
+    assert seen[0] > 0 == seen[1]
+    half = at(made.scene, 1.75).cloud
+    assert float(half.opacities[half.group == VASE].max()) < float(
+        moving.cloud.opacities[moving.cloud.group == VASE].max()
+    )
+    told = {c.name: c for c in made.receipt.checks}
+    assert told["as before at other times"].value == 0 and told["changed in time"].value > 0
+
+
 def test_what_is_deleted_for_a_while_comes_back(moving: Scene, context: Context) -> None:
     data = {"op": "delete", "target": {"groups": [VASE]}, "infill": False, "when": {"start": 1, "lasting": 1}}
     made = done(moving, data, context)
