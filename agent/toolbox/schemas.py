@@ -51,12 +51,27 @@ def _compact(schema: Keywords) -> Keywords:
 
 
 def described_once(schema: Keywords, told: set[str]) -> Keywords:
-    """A schema whose shared types are told in full only if they are not among `told`, to which they are added."""
+    """A schema whose shared types are told in full only if they are not among `told`, to which they are added.
+
+    Of those that were told, types that only other types refer to are objects of any kind here.
+    """
     if "$defs" not in schema:
         return schema
-    types = {name: _silent(made) if name in told else made for name, made in schema["$defs"].items()}
+    outer = _referred({k: v for k, v in schema.items() if k != "$defs"})
+    types = {
+        name: made if name not in told else _silent(made) if name in outer else {"type": "object"}
+        for name, made in schema["$defs"].items()
+    }
     told.update(types)
     return {**schema, "$defs": types}
+
+
+def _referred(schema: Any) -> set[str]:
+    """The names of the types that a schema refers to by itself."""
+    if isinstance(schema, dict):
+        own = {schema["$ref"].rpartition("/")[2]} if isinstance(schema.get("$ref"), str) else set()
+        return own.union(*(_referred(v) for v in schema.values()))
+    return set[str]().union(*(_referred(v) for v in schema)) if isinstance(schema, list) else set()
 
 
 def _silent(made: Keywords) -> Keywords:

@@ -6,7 +6,7 @@ import math
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
 from ...gaussians.errors import InstructionError
@@ -14,6 +14,7 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.motion.motion import Track
 from ...gaussians.scene import Scene
+from ..alternatives import NOT_GIVEN, either, nonzero
 from ..carried_objects import rows_with_carried
 from ..checks import count_matches
 from ..operation import Context, Outcome, TargetedOp
@@ -22,6 +23,7 @@ from ..receipt import Check, at_most
 from ..timing.added import Start, with_movement
 from ..timing.spans import length_of
 
+_MOST = 100.0  # rounds
 _ROUND = 4.0  # seconds of one round, where nothing is said
 _LEAST = 0.05  # metres from the middle of what it goes round
 
@@ -33,6 +35,7 @@ class Orbit(TargetedOp):
     Without `turns` it goes round until the end of the scene. It stays on its level.
     """
 
+    model_config = ConfigDict(json_schema_extra=either({"turns": NOT_GIVEN}, {"turns": nonzero(_MOST)}))
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "let the toy car drive around the bed once from 1 to 4 s",
         {"op": "orbit", "target": {"text": "toy car"}, "around": {"text": "bed"}, "turns": 1,
@@ -41,7 +44,7 @@ class Orbit(TargetedOp):
     makes_motion: ClassVar[bool] = True
     op: Literal["orbit"] = "orbit"
     around: Query
-    turns: Annotated[float, Field(ge=-100, le=100, allow_inf_nan=False)] | None = None
+    turns: Annotated[float, Field(ge=-_MOST, le=_MOST, allow_inf_nan=False)] | None = None
 
     @model_validator(mode="after")
     def _turns(self) -> Self:

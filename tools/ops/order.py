@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
 from ...gaussians.errors import InstructionError
@@ -15,6 +15,7 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.motion.motion import moving_ids
 from ...gaussians.scene import Scene
+from ..alternatives import NOT_GIVEN, either, given
 from ..checks import count_matches
 from ..operation import Context, Outcome, TargetedOp
 from ..placement.bodies import rows_by_thing
@@ -34,6 +35,14 @@ class Order(TargetedOp):
     seconds from one to the next. What the target means and does not move is left out.
     """
 
+    model_config = ConfigDict(
+        json_schema_extra=either(
+            {"order": given(enum=["listed"]), "first": given()},
+            {"order": {"enum": ["reversed"]}, "first": NOT_GIVEN},
+            {"order": given(enum=["together"]), "first": NOT_GIVEN, "gap": NOT_GIVEN},
+            {"order": given(enum=["kept"]), "first": NOT_GIVEN, "gap": given()},
+        )
+    )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "let the books fall in the opposite order",
         {"op": "order", "target": {"text": "book", "pick": "all"}, "order": "reversed"},
@@ -41,7 +50,7 @@ class Order(TargetedOp):
     makes_motion: ClassVar[bool] = True
     op: Literal["order"] = "order"
     order: Literal["reversed", "listed", "together", "kept"] = "reversed"
-    first: Annotated[tuple[Query, ...], Field(max_length=8)] = ()
+    first: Annotated[tuple[Query, ...], Field(min_length=1, max_length=8)] | None = None
     gap: Annotated[float, Field(gt=0, le=3600, allow_inf_nan=False)] | None = None
 
     @model_validator(mode="after")
@@ -104,7 +113,7 @@ class Order(TargetedOp):
         if self.order != "listed":
             return things[::-1] if self.order == "reversed" else things
         left, placed = list(things), list[tuple[int, I64, float]]()
-        for query in self.first:
+        for query in self.first or ():
             ids = context.resolve(scene, query).require().ids.cpu().numpy()
             found = [t for t in left if np.isin(t[1], ids).any()]
             if len(found) != 1:

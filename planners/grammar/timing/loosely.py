@@ -108,7 +108,9 @@ def _divided(words: Sequence[str], at: int, so_far: _Found, thing: Thing) -> Ite
     ):
         yield from _divided(words, at + 1, so_far, thing)  # "a break in the robot 's walk"
     holds = words[at] == "for" and _LASTS.match(" ".join(words[at + 1 :]))  # that long, and not that it takes so long
-    if words[at] in _EMPTY and not holds:
+    led = so_far.verb is not None and not so_far.noun and words[at - 1] == so_far.verb.said
+    particle = words[at] == "on" and led  # "turn on" is no turning
+    if words[at] in _EMPTY and not holds and not particle:
         yield from _divided(words, at + 1, so_far, thing)
 
 

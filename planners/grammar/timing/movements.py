@@ -35,7 +35,9 @@ def swayed(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     how = _SWAYS.get(clause.verb.first, "bob" if clause.verb.said.endswith("up and down") else None)
     if how is None or not manner.only("times", "turns", "length", "degrees", "way", "forth", "endless"):
         return
-    if how == "swing" and any(singular(w) in _HUNG for w in clause.target.text.split()):
+    if clause.sense in ("open", "close") or (
+        how == "swing" and any(singular(w) in _HUNG for w in clause.target.text.split())
+    ):
         return
     if manner.way not in ("", "up") or (manner.way and how not in ("hop", "bob")) or (manner.way and not manner.length):
         return

@@ -12,7 +12,7 @@ from .strict_json import DECODER, TooDeepError, given_only
 
 MAX_CHARS = 65_536  # of an answer; the longest plans are a tenth of it
 _FAULTS = 4  # reported at once
-_FAULT_CHARS = 240  # of each
+_FAULT_CHARS = 500  # of each; that is enough for the names of all operations
 _UNTOLD = ("title", "description", "examples", "default")  # keywords left out of schemas; the prompts cover them
 
 Location = tuple[int | str, ...]
