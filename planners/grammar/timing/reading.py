@@ -253,11 +253,11 @@ class TimeReader:
             return found
         parts = _parts(said)
         if len(parts) > 1 and (joined := self._joined(parts)) is not None:
-            return joined
+            return None if self._is_timeless(joined, cleaned) else joined
         if (spelled := _spelled(said)) != said and (right := self._whole(spelled)) is not None:
-            return right
+            return None if self._is_timeless(right, cleaned) else right
         if (loose := self._loosely(said)) is not None:
-            return None if all(op.get("when") is None for op in loose) and self._is_plain(cleaned) else loose
+            return None if self._is_timeless(loose, cleaned) else loose
         numbers = moments.TIMED.search(said)
         if numbers is not None:
             raise Refusal(f"what is to happen “{numbers[0]}” is not understood", numbers[0])
@@ -362,6 +362,11 @@ class TimeReader:
                 if found:
                     return found
         return self._about_moving(said)
+
+    def _is_timeless(self, read: tuple[Fields, ...], cleaned: str) -> bool:
+        """Whether a guess at motion names no time, and the rest of the grammar understands the instruction as said."""
+        named = moments.TIMED.search(cleaned) or next(iter(happenings.cut(cleaned, self.thing)), None)
+        return (named is None or all(op.get("when") is None for op in read)) and self._is_plain(cleaned)
 
     def _is_plain(self, cleaned: str) -> bool:
         """Whether the rest of the grammar understands an instruction."""

@@ -150,10 +150,11 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bafter (?=(?:only |just )?(?:[\d.]+|one|two|three|a|half a) ?(?:m|cm|metres?|meters?|centimet(?:re|"
      r"er)s?)\b)", "at "),
     # where to, and where not to
-    (r"(?: ,)? (?:instead of|rather than|and not|not) (?:to |at |into |against |on |in |toward |towards |by |beside |"
+    (r"^(?P<x>.+ (?:to|toward|towards|into|at|against|beside|by|till|until) .+?)(?: ,)? "
+     r"(?:instead of|rather than|and not|not) (?:to |at |into |against |on |in |toward |towards |by |beside |"
      r"next to )?(?P<np>(?:the|its|that|a) (?!right$|left$|other way)(?![a-z ]*(?:second|time|speed|way|start|end|"
      r"beginning)s?\b)"
-     r"[a-z]+(?: [a-z]+){0,2})(?: like now| as now| as before| like before)?$", f" {OWN}"),
+     r"[a-z]+(?: [a-z]+){0,2})(?: like now| as now| as before| like before)?$", rf"\g<x> {OWN}"),
     # when
     (rf"^(?:(?:move|push|shift|set|put|change|bring|pull)(?: forward| back)? )?the (?:start|beginning|onset) (?:of|"
      rf"for) "
