@@ -144,24 +144,15 @@ def _factor(sense: str, manner: Manner) -> float | None:
     return value
 
 
+_SHIFTED = ("be", "start", "stop", "do", "delay", "advance", "play", "reach", "arrive", "leave")
+
+
 def _shifted(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     sign = {"delay": 1.0, "advance": -1.0}.get(clause.sense)
     by = manner.later
     if sign is not None and manner.lasting is not None and not clause.negated:
         by = sign * manner.lasting
-    known = clause.sense in (
-        *MOTION,
-        "be",
-        "start",
-        "stop",
-        "do",
-        "delay",
-        "advance",
-        "play",
-        "reach",
-        "arrive",
-        "leave",
-    )
+    known = clause.sense in (*MOTION, *_SHIFTED)
     if by is None or not known or clause.negated or (sign is None) != (manner.lasting is None):
         return
     if manner.only("later", "lasting", "doing", "goal", "at", "whom") and (_on_floor(manner) or not clause.ordered):

@@ -251,13 +251,8 @@ class TimeReader:
         found = self._whole(said)
         if found is not None:
             return found
-        parts = _parts(said)
-        if len(parts) > 1 and (joined := self._joined(parts)) is not None:
-            return None if self._is_timeless(joined, cleaned) else joined
-        if (spelled := _spelled(said)) != said and (right := self._whole(spelled)) is not None:
-            return None if self._is_timeless(right, cleaned) else right
-        if (loose := self._loosely(said)) is not None:
-            return None if self._is_timeless(loose, cleaned) else loose
+        if (guess := next(self._guesses(said), None)) is not None:
+            return None if self._is_timeless(guess, cleaned) else guess
         numbers = moments.TIMED.search(said)
         if numbers is not None:
             raise Refusal(f"what is to happen “{numbers[0]}” is not understood", numbers[0])
@@ -363,10 +358,22 @@ class TimeReader:
                     return found
         return self._about_moving(said)
 
+    def _guesses(self, said: str) -> Iterator[tuple[Fields, ...]]:
+        """What an instruction may mean that is not read as a whole: part by part, spelled right, in any order."""
+        parts = _parts(said)
+        if len(parts) > 1 and (joined := self._joined(parts)) is not None:
+            yield joined
+        if (spelled := _spelled(said)) != said and (right := self._whole(spelled)) is not None:
+            yield right
+        if (loose := self._loosely(said)) is not None:
+            yield loose
+
     def _is_timeless(self, read: tuple[Fields, ...], cleaned: str) -> bool:
         """Whether a guess at motion names no time, and the rest of the grammar understands the instruction as said."""
-        named = moments.TIMED.search(cleaned) or next(iter(happenings.cut(cleaned, self.thing)), None)
-        return (named is None or all(op.get("when") is None for op in read)) and self._is_plain(cleaned)
+        timed = any(op.get("when") is not None for op in read)
+        if timed and (moments.TIMED.search(cleaned) or any(True for _ in happenings.cut(cleaned, self.thing))):
+            return False
+        return self._is_plain(cleaned)
 
     def _is_plain(self, cleaned: str) -> bool:
         """Whether the rest of the grammar understands an instruction."""

@@ -53,7 +53,7 @@ def _made_to(command: Sequence[str]) -> bool:
     return command[1] in _OBJECT and any(w in doings.plain() or w in doings.ongoing() for w in does)
 
 
-CAN = "through time things can move, turn, open, fall over, hop, follow others, look different and be hidden"
+_CAN = "through time things can move, turn, open, fall over, hop, follow others, look different and be hidden"
 _REQUEST = re.compile(r"^(?:please )?(?:can|could|will|would) (?:you|we|i|someone|somebody) (?:please |just |kindly )*")
 _ARTICLES = bag("the a an my our your that this")
 _SEEMING = bag("like mean feel look seem appear match fit suit stand sit hang lie show stick visit open close")
@@ -67,9 +67,9 @@ def cannot_be(texts: Sequence[str]) -> str:
     start, _ = Lookahead(texts).skip_polite(0)
     command = [w for w in unopened(" ".join(texts[start:])).split() if w not in ("please", "just")]
     if len(command) > 1 and command[0] in doings.ACTIONS and command[1] in _OBJECT:
-        return f"no operation does this ({command[0]}); {CAN}"
+        return f"no operation does this ({command[0]}); {_CAN}"
     if _made_to(command):
-        return f"no operation makes this happen; {CAN}"
+        return f"no operation makes this happen; {_CAN}"
     if _SERVED.match(" ".join(command)):
         return "in a scene nothing is cooked, fetched or served"
     if found := _SHELL.search(said) or _SHELL_SIZE.search(said):
@@ -79,5 +79,5 @@ def cannot_be(texts: Sequence[str]) -> str:
     if _BLURRED.search(said):
         return BLURS
     if found := _RUNNING.search(said):
-        return f"no operation makes the {found.group('thing')} run by itself or sound; {CAN}"
+        return f"no operation makes the {found.group('thing')} run by itself or sound; {_CAN}"
     return ""
