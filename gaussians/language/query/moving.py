@@ -1,9 +1,13 @@
-"""Which groups of a scene move at some time."""
+"""Which groups of a scene move at some time, and when each begins."""
 
 from __future__ import annotations
 
+import math
+
 import torch
 
+from ...motion import events
+from ...motion.courses import course_of
 from ...motion.motion import moving_ids
 from ...rows import mask_of_ids
 from ...scene import Scene
@@ -24,3 +28,9 @@ def moving_groups(scene: Scene, members: GroupIndex) -> frozenset[int]:
         if len(rows) and float(moves[rows].mean()) > _MOST:
             found.add(group.id)
     return frozenset(found)
+
+
+def begins(scene: Scene, group: int) -> float:
+    """The time at which a group of an embedded scene begins to move, in seconds; infinite if it never does."""
+    spans = events.movements(course_of(scene, group))
+    return spans[0][0] if spans else math.inf

@@ -25,6 +25,7 @@ CLEAR_LEAD = 0.55  # share of the best score from which a match of the same name
 NAME_LEAD = 0.35  # share of the best name score below which a match is rather a fragment or a similar object
 EQUAL_SIZE = 1.12  # factor of volume up to which sizes are equal: boxes are measured no better
 EQUAL_PLACE = 0.01  # of a typical object size: difference of places that cannot be measured
+EQUAL_TIME = 0.05  # seconds: things that begin to move within this begin together
 MAX_LISTED = 6  # candidates listed in a sentence
 
 
@@ -41,8 +42,12 @@ class Choice:
     refusal: Selection | None = None
 
 
-def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
-    """The matches that a query refers to, by its `pick`. There must be at least one match."""
+def pick(query: Query, scored: Scored, stand: Stand, begins: Callable[[Group], float] | None = None) -> Choice:
+    """The matches that a query refers to, by its `pick`. There must be at least one match.
+
+    Args:
+        begins: seconds at which a group begins to move: what moves is counted in this order.
+    """
     matches = scored.matches()
     if query.pick == "one":
         return _unique(query, scored, matches)
@@ -50,6 +55,8 @@ def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
         return _counted(query, scored, matches)
     if query.pick == "any":
         return Choice(matches[:1])
+    if query.pick == "nth" and query.moving and begins is not None:
+        return _nth_to_move(query, scored, matches, begins)
     key = _keys(stand)[query.pick if query.pick != "middle" else _row(matches, scored, stand)]
     ordered = sorted(_preferred(scored, matches), key=lambda i: (key(scored.groups[i]), scored.groups[i].id))
     told = tuple(scored.candidate(i) for i in ordered)
@@ -67,6 +74,22 @@ def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
     if abs(rank) > len(ordered):
         return Choice([], nothing(query, f"{query.describe()}: there are only {len(ordered)}", told))
     return Choice([ordered[rank - 1 if rank > 0 else rank]])
+
+
+def _nth_to_move(query: Query, scored: Scored, matches: Sequence[int], begins: Callable[[Group], float]) -> Choice:
+    """The first to move, the last: those that begin together are an ambiguity."""
+    times = {i: begins(scored.groups[i]) for i in matches}
+    ordered = sorted(matches, key=lambda i: (times[i], scored.groups[i].id))
+    told = tuple(scored.candidate(i) for i in ordered)
+    rank = query.ordinal or 1
+    if abs(rank) > len(ordered):
+        return Choice([], nothing(query, f"{query.describe()}: there are only {len(ordered)}", told))
+    found = ordered[rank - 1 if rank > 0 else rank]
+    together = tuple(scored.candidate(i) for i in ordered if abs(times[i] - times[found]) < EQUAL_TIME)
+    if len(together) > 1:
+        reason = f"{query.describe()}: {len(together)} begin at the same time ({listing(together)}); say which one"
+        return Choice([], _refused(query, reason, together, "ambiguous"))
+    return Choice([found])
 
 
 def _row(matches: Sequence[int], scored: Scored, stand: Stand) -> Literal["middle", "lowest"]:

@@ -88,7 +88,8 @@ class Query(BaseModel):
         moving: only what moves at some time, or only what never does.
         pick: of several matches. "one" demands exactly one; "any" takes the best; superlatives and "nth" (with
             `ordinal`) order them; "rest" takes everything but the matches.
-        ordinal: from 1, left to right as the viewer sees them; negative: right to left.
+        ordinal: from 1, left to right as the viewer sees them; negative: right to left. Of what is `moving`, in the
+            order in which things begin to move.
         count: how many are meant ("two chairs", "the two tallest").
         exclude: set difference ("all chairs but the green one"); with pick "one" taken first ("the other chair").
         also: set union ("the chairs and the lamp").

@@ -31,7 +31,7 @@ from .background import background
 from .color.fallback import PARTS, by_color, by_hue, is_reliable
 from .floaters import floaters
 from .keeping import without_strays
-from .moving import moving_groups
+from .moving import begins, moving_groups
 from .part_query import Piece, pieces_of
 from .parts import NAMED
 from .picking import by_distance, pick
@@ -227,7 +227,7 @@ class Resolver:
             near_what = [a.group for a in self.anchors(order)]
             choice = by_distance(query, rank, near_what, order.name == "nearest_to")
         else:
-            choice = pick(query, rank, self.stand)
+            choice = pick(query, rank, self.stand, lambda group: begins(self.scene, group.id))
         if choice.refusal is not None:
             return choice.refusal
         if query.pick == "rest":

@@ -168,8 +168,8 @@ def _with_subject(words: Sequence[str], place: int, verb: Verb | None, thing: Th
     for end in range(first, place + 1):
         between, np = words[end:place], " ".join(words[:end])
         whose = owner(np, thing)
-        if whose is None:
-            continue
+        if whose is None or (between[:1] == ["first"] and owner(f"{np} first", thing) is not None):
+            continue  # "the book that falls first" is a name
         if verb is not None and verb.form == "plain" and between[-1:] and between[-1] in _BE:
             return  # "is open" is how it is, not what it does
         negated = bool({"not", "never", "longer"} & set(between)) != (np in _NOTHING)

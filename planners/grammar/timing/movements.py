@@ -209,7 +209,9 @@ _APART = re.compile(
 _TOGETHER = re.compile(
     rf"^{_LED}(?P<np>.+?) {_MODAL}{_STARTING} (?:all )?(?:at (?:exactly )?(?:the )?(?:same|one) (?:time|moment|"
     rf"instant)|at once|"
-    r"together|simultaneously|all together|in one go|in unison|as one|in sync)$"
+    r"together|simultaneously|all together|in one go|in unison|as one|in sync)$|"
+    r"^(?:drop|start|launch|release) (?P<of>(?:all|both|the|every) .+?) (?:all )?(?:at (?:exactly )?the same (?:time|"
+    r"moment|instant)|at once|together|simultaneously|in one go)$"
 )
 _LIKE = re.compile(
     rf"^{_LED}(?P<a>.+?) {_MODAL}{_STARTING} (?:together|at (?:exactly )?the same (?:time|moment)|simultaneously|in "
@@ -249,7 +251,7 @@ def ordered(said: str, thing: Thing, moment: Moment) -> Iterator[Command]:
         if (gap := seconds_of(text)) is not None:
             yield from _order(thing(_plural_of(found["np"])), "kept", gap=gap)
     if moment.empty and (found := _TOGETHER.match(said)) is not None:
-        yield from _order(thing(_plural_of(found["np"])), "together")
+        yield from _order(thing(_plural_of(found["np"] or found["of"])), "together")
     if moment.empty and (found := _LIKE.match(said)) is not None:
         one, other = thing(found["a"]), thing(found["b"]) or thing(f"{_one(found['b'])} one")
         if one is not None and other is not None and one.pick != "all":

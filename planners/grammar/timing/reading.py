@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 from pydantic import BaseModel, ValidationError
 
@@ -84,7 +84,9 @@ _REMARKS = re.compile(  # what goes without saying behind a time: "..., then bac
     rf"(?:only (?:then|afterwards) )?(?:(?:let it |let him |let her |it )?(?:opens?|goes?|moves?|rolls?|walks?|drives?|"
     rf"falls?|spins?|turns?|runs?)(?: on)?|(?:let it |it )?(?:starts?|begins?) (?:to )?"
     rf"{any_of(MOTION, 'plain', 'ing')})|"
-    rf"not (?:close|open|shut|move|fall|go|start)(?: again| any ?more)?)"
+    rf"not (?:close|open|shut|move|fall|go|start)(?: again| any ?more)?|"
+    rf"(?:(?:it|he|she|they) )?(?:(?:should|must|may|shall|does|do|will|can) )?(?:not|never)(?: ever)? "
+    rf"{any_of(MOTION, 'plain')}(?: back| again| in| out| down| any ?more)*)"
     rf"|(?: ,)+ (?:and )?(?:not|instead of) (?:to )?{any_of(MOTION, 'plain', 'ing')}\b[^,]*"
     rf"|(?: ,)+ (?:(?:and |it )?(?:is |stays? |stand |be |keep it )?(?:still|stopped|not moving|at rest) "
     rf"(?:before(?: that)?|"
@@ -175,6 +177,12 @@ _MOVING = tuple(  # "whatever moves", and "the books that fall"
                 rf"{how}(?= |$)"), moving)
     for how, moving in ((_RESTS, False), (_MOVES, True))
 )  # fmt: skip
+_PLACES = "first|last|second|third|fourth|fifth"
+_NTH = re.compile(  # "the book that falls last", "the first one to move"
+    rf"(?<!\w)(?:the )?(?:(?P<a>{_PLACES}) )?(?P<np>[a-z]+(?: [a-z]+)??)?(?(np) |)(?:that|which|who|to)"
+    rf" (?:(?P<b>first|last) )?{_MOVES}(?: (?:as the )?(?P<c>{_PLACES}|before (?:all )?the others|after (?:all )?the "
+    rf"others)(?: of all)?)?(?= |$)"
+)
 _MOVING_ONE = re.compile(
     rf"\b(?P<det>{_DETERMINERS}) (?P<how>moving|still|static|stationary|unmoving|motionless) (?=(?P<noun>[a-z]+))"
 )
@@ -273,6 +281,9 @@ class TimeReader:
     def _thing_of(self, phrase: str) -> Query | None:
         if phrase in ("it", "he", "she", "him", "her", "this", "that", "they", "them", "itself"):
             return IT
+        if (nth := _NTH.fullmatch(phrase)) is not None and (place := _place(nth)) is not None:
+            named = self.thing(f"the {nth['np']}") if _is_name(nth["np"]) else Query(text="")
+            return None if named is None else _in_order(named, place)
         for pattern, moving in _MOVING:
             if (of := pattern.fullmatch(phrase)) is not None:
                 named = self.thing(of["np"]) if of["np"] else Query(text="", pick="all")
@@ -310,7 +321,7 @@ class TimeReader:
         named = self.thing(np)
         if named is None or named.last:
             return said
-        if named.moving and not named.text:
+        if named.moving and not named.text and named.pick != "nth":
             np = "everything that moves"
         return f"{found['order']}{np}{found['rest']}"
 
@@ -331,8 +342,11 @@ class TimeReader:
             found = self._whole(part)
             if found is None and ops and ops[-1]["op"] in ("recolor", "restyle"):
                 found = self._whole(f"make it {part}")  # "red at 1 s and blue at 3 s"
-            if found is None and ops and (first := part.split(" ")[0]) and has_form(first, tuple(SENSES), "s"):
+            first = part.split(" ")[0]
+            if found is None and ops and has_form(first, tuple(SENSES), "s"):
                 found = self._whole(f"it {part}")  # "it opens at 1 s and closes at 2 s"
+            if found is None and ops and has_form(first, tuple(SENSES), "plain"):
+                found = self._whole(f"{first} it {part[len(first) + 1 :]}")  # "open it at 1 s and close again at 2 s"
             if found and topic is not None and found[0].get("target") == IT:
                 found = ({**found[0], "target": topic}, *found[1:])
             if found is not None:
@@ -462,6 +476,8 @@ class TimeReader:
             lasting = command.blinks * command.every if command.blinks else moment.lasting
             moment = replace(moment, lasting=lasting, taken=False, slowly=False)
             kind = "motion"  # neither little by little nor a way
+        if any("turns_per_second" in op for op in ops):
+            moment = replace(moment, slowly=False)  # how slowly is said in numbers
         if command.always_lasts and moment.stop is None and moment.lasting is None:
             moment = replace(moment, stop="end")
         if command.fades:
@@ -515,22 +531,30 @@ class TimeReader:
 
     def _about_moving(self, said: str) -> tuple[Fields, ...] | None:
         """A command about what moves, or stands still, without a time: "remove whatever moves"."""
+        if (nth := _NTH.search(said)) is not None and (place := _place(nth)) is not None:
+            noun = nth["np"] if _is_name(nth["np"]) else ""
+            named = self.thing(f"the {noun}") if noun else None
+            text = f"{said[: nth.start()]}{f'the {noun}' if noun else 'everything'}{said[nth.end() :]}"
+            names = ("everything", "all") if named is None else (named.text,)
+            return self._with_changed(text, names, partial(_in_order, place=place))
         for pattern, moving in _MOVING:
             if (found := pattern.search(said)) is not None:
                 text = f"{said[: found.start()]}{found['np'] or 'everything'}{said[found.end() :]}"
                 named = self.thing(found["np"]) if found["np"] else None
                 meant = ("everything", "all") if named is None else (named.text,)
-                return self._with_moving(text, meant, moving)
+                return self._with_changed(text, meant, partial(_which_moves, moving=moving))
         found = _MOVING_ONE.search(said)
         if found is not None:
             text = f"{said[: found.start()]}{found['det']} {said[found.end() :]}"
             noun = found["noun"].removesuffix("s")
             names = ("", "everything") if noun in ("thing", "object") else (noun,)
-            return self._with_moving(text, names, found["how"] == "moving")
+            return self._with_changed(text, names, partial(_which_moves, moving=found["how"] == "moving"))
         return None
 
-    def _with_moving(self, text: str, names: Sequence[str], moving: bool) -> tuple[Fields, ...] | None:
-        """A plain command in which what has one of the names moves, or stands still."""
+    def _with_changed(
+        self, text: str, names: Sequence[str], changed: Callable[[Query], Query]
+    ) -> tuple[Fields, ...] | None:
+        """A plain command with what has one of the names changed: to what of it moves, say."""
         with suppress(Refusal, UserError):
             ops = self._understand(_bare(text))
             hit = False
@@ -540,7 +564,7 @@ class TimeReader:
                 if query.exclude or not any(name == query.text or (name and name in query.text) for name in names):
                     return query
                 hit = True
-                return _which_moves(query, moving)
+                return changed(query)
 
             made = tuple(
                 {k: with_queries(v, change) if isinstance(v, Query) else v for k, v in op.items()} for op in ops
@@ -552,7 +576,8 @@ class TimeReader:
 _FRONTED = re.compile(
     r"^(?P<np>.+?)(?: ,)? (?:(?:could|can|would|will) you |please |just |then |i want (?:you to )?|let us )*"
     r"(?P<order>(?:make|turn|paint|colou?r|dye|hide|remove|delete|stop|freeze|slow|speed|move|let|have|give|spin|open|"
-    r"close|play|keep|start|delay|fade|show|pause|get rid of|reverse|lift|push|pull|slide) )"
+    r"close|play|keep|start|delay|fade|show|pause|get rid of|reverse|lift|push|pull|slide|do not (?:show|let|"
+    r"move|open|close|hide|stop)) )"
     r"(?:it|that|them|him|her)(?P<rest> (?!(?:is|are|has|was|moves?|should|does)\b).*)$"
 )
 _HERE = re.compile(r"(?: (?:over )?(?:here|there)|,)+$")
@@ -589,7 +614,7 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
     changes = {op.get("change") for op in command.ops}
     if changes and changes <= ({"begin", "open", "stop"} if ends else {"begin", "open"}):
         return True
-    return (changes == {"stop"} and re.search(r"\bnot\b", remark) is not None) or not _GOES_ON.search(remark)
+    return (changes == {"stop"} and re.search(r"\b(?:not|never)\b", remark) is not None) or not _GOES_ON.search(remark)
 
 
 def _spelled(said: str) -> str:
@@ -632,6 +657,26 @@ def _resting(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
 def _which_moves(query: Query, moving: bool) -> Query:
     text = "" if query.text in ("everything", "all", "thing", "object") else query.text
     return query.model_copy(update={"text": text, "moving": moving})
+
+
+_ANY = (None, "one", "thing", "object", "item")
+
+
+def _is_name(noun: str | None) -> bool:
+    return noun not in _ANY
+
+
+def _place(found: re.Match[str]) -> int | None:
+    """The place in an order that words name: from 1, -1 the last; None if they name none."""
+    said = found["a"] or found["b"] or found["c"]
+    if said is None:
+        return None
+    return -1 if said == "last" or said.startswith("after") else _RANKS.get(said, 1)
+
+
+def _in_order(query: Query, place: int) -> Query:
+    """What of it begins to move as the first, the second, the last."""
+    return _which_moves(query, True).model_copy(update={"pick": "nth", "ordinal": place})
 
 
 def _tidy(said: str) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from ....gaussians import late_re as re
 from .manner import MOTION
-from .moments import DURATION, OWN
+from .moments import DURATION, OWN, seconds_of
 from .verbs import SENSES, any_of, forms
 
 _PLAIN = any_of(MOTION, "plain")
@@ -17,7 +17,10 @@ _S = any_of(MOTION, "s")
 _ING = any_of((*MOTION, "stop"), "ing")
 _IT = "(?:it|he|she|they)"
 _EVENT = "(?:motion|movement|animation|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|move)"
-_BEGIN = "(?:sets? (?:off|out)|starts?|begins?|moves?(?: off)?|goes|gets? (?:going|moving))"
+_BEGIN = (
+    "(?:sets? (?:off|out)|starts?|begins?|moves?(?: off)?|goes|gets? (?:going|moving)|got (?:going|moving)|"
+    "began|started|set off|moved)"
+)
 _SHARE = "(?:a )?(?:half|quarter|third|double|triple|twice)(?: (?:of )?(?:the|its))?"
 _POINT = rf"(?:{DURATION}|\d+(?:\.\d+)?|one|two|three|four|five)"
 _LENGTHS = "for over within in lasting by until till from between last first next the and"
@@ -57,8 +60,41 @@ def _counted(found: re.Match[str]) -> str:
     return found[1] or "one "
 
 
+_SETS_OFF = "(?:leaving|setting off|departing|start(?:s|ing)?|begin(?:s|ning)?|leaves)"
+_IS_THERE = (
+    "(?:(?:getting|being|gets|is) there|arriv(?:es|ing)(?: there)?|reaching it|done|end(?:s|ing)?|stop(?:s|ping)?|"
+    "finish(?:ed|es|ing)?|over|there)"
+)
+
+
+def _from_to(found: re.Match[str]) -> str:
+    """ "leaving at one and getting there at three"."""
+    ends = [end if re.search(r"s(?:ec|$)", end) else f"{end} seconds" for end in (found["a"], found["b"])]
+    return f" from {ends[0]} to {ends[1]}"
+
+
+def _rate(found: re.Match[str]) -> str:
+    """ "one round in four seconds", where how long it goes on is said besides."""
+    seconds = seconds_of(found["d"])
+    return found[0] if not seconds else f"{1 / seconds:g} turns per second"
+
+
 _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
+    # how it is written
+    (r"\bthats\b", "that is"), (r"\bdont\b", "do not"), (r"\bdoesnt\b", "does not"), (r"\bb4\b", "before"),
+    (r"\b(?P<w>whatever|what|anything) (?:it is|is it) (?:that|which) (?=is |are |\w+s\b)", r"\g<w> "),
+    (r"\bso long as\b", "as long as"), (r"\bdouble (?:so|as) (?=fast|quick|slow)", "twice as "),
     # who asks, and how
+    (r"^(?:what (?:i|we) (?:would )?(?:really )?(?:like|love|want|need)(?: to (?:see|have))? is|(?:all|the thing) "
+     r"(?:i|we) (?:want|need|ask)(?: for)? is)(?: that| for| to see)? (?=\S)", "i want "),
+    (r"^(?:(?:i|we) (?:am|was|were|are) (?:just )?wondering (?:what|how) it would (?:look|be)(?: like)?|what would it "
+     r"(?:look|be) like|what|imagine(?: that)?|(?:i|we) would (?:much )?rather(?: have it)?(?: that)?|how "
+     r"would it look)"
+     r" (?:if (?:, )?)?(?=(?:(?:starting|beginning) |the |my |our |all |both |every )[^?]*$)", "it would be nice if "),
+    (rf"^it would be nice if (?:starting|beginning) (?:at|from|with) (?P<d>{_POINT})(?: ,)? (?P<x>(?:the|my|"
+     rf"our|all|both|"
+     r"every) .+)$", r"it would be nice if \g<x> from \g<d>"),
+    (rf"^(?:starting|beginning) (?:at|from|with) (?P<d>{_POINT}) , (?P<x>.+)$", r"\g<x> from \g<d>"),
     (rf"^do (?={any_of(tuple(SENSES), 'plain')} )", ""),  # "do hide it"
     (r"^(?P<i>i|we) should (?:(?:rather|quite|very much|really|so) )*(?=like\b)", r"\g<i> would "),
     (
@@ -110,7 +146,15 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      r"(?:at present|at the moment|right now|currently|so far)\b", r"\g<a>"),
     (rf"^(?P<f>{_SHARE}) (?:speed|pace|tempo) (?:on|for) (?P<x>.+)$", r"play \g<x> at \g<f> speed"),
     (rf"\bin slow ?motion ,? ?(?:at )?(?P<f>{_SHARE}) (?:speed|pace|tempo)\b", r"at \g<f> speed"),
+    (rf"\b(?:one|1|a|a single|a full|one full) (?:round|turn|revolution|rotation) (?:in|every|per|each) "
+     rf"(?P<d>{DURATION})(?=(?: ,)? (?:from|between|all|always|the whole|throughout|for|until))", _rate),
+    (r"(?<= )(?:its|his|the) (?:whole|entire|full|complete) (?:way|path|route)(?= \S)(?! (?:to|from|back)\b)", ""),
     # what it is not
+    (rf"^(?P<x>.+?) (?:should|must|shall|may|does|will) not (?P<y>.+?) (?:at|after|from|by) {_POINT}(?: already)?"
+     rf"(?: ,)? but (?:(?:first|only|rather|instead|already|just) )*(?P<w>at|after|from) (?P<d>{_POINT})$",
+     r"\g<x> should \g<y> \g<w> \g<d>"),
+    (rf" not (?:at|after|from) {_POINT}(?: ,)? but (?:(?:first|only|rather|instead|already) )*(?=(?:at|after|from) )",
+     " "),
     (
         rf"(?: ,)? (?:instead of|rather than) (?:it )?{_ING} (?:(?:at|after|by|until|from) (?:already )?{_POINT}"
         r"|there|then|halfway|early|on)$",
@@ -156,6 +200,16 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      r"beginning)s?\b)"
      r"[a-z]+(?: [a-z]+){0,2})(?: like now| as now| as before| like before)?$", rf"\g<x> {OWN}"),
     # when
+    (rf"(?: ,)? {_SETS_OFF} (?:at|from) (?P<a>{_POINT})(?: ,)?(?: and)? {_IS_THERE} (?:at|by) (?P<b>{_POINT})$",
+     _from_to),
+    (r"\bfor (?:a|one) (?:sec|second|moment|bit)(?: ,)? (?=(?:from|between) )", ""),
+    (r"(?<=\d) already$", ""),
+    (r"\b(?:right|just|shortly|immediately|directly|straight) (?=(?:before|after|when|once) (?:the|it|he|she|"
+     r"they|all) )", ""),
+    (r"\b(?:during|in|for) (?:all )?the (?:whole )?time (?:in which|during which|when|that|while)\b", "while"),
+    (rf"^(?P<x>(?:the )?[a-z ]+?) (?:is |are )?(?:starts?|begins?|starting|{_S})(?: [a-z]+){{0,2}} (?:too )?(?:early|"
+     rf"late|soon) ,(?: please)? (?:let it |have it |make it |it should )?(?:start|begin|{_PLAIN})(?: it)? at "
+     rf"(?P<d>{_POINT})$", lambda m: f"start the {re.sub('^the ', '', m['x'])} at {m['d']}"),
     (rf"^(?:(?:move|push|shift|set|put|change|bring|pull)(?: forward| back)? )?the (?:start|beginning|onset) (?:of|"
      rf"for) "
      rf"(?P<x>(?:the |my )?[a-z ]+?)(?: 's)? (?:(?:should|must|shall) be )?(?:(?:to|at|is) )?(?P<d>{DURATION})(?: "
@@ -197,6 +251,17 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?:right |straight |on )?through (?:to|until|till) the (?:very )?end\b", "until the end"),
     (r"\bat (?:exactly |just )?(?:the same|one and the same) (?:moment|instant)\b(?! (?:as|when)\b)",
      "at the same time"),
+    # where
+    (r"\b(?P<w>up|upwards) (?:off|from|above) (?:the|its|his) [a-z]+(?: [a-z]+)?(?= (?:from|between|at|in|for|"
+     r"over|until)|$)",
+     r"\g<w>"),
+    (r"\bback (?:up |down |over |in )?to (?:its|his|her) (?!start|place|spot|old|first|original|former|"
+     r"colou?r)(?P<x>[a-z]+)",
+     r"to the \g<x>"),
+    (r"\b(?P<w>stays?|remains?|staying) (?:up|down|over|right|back) there\b", r"\g<w> where it is"),
+    (rf"(?P<v>\b(?:{_PLAIN}|{_S}|{_ING}))(?: (?:across|through|along|over) the (?:room|floor|scene|ground|"
+     rf"air))? and (?:to )?"
+     r"(?:ends?|ended|ending|finish(?:es)?|wind|winds) up (?=(?:at|beside|next|by|in|on|near) )", r"\g<v> "),
     # which
     (rf"\bthe (?:whole|entire|complete) (?P<x>[a-z]+(?: 's)?) (?P<e>{_EVENT})\b", r"the \g<x> \g<e>"),
     (rf"\b(?:cut|break) (?P<x>.+? (?:'s )?{_EVENT}) (?:off|short) (?=at|after|when|once)", r"stop \g<x> "),

@@ -8,7 +8,10 @@ seconds".
 from __future__ import annotations
 
 from ....gaussians import late_re as re
+from ..tagging.words import bag
+from .manner import MOTION
 from .moments import DURATION
+from .verbs import has_form
 
 _SPLIT = re.compile(r" (?:\.|;|\n|!)(?: (?:and|so|then|but|also|ok|okay|now|just|please))* ")
 _POINT = (
@@ -56,6 +59,17 @@ _ON = re.compile(
     r"(?:(?:it|on|going|moving|running|turning|spinning|rolling|walking|rotating|at|with|the|its|same|usual|normal|"
     r"full|speed|pace|rate|until|till|to|very|end|of|clip|scene|film|all|time|whole|forever) ?)+$"
 )
+_AS_IT_IS = bag(
+    "same otherwise unchanged usual usually normal normally before nothing again still does did now already carry "
+    "carries carrying continue continues resume resumes whole all onwards"
+)
+_SAYS_NO_MORE = _AS_IT_IS | bag(
+    "it he she they them him her that this one each everything else rest thing things way speed pace rate "
+    "tempo time as so too quick quickly fast slow slowly do is are was has have had like happened happens when how "
+    "what just simply then later after afterwards keep keeps keeping on in out of off up down back and can could "
+    "should must may shall will would see seen be to at with the its his their a go goes let than exactly start "
+    "starts starting begin begins beginning end ends ending stop stops old own colour color look one for run runs"
+)
 _ENDLESS = re.compile(r"\b(?:not|never) (?:ever )?(?:stop|halt|pause|end|rest)|\b(?:keep|go on|continue)\b")
 _STATED = re.compile(
     r"^(?:(?:it|this|that|there|i|we|you|people|guests|everyone|everybody|nobody|someone|my \w+|our \w+|his|her)"
@@ -71,9 +85,16 @@ _ASKS = re.compile(
     r"to turn|\d)\b"
 )
 _NOT_WANTED = re.compile(
-    r"^(?:(?:i|we) (?:do not|would not|never) (?:want|like|wish)(?: (?:that|for))?|do not let) "
-    r"(?:it|he|she|the \w+(?: \w+)?) (?:to )?(?:hit|hits|reach|reaches|touch|bump|crash|end up)\b.*$"
+    r"^(?:(?:the|this|that|it) (?:\w+ ){0,3}(?:is|are|looks?) (?:\w+ ){1,3}, but |(?:the|this|that|it) (?:\w+ ){0,3}"
+    r"(?:is|are|looks?) (?:\w+ ){1,3}but )?(?:(?:i|we) (?:do not|would not|never) (?:want|like|wish)(?: "
+    r"(?:that|for))?|do not let) "
+    r"(?:it|he|she|the \w+(?: \w+)?) (?:to )?(?:hit|hits|reach|reaches|touch|bump|crash|"
+    r"end up|(?:run|roll|go|walk|drive|move|get|come|travel)s? (?:all the way|right up|as far as|up|quite as far))\b.*$"
 )
+_LAST_JOINTS = (" , and then ", " , but ", " , and ", " , then ", " and then ", " but ", " , ")
+_OPENS = bag("when how what at with to in let keep")  # which begin a time or an order, and no remark
+_ITS_TIME = re.compile(rf"\bits (?:full|whole|usual|normal|entire) {DURATION}")
+_EVENTS = bag("roll fall walk motion movement opening closing drop swing turn slide animation")
 _JOINT = re.compile(r" ,(?: (?:and|but))? | (?:and|but) ")
 
 
@@ -99,8 +120,19 @@ def folded(said: str) -> str:
 
 def _without_end(part: str) -> str:
     """A sentence without what goes without saying behind its last comma: "..., leave it up there"."""
-    head, mark, tail = part.rpartition(" , ")
-    return head if mark and len(head.split()) > 2 and _goes_without_saying(head, tail) else part
+    for joint in _LAST_JOINTS:
+        head, mark, tail = part.rpartition(joint)
+        if mark and len(head.split()) > 2 and (_goes_without_saying(head, tail) or _says_no_more(tail)):
+            return _without_end(head.rstrip(" ,"))
+    return part
+
+
+def _says_no_more(said: str) -> bool:
+    """Whether words tell only that all else is as it is: "same roll otherwise", "each falling as quick as it does"."""
+    words = _ITS_TIME.sub("its whole time", said).split()
+    if not 1 < len(words) <= 12 or not _AS_IT_IS & set(words) or words[0] in _OPENS:
+        return False
+    return all(w in _SAYS_NO_MORE or has_form(w, MOTION, "plain", "s", "ing") or w in _EVENTS for w in words)
 
 
 def _goes_without_saying(before: str, said: str) -> bool:
