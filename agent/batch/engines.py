@@ -114,7 +114,8 @@ class Processes:
         for name in tasks:
             waiting.put(name)
         count = min(self._workers, len(tasks))
-        hands = [_Hand(tasks, waiting, done, stock, _threads(self._workers)) for _ in range(count)]
+        retries: dict[str, list[str]] = {name: [] for name in tasks}
+        hands = [_Hand(tasks, waiting, done, retries, stock, _threads(self._workers)) for _ in range(count)]
         try:
             for _ in range(len(tasks)):
                 outcome = done.get()
@@ -127,14 +128,18 @@ class Processes:
 
 
 class _Hand(threading.Thread):
-    """Feeds one worker process, and starts another when it dies."""
+    """Feeds one worker process, and starts another when it dies.
+
+    The job waits behind all others then: what ended the worker may have passed, and others are done meanwhile.
+    """
 
     def __init__(
         self, tasks: Mapping[str, Task], waiting: queue.SimpleQueue[str],
-        done: queue.SimpleQueue[tuple[str, Outcome] | BaseException], stock: _Stock, threads: int,
+        done: queue.SimpleQueue[tuple[str, Outcome] | BaseException], retries: Mapping[str, list[str]], stock: _Stock,
+        threads: int,
     ) -> None:  # fmt: skip
         super().__init__(daemon=True)
-        self._stock = stock
+        self._stock, self._retries = stock, retries
         self._tasks, self._waiting, self._done = tasks, waiting, done
         self._threads, self._ended = threads, False
         self._process: subprocess.Popen[str] | None = None
@@ -149,28 +154,29 @@ class _Hand(threading.Thread):
                 except queue.Empty:
                     return
                 with self._stock.taken(self._tasks[name]):
-                    outcome = self._outcome(self._tasks[name])
-                self._done.put((name, outcome))
+                    outcome = self._outcome(name)
+                if outcome is None:
+                    self._waiting.put(name)
+                else:
+                    self._done.put((name, outcome))
         except BaseException as error:  # told to the loop that waits
             self._done.put(error)
 
-    def _outcome(self, task: Task) -> Outcome:
-        retries = list[str]()
-        while len(retries) < TRIES:
-            process = self._running()
-            try:
-                assert process.stdin is not None and process.stdout is not None
-                process.stdin.write(json.dumps([task.command, task.folder, task.store]) + "\n")
-                process.stdin.flush()
-                reply = process.stdout.readline()
-                if reply.endswith("\n"):
-                    return _told(json.loads(reply), retries)
-            except (OSError, ValueError):
-                pass
-            if self._ended:
-                break
+    def _outcome(self, name: str) -> Outcome | None:
+        """The outcome of a job, None if the worker died and another may try."""
+        task, retries, process = self._tasks[name], self._retries[name], self._running()
+        try:
+            assert process.stdin is not None and process.stdout is not None
+            process.stdin.write(json.dumps([task.command, task.folder, task.store]) + "\n")
+            process.stdin.flush()
+            reply = process.stdout.readline()
+            if reply.endswith("\n"):
+                return _told(json.loads(reply), retries)
+        except (OSError, ValueError):
+            pass
+        if not self._ended:
             retries.append(self._stop())
-        return died(retries)
+        return died(retries) if self._ended or len(retries) >= TRIES else None
 
     def _running(self) -> subprocess.Popen[str]:
         with self._lock:

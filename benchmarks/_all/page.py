@@ -88,7 +88,8 @@ def _head(results: Sequence[Result], failed: Mapping[str, str], elapsed: float |
     left = sorted(set(harness.names()) - {r.name for r in results} - set(failed))
     form = "the quick forms, rougher than the full ones" if first.quick else "the full forms"
     form += f" (left out: {', '.join(left)})" if left else ""
-    less = [] if first.quick else ["", *(f"- {line}" for line in LESS)]
+    parts = [f"{name}: {', '.join(some)} only" for name, some in running.QUICK_PARTS.items()]
+    less = ["", *(f"- {line}" for line in (parts if first.quick else LESS))]
     return [
         f"`scenewright bench all{' --quick' if first.quick else ''}` wrote this page: {len(results)} benchmarks, "
         f"{form}, on revision {first.revision or 'unknown'}, {took}. Every chart and figure here is of "

@@ -74,8 +74,7 @@ LONG = frozenset(
 )
 # Parts that whole runs leave out, with the reason.
 LEFT_OUT = {"edits graded": "its pictures are graded by eye; `scenewright bench edits` makes them"}
-# How benchmarks are divided: parts that share the cores (in whole runs a job each, in quick ones all of them one), and
-# parts that are timed by the clock.
+# How benchmarks are divided: parts that share the cores (in whole runs a job each), and parts timed by the clock.
 SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "select": (
         ("captures",), ("composed",), ("chart",), ("masks", "views"), ("floaters", "floor"),
@@ -85,6 +84,12 @@ SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "edits": (("colour",), ("checks",)),
     "view": (("faults", "levels"),),
 }  # fmt: skip
+# What quick runs measure of some benchmarks: the parts by which their settings are chosen.
+QUICK_PARTS: Mapping[str, tuple[str, ...]] = {
+    "ask": ("geometry", "written"),
+    "plan": ("timed",),
+    "select": ("chart", "names", "thresholds", "attributes", "relations"),
+}
 TIMED_PARTS: Mapping[str, tuple[str, ...]] = {
     "edits": (), "select": ("costs",), "ask": ("speed",), "view": ("browser", "beside", "words")
 }  # fmt: skip
@@ -144,12 +149,9 @@ def jobs(names: Sequence[str], quick: bool) -> list[Job]:
     """What is run, in the order in which it starts: first jobs that are timed, then others, the longest first."""
     found = list[Job]()
     for name in names:
-        if name not in SHARED_PARTS:
-            found.append(Job(name, (), name in TOGETHER))
-            continue
-        shared = SHARED_PARTS[name]
-        found += [Job(name, parts, True) for parts in ((sum(shared, ()),) if quick else shared)]
-        if TIMED_PARTS[name]:
+        shared = (QUICK_PARTS[name],) if quick and name in QUICK_PARTS else SHARED_PARTS.get(name, ((),))
+        found += [Job(name, parts, name in TOGETHER or name in SHARED_PARTS) for parts in shared]
+        if TIMED_PARTS.get(name):
             found.append(Job(name, TIMED_PARTS[name]))
     longest = QUICK_LONGEST if quick else LONGEST
 

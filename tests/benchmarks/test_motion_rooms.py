@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import torch
 
+from scenewright.agent.session.session import Session
 from scenewright.benchmarks._motion import films, fitted, identity, rooms
-from scenewright.gaussians.errors import UserError
+from scenewright.gaussians.errors import InstructionError, UserError
 from scenewright.gaussians.motion.at import at
 
 
@@ -88,3 +89,17 @@ def test_gaussians_belong_to_what_they_show_and_no_longer_when_they_stay_behind(
     some = np.where(np.arange(len(things)) % 2, things, -1).astype(np.int32)
     half = identity.belonging(made.scene.replace(cloud=cloud.replace(group=torch.from_numpy(some))), made)
     assert 0.3 < half.assigned < 0.7
+
+
+def test_what_moves_is_counted_by_when_it_begins() -> None:
+    session = Session(rooms.moving_room("books", 0.1))
+    books = [g.id for g in session.scene.language.groups if "book" in g.label.split()]  # from left to right
+    for words, place in (("first", 0), ("second", 1), ("last", 2)):
+        session.do(f"hide the {words} book that falls")
+        cloud = at(session.scene, 0.0).cloud
+        seen = [float(cloud.opacities[cloud.group == book].max()) > 0.01 for book in books]
+        assert seen == [i != place for i in range(3)]
+        session.undo()
+    session.do("drop all the books at the same time")
+    with pytest.raises(InstructionError, match="same time"):
+        session.do("hide the book that falls first")

@@ -95,6 +95,51 @@ def test_what_moves_and_what_stands_still_are_queries() -> None:
         assert query is not None and query.moving is moving and query.pick == "all"
 
 
+THE_SAME = (  # what a remark repeats, and how a wish is put, changes nothing
+    ("start the ball 1 s later, same roll otherwise", "start the ball 1 s later"),
+    ("freeze the ball from 1.5 to 2.5 s and then it just keeps rolling like nothing happened",
+     "freeze the ball from 1.5 to 2.5 s"),
+    ("hide the lamp so long as the book is falling, later one can see it again",
+     "hide the lamp as long as the book is falling"),
+    ("the door should not begin to open at 1 second but first at 3 seconds",
+     "the door should begin to open at 3 seconds"),
+    ("Have the car drive over to the shelf, leaving at one second and getting there at three.",
+     "have the car drive over to the shelf from 1 to 3 seconds"),
+    ("let the robot walk its whole way double so fast", "let the robot walk twice as fast"),
+    ("starting at three seconds, the car drives to the bed", "the car drives to the bed from 3 seconds"),
+    ("I'd rather the fan started a second later", "let the fan start a second later"),
+    ("whatever it is thats moving, dont show it until 3 s", "do not show whatever moves until 3 s"),
+    ("the book should stay up there and never fall", "the book should stay where it is"),
+    ("open the door at 1 s and close again at 3 s", "open the door at 1 s and close it again at 3 s"),
+    ("make the rug green, not blue", "make the rug green"),
+)  # fmt: skip
+PLACES = (("the book that falls first", 1), ("the last book to fall", -1), ("the second thing that moves", 2))
+
+
+@pytest.mark.parametrize(("text", "plain"), THE_SAME, ids=[c[0] for c in THE_SAME])
+def test_what_goes_without_saying_is_left_out(text: str, plain: str) -> None:
+    long, short = PLANNER.plan(text), PLANNER.plan(plain)
+    assert short.ok and long.ok, (short.reason, long.reason)
+    assert [said(op) for op in long.ops] == [said(op) for op in short.ops]
+
+
+def test_a_remark_that_says_more_is_not_left_out() -> None:
+    for text in (
+        "start the ball 1 s later, same roll but twice as fast",
+        "stop the ball at 2 s, then roll it red again",
+    ):
+        plan = PLANNER.plan(text)
+        assert not plan.ok or len(plan.ops) > 1
+
+
+@pytest.mark.parametrize(("np", "place"), PLACES, ids=[c[0] for c in PLACES])
+def test_things_are_counted_in_the_order_in_which_they_move(np: str, place: int) -> None:
+    for text in (f"hide {np}", f"make {np} red at 2 s", f"delete {np}"):
+        (op,) = PLANNER.plan(text).ops
+        query = op.query()
+        assert query is not None and (query.moving, query.pick, query.ordinal) == (True, "nth", place), text
+
+
 @pytest.mark.parametrize("text", REFUSED)
 def test_what_is_not_understood_is_refused(text: str) -> None:
     assert not PLANNER.plan(text).ok

@@ -264,6 +264,7 @@ def test_a_job_with_which_workers_die_fails_alone(tmp_path: Path, monkeypatch: p
     tasks = {name: Task([name], "x") for name in ("a", "die", "b")}
     found = dict(Processes(1).outcomes(tasks))
     assert [found[n]["code"] for n in tasks] == [0, 4, 0]
+    assert list(found) == ["a", "b", "die"]  # it waits behind the others each time
     assert f"died {TRIES} times" in found["die"]["messages"]
 
 

@@ -69,6 +69,8 @@ def corrected(said: str) -> Iterator[str]:
     if found is None:
         if _WHOLLY_BACK.search(said):
             yield ""
+        elif (contrast := _NOT_BUT.match(said)) is not None and _is_contrast(contrast["before"], contrast["wrong"]):
+            yield contrast["before"]
         return
     if _NOTHING.fullmatch(found.group("after")):
         yield ""
@@ -78,6 +80,12 @@ def corrected(said: str) -> Iterator[str]:
         yield from _merged(before, after_now)
     if "mark" in found.groupdict() and _WHOLLY.search(found.group("mark")):
         yield " ".join(after)
+
+
+def _is_contrast(before: str, wrong: str) -> bool:
+    """Whether words behind "not" name what something has now, of the kind that it gets: "make it green, not blue"."""
+    one, other = ([c.kind for c in chunks(tuple(said.split()))] for said in (wrong, before))
+    return one == ["hue"] and "hue" in other
 
 
 def _readings(after: Sequence[str]) -> Iterator[list[str]]:
