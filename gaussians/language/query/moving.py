@@ -7,7 +7,6 @@ import math
 import torch
 
 from ...motion import events
-from ...motion.courses import course_of
 from ...motion.motion import moving_ids
 from ...rows import mask_of_ids
 from ...scene import Scene
@@ -32,5 +31,5 @@ def moving_groups(scene: Scene, members: GroupIndex) -> frozenset[int]:
 
 def begins(scene: Scene, group: int) -> float:
     """The time at which a group of an embedded scene begins to move, in seconds; infinite if it never does."""
-    spans = events.movements(course_of(scene, group))
+    spans = events.intervals(scene, group, "moving")
     return spans[0][0] if spans else math.inf

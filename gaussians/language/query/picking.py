@@ -55,10 +55,10 @@ def pick(query: Query, scored: Scored, stand: Stand, begins: Callable[[Group], f
         return _counted(query, scored, matches)
     if query.pick == "any":
         return Choice(matches[:1])
-    if query.pick == "nth" and query.moving and begins is not None:
-        return _nth_to_move(query, scored, matches, begins)
-    key = _keys(stand)[query.pick if query.pick != "middle" else _row(matches, scored, stand)]
-    ordered = sorted(_preferred(scored, matches), key=lambda i: (key(scored.groups[i]), scored.groups[i].id))
+    in_time = begins if query.pick == "nth" and query.moving else None
+    key = in_time or _keys(stand)[query.pick if query.pick != "middle" else _row(matches, scored, stand)]
+    values = {i: key(scored.groups[i]) for i in (matches if in_time else _preferred(scored, matches))}
+    ordered = sorted(values, key=lambda i: (values[i], scored.groups[i].id))
     told = tuple(scored.candidate(i) for i in ordered)
     if query.pick == "middle" and len(ordered) % 2 == 0:
         reason = f"{query.describe()}: of {len(ordered)} none is in the middle ({listing(told)}); say which one"
@@ -73,22 +73,12 @@ def pick(query: Query, scored: Scored, stand: Stand, begins: Callable[[Group], f
     rank = (query.ordinal or 1) if query.pick == "nth" else len(ordered) // 2 + 1 if query.pick == "middle" else 1
     if abs(rank) > len(ordered):
         return Choice([], nothing(query, f"{query.describe()}: there are only {len(ordered)}", told))
-    return Choice([ordered[rank - 1 if rank > 0 else rank]])
-
-
-def _nth_to_move(query: Query, scored: Scored, matches: Sequence[int], begins: Callable[[Group], float]) -> Choice:
-    """The first to move, the last: those that begin together are an ambiguity."""
-    times = {i: begins(scored.groups[i]) for i in matches}
-    ordered = sorted(matches, key=lambda i: (times[i], scored.groups[i].id))
-    told = tuple(scored.candidate(i) for i in ordered)
-    rank = query.ordinal or 1
-    if abs(rank) > len(ordered):
-        return Choice([], nothing(query, f"{query.describe()}: there are only {len(ordered)}", told))
     found = ordered[rank - 1 if rank > 0 else rank]
-    together = tuple(scored.candidate(i) for i in ordered if abs(times[i] - times[found]) < EQUAL_TIME)
+    together = [i for i in ordered if abs(values[i] - values[found]) < EQUAL_TIME] if in_time else []
     if len(together) > 1:
-        reason = f"{query.describe()}: {len(together)} begin at the same time ({listing(together)}); say which one"
-        return Choice([], _refused(query, reason, together, "ambiguous"))
+        told = tuple(scored.candidate(i) for i in together)
+        reason = f"{query.describe()}: {len(together)} begin at the same time ({listing(told)}); say which one"
+        return Choice([], _refused(query, reason, told, "ambiguous"))
     return Choice([found])
 
 

@@ -177,7 +177,7 @@ _MOVING = tuple(  # "whatever moves", and "the books that fall"
                 rf"{how}(?= |$)"), moving)
     for how, moving in ((_RESTS, False), (_MOVES, True))
 )  # fmt: skip
-_PLACES = "first|last|second|third|fourth|fifth"
+_PLACES = "|".join(("last", *_RANKS))
 _NTH = re.compile(  # "the book that falls last", "the first one to move"
     rf"(?<!\w)(?:the )?(?:(?P<a>{_PLACES}) )?(?P<np>[a-z]+(?: [a-z]+)??)?(?(np) |)(?:that|which|who|to)"
     rf" (?:(?P<b>first|last) )?{_MOVES}(?: (?:as the )?(?P<c>{_PLACES}|before (?:all )?the others|after (?:all )?the "

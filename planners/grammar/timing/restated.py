@@ -29,6 +29,11 @@ _PASTS = {past: verb for verbs in SENSES.values() for verb in verbs.split(", ") 
           if form == "past" and " " not in verb}  # fmt: skip
 
 
+def _with_unit(time: str) -> str:
+    """A number of seconds with its unit."""
+    return time if re.search(r"\bs(?:ec|$)", time) else f"{time} seconds"
+
+
 def _wished(found: re.Match[str]) -> str:
     """ "(I would be pleased if) the robot turned": a wish, in the form of what was."""
     verb = _PASTS.get(found["verb"])
@@ -40,8 +45,7 @@ def _between(found: re.Match[str]) -> str:
     before = found["before"]
     if found["how"]:  # it moves already, at another pace
         before = re.sub(rf" (?={_PLAIN}$)", " start to ", before)
-    ends = [end if re.search(r"\bs(?:ec|$)", end) else f"{end} seconds" for end in (found["a"], found["b"])]
-    return f"{before} from {ends[0]} to {ends[1]}"
+    return f"{before} from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
 
 
 def _plain_of(verb: str) -> str:
@@ -69,8 +73,7 @@ _IS_THERE = (
 
 def _from_to(found: re.Match[str]) -> str:
     """ "leaving at one and getting there at three"."""
-    ends = [end if re.search(r"s(?:ec|$)", end) else f"{end} seconds" for end in (found["a"], found["b"])]
-    return f" from {ends[0]} to {ends[1]}"
+    return f" from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
 
 
 def _rate(found: re.Match[str]) -> str:
@@ -183,7 +186,7 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      r"its|his) )?(?!(?P=a))(?:left|right)\b", "to the opposite side"),
     (rf"^(?:move|shift|push|put|set|reschedule) (?P<x>the {_EVENT} of the [a-z ]+?|the [a-z ]+? 's {_EVENT}) to "
      rf"(?P<d>{_POINT})$",
-     lambda m: f"start {m['x']} at {m['d']}" + ("" if re.search(r"s(?:ec|$)", m["d"]) else " seconds")),
+     lambda m: f"start {m['x']} at {_with_unit(m['d'])}"),
     (rf"^(?:let |make |have )?(?P<x>(?:the |my )?[a-z ]+?) (?:(?:should|must|may|shall|can|to) )?(?:(?:only|just) "
      rf"(?:{_PLAIN}|{_S}) "
      rf"(?:for|during|in)|(?:{_PLAIN}|{_S}) (?:only|just) (?:for|during|in)) the first "

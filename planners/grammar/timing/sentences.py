@@ -68,7 +68,8 @@ _SAYS_NO_MORE = _AS_IT_IS | bag(
     "tempo time as so too quick quickly fast slow slowly do is are was has have had like happened happens when how "
     "what just simply then later after afterwards keep keeps keeping on in out of off up down back and can could "
     "should must may shall will would see seen be to at with the its his their a go goes let than exactly start "
-    "starts starting begin begins beginning end ends ending stop stops old own colour color look one for run runs"
+    "starts starting begin begins beginning end ends ending stop stops old own colour color look one for run runs "
+    "motion movement animation"
 )
 _ENDLESS = re.compile(r"\b(?:not|never) (?:ever )?(?:stop|halt|pause|end|rest)|\b(?:keep|go on|continue)\b")
 _STATED = re.compile(
@@ -85,16 +86,14 @@ _ASKS = re.compile(
     r"to turn|\d)\b"
 )
 _NOT_WANTED = re.compile(
-    r"^(?:(?:the|this|that|it) (?:\w+ ){0,3}(?:is|are|looks?) (?:\w+ ){1,3}, but |(?:the|this|that|it) (?:\w+ ){0,3}"
-    r"(?:is|are|looks?) (?:\w+ ){1,3}but )?(?:(?:i|we) (?:do not|would not|never) (?:want|like|wish)(?: "
-    r"(?:that|for))?|do not let) "
+    r"^(?:(?:the|this|that|it) (?:\w+ ){0,3}(?:is|are|looks?) (?:\w+ ){1,3}(?:, )?but )?"
+    r"(?:(?:i|we) (?:do not|would not|never) (?:want|like|wish)(?: (?:that|for))?|do not let) "
     r"(?:it|he|she|the \w+(?: \w+)?) (?:to )?(?:hit|hits|reach|reaches|touch|bump|crash|"
     r"end up|(?:run|roll|go|walk|drive|move|get|come|travel)s? (?:all the way|right up|as far as|up|quite as far))\b.*$"
 )
 _LAST_JOINTS = (" , and then ", " , but ", " , and ", " , then ", " and then ", " but ", " , ")
 _OPENS = bag("when how what at with to in let keep")  # which begin a time or an order, and no remark
 _ITS_TIME = re.compile(rf"\bits (?:full|whole|usual|normal|entire) {DURATION}")
-_EVENTS = bag("roll fall walk motion movement opening closing drop swing turn slide animation")
 _JOINT = re.compile(r" ,(?: (?:and|but))? | (?:and|but) ")
 
 
@@ -132,7 +131,7 @@ def _says_no_more(said: str) -> bool:
     words = _ITS_TIME.sub("its whole time", said).split()
     if not 1 < len(words) <= 12 or not _AS_IT_IS & set(words) or words[0] in _OPENS:
         return False
-    return all(w in _SAYS_NO_MORE or has_form(w, MOTION, "plain", "s", "ing") or w in _EVENTS for w in words)
+    return all(w in _SAYS_NO_MORE or has_form(w, MOTION, "plain", "s", "ing") for w in words)
 
 
 def _goes_without_saying(before: str, said: str) -> bool:
