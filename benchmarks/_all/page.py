@@ -11,21 +11,20 @@ from . import running
 
 PAGE = "README.md"
 # What whole runs measure less of than they once did, or than a benchmark does by itself.
+_PARTS_BESIDE = ", ".join(sorted(set(running.SHARED_PARTS) - {"edits"}))
 LESS = (
-    f"{', '.join(sorted(running.TOGETHER))}, and parts of {', '.join(sorted(set(running.SHARED_PARTS) - {'edits'}))}, "
-    "ran beside each other with one thread each: their times are of the processor, or describe a core beside a busy "
-    "one; all other times were measured alone",
+    f"{', '.join(sorted(running.TOGETHER))}, and parts of {_PARTS_BESIDE}, ran beside each other with one thread each: "
+    "their times are of the processor, or describe a core beside a busy one; all other times were measured alone",
+    f"{', '.join(sorted(running.BRIEF))}: their quick forms, on a few things or rooms; each by itself measures more, "
+    "and its own page in docs/ holds those figures",
     *(f"{part} is left out: {reason}" for part, reason in running.LEFT_OUT.items()),
     *(f"{name} is left out: it is long, and its figures are in {page}" for name, page in running.ALONE.items()),
     "fit: the default for five minutes only; `scenewright bench fit` compares eight settings in an hour",
-    "fit_sizes: a minute for each degree on one core, not a minute and a half on two",
     "select: every second kind of composed room, relations in five rooms, faults of masks in one, disturbances and the "
     "chart in two",
     "ask: 240 questions in 8 furnished rooms and 200 in 12 graphs",
     "plan: every eighth sentence of other people, not every fourth",
-    "fill: 40 deletions. slim: no 44 dB. render: the reference renderer is timed at 512x512 alone. mesh: the chart is "
-    "of four things",
-    "dream: twelve seconds each on one core",
+    "slim: no 44 dB. render: the reference renderer is timed at 512x512 alone",
 )
 _ONCE = "accuracies are shares or likenesses, which do not depend on the machine; times do"
 

@@ -53,7 +53,10 @@ ALONE = {
     "fit_blocks": "docs/fit.md",
     "motion": "docs/motion.md",
     "scale": "docs/scale.md",
+    "view": "docs/view.md",
 }
+# What whole runs measure in its quick form: a few things or rooms of what each measures by itself.
+BRIEF = frozenset({"dream", "edits", "fill", "fit_sizes", "layout", "mesh", "restyle"})
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
 LONG = frozenset(
     {
@@ -69,20 +72,22 @@ LONG = frozenset(
         "stability",
         "start",
         "structure",
-        "view",
     }
 )
 # Parts that whole runs leave out, with the reason.
-LEFT_OUT = {"edits graded": "its pictures are graded by eye; `scenewright bench edits` makes them"}
+LEFT_OUT = {
+    "edits graded": "its pictures are graded by eye; `scenewright bench edits` makes them",
+    "ask sight": "`scenewright bench ask --part sight` measures it in minutes",
+    "ask judge": "`scenewright bench ask --part judge` measures it in minutes",
+}
 # How benchmarks are divided: parts that share the cores (in whole runs a job each), and parts timed by the clock.
 SHARED_PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "select": (
         ("captures",), ("composed",), ("chart",), ("masks", "views"), ("floaters", "floor"),
         ("names", "thresholds", "finer"), ("attributes", "relations"), ("meshes", "vectors"),
     ),
-    "ask": (("geometry",), ("written",), ("stability",), ("routing", "views", "vision"), ("sight", "judge")),
-    "edits": (("colour",), ("checks",)),
-    "view": (("faults", "levels"),),
+    "ask": (("geometry",), ("written",), ("stability",), ("routing", "views", "vision")),
+    "edits": (("colour", "checks"),),
 }  # fmt: skip
 # What quick runs measure of some benchmarks: the parts by which their settings are chosen.
 QUICK_PARTS: Mapping[str, tuple[str, ...]] = {
@@ -90,24 +95,18 @@ QUICK_PARTS: Mapping[str, tuple[str, ...]] = {
     "plan": ("timed",),
     "select": ("chart", "names", "thresholds", "attributes", "relations"),
 }
-TIMED_PARTS: Mapping[str, tuple[str, ...]] = {
-    "edits": (), "select": ("costs",), "ask": ("speed",), "view": ("browser", "beside", "words")
-}  # fmt: skip
+TIMED_PARTS: Mapping[str, tuple[str, ...]] = {"select": ("costs",), "ask": ("speed",), "edits": ()}
 # The longest first, so that no core waits for a long job at the end.
 LONGEST = (
     "slim",
     "stability",
-    "mesh",
     "select captures",
-    "ask written",
-    "ask stability",
-    "fit_sizes",
-    "fill",
-    "edits checks",
     "select chart",
-    "dream",
+    "ask routing views vision",
+    "files",
+    "ask stability",
     "ask geometry",
-    "edits colour",
+    "edit",
 )
 QUICK_LONGEST = ("ask", "select", "slim", "plan", "edit")
 MOST_REPEATS = 3
@@ -273,7 +272,8 @@ def _again(found: Mapping[Job, Sequence[Result]], until: float) -> Iterator[Job]
 
 def _run(job: Job, quick: bool, besides: Mapping[str, str] | None = None) -> Result | str:
     """The result of a job in a process of its own, or why there is none."""
-    command = [sys.executable, "-m", "scenewright", "bench", job.name, "--json", *(["--quick"] if quick else [])]
+    brief = quick or job.name in BRIEF
+    command = [sys.executable, "-m", "scenewright", "bench", job.name, "--json", *(["--quick"] if brief else [])]
     command += [word for part in job.parts for word in ("--part", part)]
     less = {} if quick else _LESS.get(job.name, {})
     surroundings = {**less, **os.environ, **(_ONE_THREAD if job.shares and not quick else {}), **(besides or {})}
