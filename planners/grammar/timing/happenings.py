@@ -113,6 +113,8 @@ _OWN = ("moving", "still", "falling", "turning", "open", "fully_open")
 def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     """The state that a clause tells of."""
     sense, fields = clause.sense, manner.fields
+    if sense in ("be", "stay") and manner.state == "still" and manner.only("state", "at", "whom", "goal"):
+        return ("moving", _ENDED) if manner.whom is not None else ("still", _LASTS)  # "it is lying still at the wall"
     ended = clause.form == "past" and bool({"has", "have", "is", "are", "was", "were", "had"} & set(clause.aux))
     place = _RELATED.get(manner.at) if manner.whom is not None else None
     only_place = manner.only("goal", "at", "whom")
@@ -224,6 +226,10 @@ def _who(said: str, thing: Thing) -> Query | None:
         return None
     if (first := re.match(r"^(?:the )?(?:first|last|other) (?=\w)", said)) is not None:
         noun = said[first.end() :]
+        if noun != "one" and "other" not in first[0]:
+            place = "first" if "first" in first[0] else "last"
+            if (one := thing(f"the {noun} that moves {place}")) is not None:
+                return one
         return IT if noun == "one" else thing(f"all {noun if noun.endswith('s') else plural(noun)}")
     return thing(said)
 

@@ -233,7 +233,8 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
     (
         rf"(?:, )?(?:in|over|within|across|inside|during|in the space of|over the course of|in the "
         rf"course of|within the space of|"
-        rf"in the span of|over a (?:span|period) of) (?P<a>{_HEDGE}{_DURATION})(?: time| flat)?",
+        rf"in the span of|over a (?:span|period) of) (?P<a>{_HEDGE}{_DURATION})(?: time| flat)?"
+        r"(?! (?:later|earlier|sooner)\b)",
         _takes,
     ),
     (

@@ -28,7 +28,8 @@ from ..tagging.spelling import is_word
 from ..tagging.words import bag, split
 from ..vocabulary.nouns import is_known
 from ..vocabulary.quantities import NUMBERS
-from . import happenings, moments
+from . import happenings, moments, phrases
+from .asides import topic_of, without_comparisons
 from .clauses import AUXILIARIES
 from .command import Command, Fields
 from .commands import commands, loose_commands
@@ -41,188 +42,12 @@ from .verbs import SENSES, any_of, forms, has_form
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
 
-_TIME_WORDS = re.compile(
-    r"\b(?:\d+ ?s|secs?|seconds?|t ?= ?\d|while|whilst|until|till?|untill|when|whenever|once|after|before|as soon "
-    r"as|as "
-    r"long as|the moment|during|still|motion|movement|rpm|revs?|fast|slow|fast(?:er)?|slower|pause|quicker|"
-    r"backwards?|later|"
-    r"earlier|"
-    r"sooner|slowly|gradually|halfway|way back|(?:half|double) speed|whole (?:time|clip)|always|permanently|throughout|"
-    r"forever|other way|crazy|let|last|beginning|clip|do|does|doing|from \d\S* (?:to|until|till)|between \d|direction|"
-    r"speed|moving|moves|that move|not|never|out|back|quick(?:er|ly)?|twice|as fast)\b"
-)
-_TIMELY = (
-    *(m for m in MOTION if m != "move"),
-    *("stop", "prevent", "stay", "start", "continue", "faster", "slower", "double", "triple", "halve", "reverse"),
-    *("delay", "advance", "play", "fade", "off", "on", "hide", "show"),
-    *("tip", "orbit", "follow", "repeat", "blink", "cross"),
-)
-_JOINT = r"(?: ,)*(?: (?:and|then|and then|after(?: that|wards)?|but|finally|or)(?: ,)*)+ "
-_NORMAL = (
-    r"(?:normal|how it was|as (?:it was|before|usual)|(?:its |the )?(?:original|old|usual|own|first|previous) "
-    r"(?:colou?r|"
-    r"look|state|one)|what it was|before)"
-)
-_REMARKS = re.compile(  # what goes without saying behind a time: "..., then back to normal", "..., and stays there"
-    rf"(?:{_JOINT}(?:(?:it |then |the rest |everything |let it |to )*(?:carr(?:y|ies) on|continues?|goes? on|"
-    rf"resumes?|keeps? "
-    rf"going|moves? on)(?: as (?:before|usual|normal))?|(?:(?:it|he|she|they|turns?|make|goes?|changes?|"
-    rf"switch(?:es)?|returns?|"
-    rf"bring|let|put|have) )*(?:back|return|again)+ (?:to )?{_NORMAL}(?: again| afterwards| after that)?|back(?: "
-    rf"again)?|"
-    rf"(?:(?:bring|put|show|get|have|let) (?:it|him|her|them) )+(?:come )?(?:back|again|in again|return|reappear)"
-    rf"(?: (?:again|afterwards?|after that|later|then|on))*|(?:show|reveal|unhide) (?:it|him|her|them)|"
-    rf"(?:it )?(?:comes?|reappears?|appears?|returns?|shows?)(?: back| again| up)*|normal(?: "
-    rf"again)?|"
-    rf"(?:it |to |let it |i want it )*(?:stays?|remains?|holds?|keeps?|hold|keep|leave|stand|rest|lies?|waits?|"
-    rf"stops?)(?: "
-    rf"(?:it|there|red|blue|green|yellow|white|black|pink|purple|orange|gone|hidden|invisible|him|her|them|up|off|out|down|where|is|are|"
-    rf"still|so|open|shut|closed|like that|that way|in place|put|there for good|that))*|"
-    rf"(?:keep|let|have) (?:it|him|her|them) {any_of(MOTION, 'ing')}(?: (?:at|with) the (?:same|usual|normal) "
-    rf"(?:speed|pace|rate))?(?: on)?|(?:it |to |let it )*{any_of(MOTION, 'plain', 's')} (?:further|farther|along|"
-    rf"onwards?|on again)|"
-    rf"(?:only (?:then|afterwards) )?(?:(?:let it |let him |let her |it )?(?:opens?|goes?|moves?|rolls?|walks?|drives?|"
-    rf"falls?|spins?|turns?|runs?)(?: on)?|(?:let it |it )?(?:starts?|begins?) (?:to )?"
-    rf"{any_of(MOTION, 'plain', 'ing')})|"
-    rf"not (?:close|open|shut|move|fall|go|start)(?: again| any ?more)?|"
-    rf"(?:(?:it|he|she|they) )?(?:(?:should|must|may|shall|does|do|will|can) )?(?:not|never)(?: ever)? "
-    rf"{any_of(MOTION, 'plain')}(?: back| again| in| out| down| any ?more)*)"
-    rf"|(?: ,)+ (?:and )?(?:not|instead of) (?:to )?{any_of(MOTION, 'plain', 'ing')}\b[^,]*"
-    rf"|(?: ,)+ (?:(?:and |it )?(?:is |stays? |stand |be |keep it )?(?:still|stopped|not moving|at rest) "
-    rf"(?:before(?: that)?|"
-    rf"until then)|otherwise (?:as (?:it )?is|unchanged|normal|as (?:usual|before))|"
-    rf"if you (?:would|can|could|please|like)|back to [a-z ]+? when (?:it|the \w+) \w+(?: it)?)"
-    rf"|(?: ,)? (?:so (?:that )?|because |as )(?:i|we|you|one|people) (?!take|last).+)$"
-)
-_BACK_WHEN = re.compile(
-    r" ?,? ?(?:(?:and|then|and then|but) )*(?:(?:it |turns? |goes? |turn it |change it )*(?:back|again)(?: to "
-    r"[a-z ]+?)?|"
-    r"normal(?: again)?|off(?: again)?) (?:when|once|as soon as|after) (?:it|the \w+|that|this) (?:leaves?|stops?|"
-    r"is off|has "
-    r"left|is gone|ends?|does not|is past|has passed|moves? on|rolls? off)(?: it)?$"
-)
-_NOISE = re.compile(
-    r"(?:^| )(?:lol|haha|done|pls|plz|please|thanks|thank you|dear|mate|ok|okay|you know|cheers|kindly|if you can|if "
-    r"possible|"
-    r"can u|could u|would u|u|hmm+|um+|uh|er|btw|"
-    r"would you mind|would you|could you|honey|bro|dude|hey|hi)(?= |$)"
-)
-_RANGE = re.compile(  # "2s-3s", "from 0-1"
-    r"(?:from )?(?P<a>\d+(?:\.\d+)?) ?(?:s|secs?)? ?[-–] ?(?P<b>\d+(?:\.\d+)?) ?(?:s|secs?|seconds)\b|"
-    r"from (?P<c>\d+(?:\.\d+)?) ?[-–] ?(?P<d>\d+(?:\.\d+)?)\b"
-)
-_RANKS = {"first": 1, "second": 2, "third": 3, "fourth": 4, "fifth": 5}
-_RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] = tuple(
-    # what people write, and the same in words that the readers know
-    (re.compile(pattern), plain)
-    for pattern, plain in (
-        (r"(?<=\d) ?= ?", " "), (r"(?: [.!?])+$", ""), (r" ?[!?] ?", " . "), (r"^(?P<x>[\w'.= ]+?) : ", r"\g<x> "),
-        (r"\bits (?=(?:fully|completely|wide|all the way|halfway|on|in|under|at|near|next|behind|still|not|over|off|"
-         r"open|closed|\w+ing)\b)", "it is "),
-        (r"\b(?P<w>after|before) (?=\w+ing\b)(?!(?:after|before) (?:being|having|everything|anything|nothing|something|"
-         r"evening|morning|spring|ceiling|painting)\b)", r"\g<w> it is "),
-        (r"\b(?P<w>while|when|once|until|whenever|as long as) (?=(?:on|in|under|touching|still|standing still|open|"
-         r"closed|"
-         r"moving|(?!the|every|any|nothing|some)\w+ing)\b(?! (?:is|has|starts|stops)))", r"\g<w> it is "),
-        (r"\bsince (?P<a>[\d.]+)(?P<s> (?:seconds?|secs?|s))? until\b", r"from \g<a> until"),
-        (r"\b(?:between|from) seconds? (?P<a>[\d.]+) (?:and|to|until|till) (?P<b>[\d.]+)\b", r"from \g<a> to \g<b> "
-            r"seconds"),
-        (r"\bbetween the (?P<a>first|second|third|fourth|fifth) and (?:the )?(?P<b>first|second|third|fourth|fifth) "
-         r"second\b",
-         lambda m: f"from {_RANKS[m['a']]} to {_RANKS[m['b']]} seconds"),
-        (r"^(?:it (?:would|might) be (?:nice|great|good|lovely|cool) if|i (?:would )?(?:love|like) it if|i would "
-         r"like to see|"
-         r"i want to see|how about|what about) ", ""),
-        (r"^slow ?motion (?:on|for) (?P<x>.+?)(?: ,? (?P<f>half|quarter|third) speed)?$", r"play \g<x> at \g<f> speed"),
-        (r"\b(?P<w>visible|shown|seen|there) only (?=while|when|from|after|between)", r"\g<w> "),
-        (r"\b(?P<w>stop|start|freeze|pause|open|close)(?P<x> .+?)? (?:earlier|sooner|later) ,? "
-         r"?(?=at\b)", r"\g<w>\g<x> "),
-        (r"\b(?:one|1) time in\b", "once in"),
-        (r"\bto (?:the|its) right\b(?! of)", "rightwards"),  # "right" at an end is politeness
-        (r"\b(?P<a>as|so) (?:quickly|rapidly)\b", r"\g<a> fast"), (r"\b(?P<a>as|so) slowly\b", r"\g<a> slow"),
-        (r"\bmore (?:quickly|rapidly)\b", "faster"), (r"\bmore slowly\b", "slower"),
-        (r"(?<= 's) colou?r(?= (?!to\b)\w)(?: is| should be| shall be)?", ""), (r"(?<=\w) 's (?=(?:in )?(?:red|blue|"
-            r"green|yellow|white|"
-         r"black|brown|pink|purple|orange|gr[ae]y|gold|silver)\b)", " "),
-        (r"\b(?P<w>at|until|till|from|after|before) the (?P<a>first|second|third|fourth|fifth) second\b",
-         lambda m: f"{m['w']} {_RANKS[m['a']]} seconds"),
-        (r"\b(?P<w>at|from|until) zero(?! s)", r"\g<w> 0 seconds"), (r"\bfor all (?=\w+ seconds?\b)", "for "),
-        (r"^(?:i|we) (?:do not|would not) (?:want|like)(?: that)? (?P<x>.+?) to (?=\w)", r"do not let \g<x> "),
-        (r"^(?:would|will) it be (?:possible|ok|okay|great|nice|all right) (?:to|if you|if) ?", ""),
-        (r"\bsay (?=half|twice|double|\d)", ""),
-        (r"\bquarter speed\b", "a quarter of the speed"), (r"\bhalf speed\b", "half the speed"),
-    )
-)  # fmt: skip
-_THINGS_ALL = (
-    r"(?:whatever|what|anything|everything|any thing|every thing|all of the things|all (?:the )?(?:things|objects|"
-    r"stuff)|"
-    r"the "
-    r"(?:things?|objects?|stuff)|things|stuff|every object|objects|all)"
-)
-_DETERMINERS = r"(?:the|every|all|all the|any|that|this|both|each)"
-_MOVES = (
-    rf"(?:is |are |s |still )*(?:{any_of(MOTION, 'plain', 's', 'ing')}|in motion|on the move|not standing still|"
-    rf"animated|not "
-    rf"static|not still)(?: around| about| down| here| there| (?:across|over|on|along|through|in|about|around) "
-    rf"(?:the )?"
-    rf"(?:floor|ground|room|scene|air|picture|clip|here|there))*"
-)
-_RESTS = (
-    r"(?:(?:is |are |s )?(?:standing still|stands? still|static|stationary|not moving|immobile|still|motionless|"
-    r"unmoving|at "
-    r"rest)|does not move|do not move|never moves?|stays? (?:still|put)|keeps? still)"
-)
-_MOVING = tuple(  # "whatever moves", and "the books that fall"
-    (re.compile(rf"\b(?:{_THINGS_ALL}(?: that| which)?|(?P<np>{_DETERMINERS}(?: \w+){{1,4}}?) (?:that|which|who)) "
-                rf"{how}(?= |$)"), moving)
-    for how, moving in ((_RESTS, False), (_MOVES, True))
-)  # fmt: skip
-_PLACES = "|".join(("last", *_RANKS))
-_NTH = re.compile(  # "the book that falls last", "the first one to move"
-    rf"(?<!\w)(?:the )?(?:(?P<a>{_PLACES}) )?(?P<np>[a-z]+(?: [a-z]+)??)?(?(np) |)(?:that|which|who|to)"
-    rf" (?:(?P<b>first|last) )?{_MOVES}(?: (?:as the )?(?P<c>{_PLACES}|before (?:all )?the others|after (?:all )?the "
-    rf"others)(?: of all)?)?(?= |$)"
-)
-_MOVING_ONE = re.compile(
-    rf"\b(?P<det>{_DETERMINERS}) (?P<how>moving|still|static|stationary|unmoving|motionless) (?=(?P<noun>[a-z]+))"
-)
-_ASKS = re.compile(
-    r"^(?:what|where|who|why|how|which|when (?:does|do|did|is|will)|does|did|do (?:the|any|all)|is|are|was|were|has|"
-    r"have "
-    r"(?:the|any)|tell me)\b"
-)
-_CONTRARY = re.compile(
-    r"\b(?:spin|move|turn|roll|walk|rotate|run)s? and (?:stand|stay|be|keep)s? still\b|\bopen and closed?\b.*\bsame "
-    r"time\b"
-)
-_RIDDING = re.compile(r"^(?:delete|remove|take|get rid of|throw|put|move|erase|bin|save|catch)\b")
-_REMARK = re.compile(
-    rf"^(?P<np>.+?) (?:is|are|looks?|seems?|starts?|feels?|{any_of(MOTION, 's', 'plain')})(?: \w+){{0,2}} (?:too|"
-    r"much too|way "
-    r"too|so|very|not|really|a bit) .+$|^(?:leave|keep|hold) (?P<kept>.+?) (?:up )?(?:on|in|at|under|over|by|there|"
-    r"where)\b.*$"
-)
-# Words that no name of a thing holds, begins with, or ends with.
-_NEVER = AUXILIARIES - bag("s 's first simply all both") | bag(
-    "let make when while until i you we instead not at by than no"
-)
-_NEVER_FIRST = bag(
-    "to in at on of for with and or up down out off from into by as so faster slower fast slow back half stop begin , "
-    "moving keep hold set please halfway between"
-)
-_NEVER_LAST = bag(
-    "to in at on of for with and or the a from into by as up down out off over back again way more much too , red blue "
-    "green yellow white black purple pink orange golden later earlier last first there still speed late early open "
-    "closed "
-    "shut halfway want 's s wants slowly around round about away gone toward towards onto under behind every my"
-)
-
 
 def may_be_timed(cleaned: str) -> bool:
     """Whether any word could be about time or motion."""
     said = cleaned.lower()
-    return _TIME_WORDS.search(said) is not None or any(
-        has_form(w, _TIMELY, "plain", "s", "ing", "past") for w in re.findall(r"[a-z]+", said)
+    return phrases.TIME_WORDS.search(said) is not None or any(
+        has_form(w, phrases.TIMELY, "plain", "s", "ing", "past") for w in re.findall(r"[a-z]+", said)
     )
 
 
@@ -246,14 +71,15 @@ class TimeReader:
             Refusal: it names a time, and the rest is not understood.
         """
         said = " ".join(
-            w.text for w in split(_RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", cleaned))
+            w.text
+            for w in split(phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", cleaned))
         )
-        if _ASKS.match(said) and cleaned.rstrip().endswith("?"):
+        if phrases.ASKS.match(said) and cleaned.rstrip().endswith("?"):
             return None
         said = _tidy(said)
         if not said:
             return None
-        if _CONTRARY.search(said):
+        if phrases.CONTRARY.search(said):
             raise Refusal("it cannot be both at the same time", said, verdict="impossible")
         said = self._unfronted(said)
         found = self._whole(said)
@@ -281,15 +107,21 @@ class TimeReader:
     def _thing_of(self, phrase: str) -> Query | None:
         if phrase in ("it", "he", "she", "him", "her", "this", "that", "they", "them", "itself"):
             return IT
-        if (nth := _NTH.fullmatch(phrase)) is not None and (place := _place(nth)) is not None:
+        if (nth := phrases.NTH.fullmatch(phrase)) is not None and (place := _place(nth)) is not None:
             named = self.thing(f"the {nth['np']}") if _is_name(nth["np"]) else Query(text="")
             return None if named is None else _in_order(named, place)
-        for pattern, moving in _MOVING:
+        for pattern, moving in phrases.MOVING:
             if (of := pattern.fullmatch(phrase)) is not None:
                 named = self.thing(of["np"]) if of["np"] else Query(text="", pick="all")
                 return None if named is None else _which_moves(named, moving)
         words = phrase.split()
-        if not words or len(words) > 9 or _NEVER & set(words) or words[0] in _NEVER_FIRST or words[-1] in _NEVER_LAST:
+        if (
+            not words
+            or len(words) > 9
+            or phrases.NEVER & set(words)
+            or words[0] in phrases.NEVER_FIRST
+            or words[-1] in phrases.NEVER_LAST
+        ):
             return None
         if _PART_OF_TIME.search(phrase) or _SECONDS.search(phrase) or (len(words) > 1 and _is_verb(words[0])):
             return None
@@ -301,7 +133,7 @@ class TimeReader:
                 return None  # "the robot stop", "the rug and stay there"
         if len(words) > 1 and not is_known(words[-1]) and self.thing(" ".join(words[:-1])):
             return None  # "the door creak"
-        bare = _MOVING_ONE.match(phrase)
+        bare = phrases.MOVING_ONE.match(phrase)
         moves = None
         if bare is not None:
             moves, phrase = bare["how"] == "moving", f"{bare['det']} {phrase[bare.end() :]}"
@@ -334,9 +166,9 @@ class TimeReader:
         topic: Query | None = None
         refusal: Refusal | None = None
         for part in parts:
-            about = _REMARK.match(part)
+            about = _about(part)
             if topic is None and not ops and about is not None and part is not parts[-1]:
-                topic = self.thing(about["np"] or about["kept"])  # "the door opens too late, make it start at 0 s"
+                topic = self.thing(about)  # "the door opens too late, make it start at 0 s"
                 if topic is not None:
                     continue
             found = self._whole(part)
@@ -356,7 +188,13 @@ class TimeReader:
                     found = tuple(self._understand(part))
                 except Refusal as error:
                     refusal = refusal or error
-            ops = _resting(ops, found or ())
+            ops = (
+                _resting(ops, found or ())
+                if not _says_again(ops, found or ())
+                else [
+                    {**found[0], "target": ops[-1]["target"]}  # "close the door. Start closing it at 3 s"
+                ]
+            )
         if not timed:
             return None
         if refusal is not None:
@@ -399,7 +237,7 @@ class TimeReader:
         """One command about motion in any order of its words; None if its readings differ in what is to be done."""
         for rest, moment, happening in self._readings(said):
             told, found = moment.told or happening is not None, list[tuple[Fields, ...]]()
-            if happening is not None and happening.said.startswith("before ") and _RIDDING.match(rest):
+            if happening is not None and happening.said.startswith("before ") and phrases.RIDDING.match(rest):
                 continue
             for command, when in loose_commands(_bare(rest), self.thing, moment, told):
                 with suppress(Refusal, UserError, ValidationError):
@@ -412,7 +250,7 @@ class TimeReader:
 
     def _readings(self, said: str) -> Iterator[tuple[str, Moment, Happening | None]]:
         """The words without what they say of time, and what that is; the most cut first."""
-        shorter = _BACK_WHEN.sub("", said)
+        shorter = phrases.BACK_WHEN.sub("", said)
         flashes = shorter != said
         seen = set[str]()
         for text in dict.fromkeys((shorter, said)):
@@ -435,7 +273,7 @@ class TimeReader:
             return None
         if happening is not None and not moment.empty and moment.lasting is None and moment.stop is not None:
             return None
-        if happening is not None and happening.said.startswith("before ") and _RIDDING.match(said):
+        if happening is not None and happening.said.startswith("before ") and phrases.RIDDING.match(said):
             return None  # "delete the vase before it falls" gives a reason
         for command in commands(said, self.thing, moment, told):
             ends = moment.stop is not None or moment.lasting is not None or happening is not None
@@ -531,19 +369,19 @@ class TimeReader:
 
     def _about_moving(self, said: str) -> tuple[Fields, ...] | None:
         """A command about what moves, or stands still, without a time: "remove whatever moves"."""
-        if (nth := _NTH.search(said)) is not None and (place := _place(nth)) is not None:
+        if (nth := phrases.NTH.search(said)) is not None and (place := _place(nth)) is not None:
             noun = nth["np"] if _is_name(nth["np"]) else ""
             named = self.thing(f"the {noun}") if noun else None
             text = f"{said[: nth.start()]}{f'the {noun}' if noun else 'everything'}{said[nth.end() :]}"
             names = ("everything", "all") if named is None else (named.text,)
             return self._with_changed(text, names, partial(_in_order, place=place))
-        for pattern, moving in _MOVING:
+        for pattern, moving in phrases.MOVING:
             if (found := pattern.search(said)) is not None:
                 text = f"{said[: found.start()]}{found['np'] or 'everything'}{said[found.end() :]}"
                 named = self.thing(found["np"]) if found["np"] else None
                 meant = ("everything", "all") if named is None else (named.text,)
                 return self._with_changed(text, meant, partial(_which_moves, moving=moving))
-        found = _MOVING_ONE.search(said)
+        found = phrases.MOVING_ONE.search(said)
         if found is not None:
             text = f"{said[: found.start()]}{found['det']} {said[found.end() :]}"
             noun = found["noun"].removesuffix("s")
@@ -617,6 +455,14 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
     return (changes == {"stop"} and re.search(r"\b(?:not|never)\b", remark) is not None) or not _GOES_ON.search(remark)
 
 
+def _about(part: str) -> str | None:
+    """The name of what a part tells of that asks for nothing; None if it asks."""
+    topic = topic_of(part)
+    if topic is None and (found := phrases.REMARK.match(part)) is not None:
+        topic = found["np"] or found["kept"]
+    return None if topic is None else re.sub(r"^(?:this|that|these|those) ", "the ", topic)
+
+
 def _spelled(said: str) -> str:
     """The words with those that are none as the word of time or motion from which they differ by a slip."""
     known = _timely_words()
@@ -646,12 +492,33 @@ def _resting(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
     """Operations one after the other; "it stops at 1 s and starts again at 2 s" is one rest from 1 to 2 s."""
     last = ops[-1] if ops else {}
     then = more[0] if len(more) == 1 else {}
+    if (
+        _waits_until(last)
+        and then.get("when") is None
+        and then.get("change") in ("begin", "open", "go_on")
+        and (then["target"] in (IT, last["target"]))
+    ):
+        return [*ops]  # "keep it closed until 3 s, then let it open"
     stop, start = last.get("when"), then.get("when")
     if (last.get("change"), then.get("change")) != ("stop", "begin") or then["target"] not in (IT, last["target"]):
         return [*ops, *more]
     if not isinstance(stop, When) or not isinstance(start, When) or start.start is None or stop.stop or stop.lasting:
         return [*ops, *more]
     return [*ops[:-1], {**last, "when": stop.model_copy(update={"stop": start.start})}]
+
+
+def _waits_until(op: Fields) -> bool:
+    """Whether an operation holds a thing still until a time, so that it moves afterwards."""
+    when = op.get("when")
+    return op.get("change") == "stop" and isinstance(when, When) and when.start is None and when.stop is not None
+
+
+def _says_again(ops: Sequence[Fields], more: Sequence[Fields]) -> bool:
+    """Whether one operation tells the time of the one before."""
+    if len(ops) != 1 or len(more) != 1 or ops[0].get("when") is not None or more[0].get("when") is None:
+        return False
+    same = all(ops[0].get(k) == more[0].get(k) for k in ("op", "change"))
+    return same and more[0].get("target") in (IT, ops[0].get("target"))
 
 
 def _which_moves(query: Query, moving: bool) -> Query:
@@ -671,7 +538,7 @@ def _place(found: re.Match[str]) -> int | None:
     said = found["a"] or found["b"] or found["c"]
     if said is None:
         return None
-    return -1 if said == "last" or said.startswith("after") else _RANKS.get(said, 1)
+    return -1 if said == "last" or said.startswith("after") else phrases.RANKS.get(said, 1)
 
 
 def _in_order(query: Query, place: int) -> Query:
@@ -682,9 +549,9 @@ def _in_order(query: Query, place: int) -> Query:
 def _tidy(said: str) -> str:
     """What is written, in words that the readers know."""
     for _ in range(3):
-        said = _NOISE.sub("", said).strip(" ,.!?\n")
-    said = restated(said)
-    for pattern, plain in _RESTATED:
+        said = phrases.NOISE.sub("", said).strip(" ,.!?\n")
+    said = restated(without_comparisons(said))
+    for pattern, plain in phrases.RESTATED:
         said = pattern.sub(plain, said)
     said = folded(said)
     said = re.sub(
@@ -701,7 +568,7 @@ def _forms(said: str) -> Iterator[tuple[str, str]]:
     while form and form not in seen:
         seen.add(form)
         yield form, remarks
-        shorter = _REMARKS.sub("", form)
+        shorter = phrases.REMARKS.sub("", form)
         form, remarks = _bare(shorter), form[len(shorter) :] + remarks
     first, mark, rest = said.partition(" , ")
     if mark and len(first.split()) < 6 and (turned := _bare(f"{rest} {first}")) not in seen:

@@ -21,16 +21,29 @@ _BEGIN = (
     "(?:sets? (?:off|out)|starts?|begins?|moves?(?: off)?|goes|gets? (?:going|moving)|got (?:going|moving)|"
     "began|started|set off|moved)"
 )
+_COLOR = (
+    "(?:(?:light |dark |bright |deep )?(?:red|blue|green|yellow|white|black|purple|pink|orange|gold|silver|gr[ae]y|"
+    "brown|turquoise))"
+)
 _SHARE = "(?:a )?(?:half|quarter|third|double|triple|twice)(?: (?:of )?(?:the|its))?"
-_POINT = rf"(?:{DURATION}|\d+(?:\.\d+)?|one|two|three|four|five)"
+_POINT = rf"(?:(?:t|second) =? ?\d+(?:\.\d+)?(?: s(?:econds?)?)?|{DURATION}|\d+(?:\.\d+)?|one|two|three|four|five)"
 _LENGTHS = "for over within in lasting by until till from between last first next the and"
 _NO_LENGTH = "".join(f"(?<!{w})" for w in _LENGTHS.split())  # behind one of these words it is no time after something
+_CAUSING = {
+    "letting": "let",
+    "making": "make",
+    "having": "have",
+    "keeping": "keep",
+    "leaving": "leave",
+    "putting": "put",
+}
 _PASTS = {past: verb for verbs in SENSES.values() for verb in verbs.split(", ") for past, form in forms(verb)
           if form == "past" and " " not in verb}  # fmt: skip
 
 
 def _with_unit(time: str) -> str:
     """A number of seconds with its unit."""
+    time = re.sub(r"^(?:t|second) =? ?", "", time)
     return time if re.search(r"\bs(?:ec|$)", time) else f"{time} seconds"
 
 
@@ -59,6 +72,16 @@ def _unwished(said: str) -> str:
     return re.sub(r" (?:should|must|shall|ought|needs|has)(?: to)?$", "", said)
 
 
+def _gone(found: re.Match[str]) -> str:
+    """ "have the lamp vanish at three seconds and come back at four"."""
+    return f"hide {_unwished(found['x'])} from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
+
+
+def _colored(found: re.Match[str]) -> str:
+    """ "the vase goes red at 1 s, back to blue at 3 s"."""
+    return f"make {found['x']} {found['c']} from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
+
+
 def _counted(found: re.Match[str]) -> str:
     """The article before a unit as a number, so that it begins no name: "a second lamp"."""
     return found[1] or "one "
@@ -76,6 +99,13 @@ def _from_to(found: re.Match[str]) -> str:
     return f" from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
 
 
+def _slowed_to(found: re.Match[str]) -> str:
+    """ "slowed to one turn every two seconds"."""
+    seconds = seconds_of(found["d"])
+    whom = (found["x"] or found["w"] or "it").strip()
+    return found[0] if not seconds else f"spin {whom} at {1 / seconds:g} turns per second"
+
+
 def _rate(found: re.Match[str]) -> str:
     """ "one round in four seconds", where how long it goes on is said besides."""
     seconds = seconds_of(found["d"])
@@ -88,6 +118,35 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?P<w>whatever|what|anything) (?:it is|is it) (?:that|which) (?=is |are |\w+s\b)", r"\g<w> "),
     (r"\bso long as\b", "as long as"), (r"\bdouble (?:so|as) (?=fast|quick|slow)", "twice as "),
     # who asks, and how
+    (rf"^(?P<v>{any_of(tuple(SENSES), 'ing')}|letting|making|having|keeping|leaving|putting) (?=(?:the|all|my|our|"
+     rf"it|both|"
+     r"that|this|every) )",  # "would you mind letting the ball go"
+     lambda m: f"{_CAUSING.get(m['v']) or _plain_of(m['v'])} "),
+    (rf"\b(?:(?:i|we) (?:would (?:like|love|prefer)|want|need|wish)(?: to (?:see|have|show|get|watch))?|show|"
+     rf"display|render|"
+     rf"have|see|dress|tint)(?: us| me)? (?P<np>it|him|her|them|the [a-z ]+?|my [a-z]+) (?:in )?(?P<c>{_COLOR})"
+     r"(?= (?:,|\.|and|from|while|when|once|until|till|for|as|at|between|after|before|during|throughout|all|only|"
+     r"instead)\b|"
+     r"$| [,.])", r"make \g<np> \g<c>"),
+    (r"^(?:someone|somebody|you|one) (?:really )?(?:ought to|should|must|has to|have to|needs to|need to|could|"
+     r"can) ", ""),
+    (r"^it would (?:look|be|seem|feel|get) (?:(?:much|far|a bit|a lot|so|more|even) )*[a-z]+ if ",
+     "it would be nice if "),
+    (r"\b(?:i|we) (?:do not|would not|no longer) (?:want|wish|like|need) (?:(?:anyone|anybody|people|them|you|us) "
+     r")?to (?:be able "
+     r"to )?see (?P<np>it|him|her|them|(?:the|my) [a-z ]+?)(?: (?:any ?more|any longer|again|at all))*"
+     r"(?= ?(?:[,.]|while|when|until|from|once|after|before|at)|$)", r"hide \g<np>"),
+    (r"(?:^|(?<=[.!?;] ))(?:could|can|would|will|should) (?:not )?(?P<it>it|he|she|they) (?:not )?(?:just |simply "
+     r"|please |perhaps )*"
+     rf"(?=(?:{any_of(tuple(SENSES), 'plain')}|be) )", r"let \g<it> "),  # "could it not just keep still"
+    (r"\bdo (?:everything|it all|all of it|its thing|all that)\b", "move"),
+    (r"\b(?P<v>waits?|holds? (?:on|back)) and (?:then |only then )?(?=(?:only )?(?:sets?|starts?|begins?|goes?|go|"
+     r"leaves?|"
+     r"moves?) )", ""),
+    (r"(?: ,)? so (?:please |just )*(?=(?:make|let|have|turn|put|stop|start|move|play|slow|speed|delay|hide|paint|"
+     r"open|close|"
+     r"keep|freeze) (?:it|him|her|them|the|that|all)\b)", " . "),
+    (r"\bin the direction of (?=the |my |its )", "toward "),
     (r"^(?:what (?:i|we) (?:would )?(?:really )?(?:like|love|want|need)(?: to (?:see|have))? is|(?:all|the thing) "
      r"(?:i|we) (?:want|need|ask)(?: for)? is)(?: that| for| to see)? (?=\S)", "i want "),
     (r"^(?:(?:i|we) (?:am|was|were|are) (?:just )?wondering (?:what|how) it would (?:look|be)(?: like)?|what would it "
@@ -144,6 +203,13 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      rf"(?:would|is|would be|"
      rf"might) (?:be )?(?:better|nicer|good|nice|fine))?$", r"start the \g<x> at \g<d>"),
     (r"^start the the ", "start the "),
+    (rf"\b(?:start|begin) (?P<v>{any_of(('close', 'open', 'hide', 'rise', 'sink'), 'ing')}) (?=(?:the|it|my|that|"
+     rf"all|them)\b)",
+     lambda m: f"{_plain_of(m['v'])} "),  # what begins is not what moves already
+    (rf"\b(?:tips?|topples?)(?: over)? (?=(?:about |exactly )?{DURATION} (?:later|earlier|sooner))", "start "),
+    (r"\b(?P<w>begin|start)(?P<s>s)? (?:to tip|tipping|to topple|toppling)(?: over)?\b", r"\g<w>\g<s>"),
+    (r"\blet (?P<x>it|him|her|them|the [a-z ]+?) (?:keep|stay|remain|be|hold|stand) still\b", r"keep \g<x> still"),
+    (rf"\b(?P<x>it|he|she) takes? (?P<d>{DURATION}) to (?P<v>{_PLAIN})\b", r"\g<x> \g<v> in \g<d>"),
     # how fast
     (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {_IT} (?:(?:does|do|is|are|did) )?"
      r"(?:at present|at the moment|right now|currently|so far)\b", r"\g<a>"),
@@ -152,7 +218,32 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"\b(?:one|1|a|a single|a full|one full) (?:round|turn|revolution|rotation) (?:in|every|per|each) "
      rf"(?P<d>{DURATION})(?=(?: ,)? (?:from|between|all|always|the whole|throughout|for|until))", _rate),
     (r"(?<= )(?:its|his|the) (?:whole|entire|full|complete) (?:way|path|route)(?= \S)(?! (?:to|from|back)\b)", ""),
+    (r"\b(?:with|at|to|in) (?:the |its )?(?P<f>double|half|triple|twice)(?: of)?(?: the| its)? (?:speed|velocity|"
+     r"pace|tempo)\b",
+     r"at \g<f> speed"),
+    (r"^(?:put|set|run|get) (?P<x>the [a-z ]+?) (?=at (?:double|half|triple|twice) speed)", r"play \g<x> "),
+    (rf"(?:\b(?:(?:could|can|should|must|let|have) )*(?P<w>the [a-z ]+?|it) (?:(?:should|must|to|can|could) )?be "
+     rf")?\b(?:slow(?:ed)?|"
+     rf"sped|speed|brought|reduced|bring|set)(?: down| up)? (?P<x>(?:the [a-z ]+? |it ))?(?:down |up )?(?:to|at) "
+     rf"(?:just |only )?(?:one|1|a|a single|one full) (?:round|turn|revolution|rotation) (?:in|every|"
+     rf"per|each) (?P<d>{DURATION})", _slowed_to),
+    (r"(?: ,)? (?:as )?(?:seen|viewed|looking|looked at|when (?:one|you|we) (?:looks?|sees? it)|if (?:one|you|we) "
+     r"looks?) "
+     r"(?:at it )?(?:down )?from (?:above|the top|on top|the ceiling)\b|^(?:as )?(?:seen|viewed|looking) from "
+     r"(?:above|the "
+     r"top) ,", ""),
+    (r"(?: ,)?(?: so)? (?:counter|anti)? ?-?clockwise(?: ,)? (?:rather than|instead of|and not|not) "
+     r"(?:counter|anti)? ?-?clockwise\b", " the other way"),
+    (r"\b(?P<w>(?:other|opposite) (?:way(?: round| around)?|direction))(?: ,)? (?:so|i e|that is|meaning|namely|hence) "
+     r"(?:counter|anti)? ?-?clockwise\b", r"\g<w>"),
+    (r"(?: ,)? (?:and |but )?still (?:running|turning|going|moving|spinning) (?=from |until |between )", " "),
+    (r"^(?P<r>(?:rewind|reverse) .+?|play .+? (?:in reverse|backwards?)|.+? (?:in reverse|backwards?))(?: ,)? so "
+     r"(?:that )?(?:it|they|"
+     r"he|she|we|the [a-z]+)(?: all| both)? [a-z ]+$", r"\g<r>"),
+    (r"\b(?P<w>go|come|went|came)(?:es|s)? down together\b", "fell"),
     # what it is not
+    (rf"(?: ,)? (?:instead of|rather than|and not|not)(?: (?:at|after|until|by|in))?(?: already| only)? "
+     rf"{_POINT}(?: and a half)?(?= ?(?:[,.]|$))", ""),
     (rf"^(?P<x>.+?) (?:should|must|shall|may|does|will) not (?P<y>.+?) (?:at|after|from|by) {_POINT}(?: already)?"
      rf"(?: ,)? but (?:(?:first|only|rather|instead|already|just) )*(?P<w>at|after|from) (?P<d>{_POINT})$",
      r"\g<x> should \g<y> \g<w> \g<d>"),
@@ -203,6 +294,44 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      r"beginning)s?\b)"
      r"[a-z]+(?: [a-z]+){0,2})(?: like now| as now| as before| like before)?$", rf"\g<x> {OWN}"),
     # when
+    (rf"\b(?P<w>until|till|at|from|after) (?P<d>{DURATION}) in(?:to it)?(?= ?(?:[,.]|and\b|then\b|$))", r"\g<w> \g<d>"),
+    (r"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)?)(?: dead)? in (?:mid ?-? ?(?:air|flight|swing|step|fall|"
+     r"turn)|its tracks|place)\b",
+     r"\g<v>"),
+    (rf"(?: ,)?(?: and)?(?: it| he| she)? (?:holds?|hangs?|waits?|rests?|stands?)(?: (?:there|still|motionless|"
+     rf"frozen|like that|in "
+     rf"place|in mid-air))+ for (?:exactly |just )?(?P<d>{DURATION})", r" for \g<d>"),
+    (rf"(?: ,)?(?: and| but)?(?: only)?(?: then| after (?:that|this)| afterwards)*(?: it| he| she)? (?:continues?|"
+     rf"carr(?:y|ies) on|"
+     rf"goes on|resumes?|proceeds?|keeps? on)(?: (?:to )?(?:{_PLAIN}|{_ING}))?(?: on)?(?: (?:with )?(?:its|the) "
+     rf"(?:way|journey|path|"
+     rf"{_EVENT}))?(?: ,)? (?:until|till|to|up to|as far as) (?:the|its) [a-z]+$", " and then it carries on"),
+    (r"\b(?P<v>leave|keep|hold) (?P<x>the [a-z ]+?|it|them) (?:(?:up|down|over) )?there(?: (?:up |over )?(?:on|in|"
+     r"at) the [a-z]+"
+     r"(?: [a-z]+)?)?(?= ?(?:[,.]|$))", r"do not let \g<x> move"),
+    (r"\b(?P<w>stays?|remains?) where (?P<it>it|he|she) is(?: (?:up|down|over))? (?:on|in|at) the [a-z]+(?: [a-z]+)??"
+     r"(?= (?:while|and|but|until|when|,|[.])|$)", r"\g<w> where \g<it> is"),
+    (r"\b(?P<w>until|till|from|at|after|before) (?:exactly |just )?the (?:very |exact )?(?:moment|point|instant|time)"
+     r"(?: (?:when|that|where|in which|at which))? (?=(?:the|my|it|he|she|they|all|both) )",
+     lambda m: {"at": "when", "from": "once", "after": "after"}.get(m["w"], m["w"]) + " "),
+    (rf"(?P<d>{DURATION}) (?:sharp|exactly|precisely|on the dot)(?= ?(?:[,.]|$))", r"\g<d>"),
+    (rf"^(?P<x>.+?) (?:vanish|disappear|hide|go away|be gone|be hidden|be invisible)(?:s|es)?(?: at| from)? (?:at "
+     rf"|from )?"
+     rf"(?P<a>{_POINT}) (?:, |and |then )+(?:it |he |she )?(?:to )?(?:comes?|is|be|reappears?|appears?|returns?|shows?)"
+     rf"(?: (?:back|again|there|up|visible))* (?:at|from) (?P<b>{_POINT})$", _gone),
+    (rf"^(?P<x>(?:the |my )?[a-z ]+?) (?:goes|turns|becomes|is|should (?:be|turn|go|become)) (?P<c>{_COLOR}) at "
+     rf"(?P<a>{_POINT})"
+     rf" (?:, |and |then )+(?:it |turns |goes |is )*(?:back(?: to (?:{_COLOR}|normal|its own colou?r))?|{_COLOR} "
+     rf"again|normal"
+     rf"(?: again)?) at (?P<b>{_POINT})$", _colored),
+    (rf"(?: ,)? and (?:this|that|the|its|the whole) (?:whole )?{_EVENT} (?:(?:should|must|has to|is to|shall|to) )?"
+     rf"(?:take|last|takes|lasts) (?P<d>{DURATION})", r" in \g<d>"),
+    (rf"(?:^|(?<=[.!?;] ))(?:start|begin) (?P<v>{_ING}|shutting|closing|opening) (?P<x>it|the [a-z ]+?) (?:at|"
+     rf"from) (?P<a>{_POINT}) (?:, |and |"
+     r"please |then )+(?:have it |be |finish |end |it should be |it must be |let it be )(?:(?:fully|completely|"
+     r"all the way|quite) "
+     rf")?(?:shut|closed|open|done|there|finished)? ?(?:by|at) (?P<b>{_POINT})$",
+     lambda m: f"{_plain_of(m['v'])} {m['x']} from {_with_unit(m['a'])} to {_with_unit(m['b'])}"),
     (rf"(?: ,)? {_SETS_OFF} (?:at|from) (?P<a>{_POINT})(?: ,)?(?: and)? {_IS_THERE} (?:at|by) (?P<b>{_POINT})$",
      _from_to),
     (r"\bfor (?:a|one) (?:sec|second|moment|bit)(?: ,)? (?=(?:from|between) )", ""),
@@ -265,7 +394,18 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"(?P<v>\b(?:{_PLAIN}|{_S}|{_ING}))(?: (?:across|through|along|over) the (?:room|floor|scene|ground|"
      rf"air))? and (?:to )?"
      r"(?:ends?|ended|ending|finish(?:es)?|wind|winds) up (?=(?:at|beside|next|by|in|on|near) )", r"\g<v> "),
+    (r"(?P<v>\b(?:float|go|move|rise|lift|come|fly)s? (?:up )?(?:by )?)(?P<d>(?:\d+(?:\.\d+)?|[a-z]+) (?:cm|"
+     r"centimet(?:re|er)s?|m|"
+     r"met(?:re|er)s?)) (?:from|off|above|over) the [a-z]+(?: [a-z]+)?(?= ?(?:[,.]|$))", r"\g<v>\g<d>"),
+    (r"(?P<d>\b(?:\d+(?:\.\d+)?|[a-z]+) (?:cm|centimet(?:re|er)s?|m|met(?:re|er)s?)) (?:off|above) the [a-z]+(?: "
+     r"[a-z]+)?"
+     r"(?= ?(?:[,.]|$))", r"\g<d>"),
+    (r"\b(?P<v>(?:drive|roll|move|walk|go|come|slide|run|fly|hop)s?)(?: up| over)? and (?:then )?(?:stop|park|"
+     r"halt|wait|stand|"
+     r"stay)s? (?=(?:beside|next to|by|near|in front of|behind|at|on) )", r"\g<v> "),
     # which
+    (rf"\bthe (?:whole|entire|complete|full) (?P<e>{_EVENT}|action) (?=of the )", r"the \g<e> "),
+    (r"\bthe (?:whole |entire )?(?P<x>[a-z]+(?: [a-z]+)?) action\b", r"the \g<x> motion"),
     (rf"\bthe (?:whole|entire|complete) (?P<x>[a-z]+(?: 's)?) (?P<e>{_EVENT})\b", r"the \g<x> \g<e>"),
     (rf"\b(?:cut|break) (?P<x>.+? (?:'s )?{_EVENT}) (?:off|short) (?=at|after|when|once)", r"stop \g<x> "),
     (rf"\b(?P<det>the [a-z ]*?)(?P<noun>[a-z]+) (?P<rest>(?:(?:to|should|must|shall) )?{_PLAIN} (?:before|after|while) "

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ....gaussians import late_re as re
 from ..tagging.words import bag
+from .asides import asks_nothing, topic_of
 from .manner import MOTION
 from .moments import DURATION
 from .verbs import has_form
@@ -30,6 +31,9 @@ _LEAD = (
 _DETAILS = tuple(
     (re.compile(rf"^{_LEAD}{pattern}$"), plain)
     for pattern, plain in (
+        (rf"(?:stays?|remains?|holds?|hangs?|waits?|stands?|rests?|is|be|keeps?)(?: (?:frozen|stopped|there|still|"
+         rf"motionless|like "
+         rf"that|in place|put|so|that way|in mid-air))* for (?P<d>{DURATION})", r"for \g<d>"),
         (
             rf"(?:take|takes|taking|last|lasts|lasting|use|using|need|needs|spend|spending) (?:it )?(?P<d>{DURATION})"
             r"(?: (?:for|on) (?:it|that|this|the \w+|\w+ing(?: \w+){0,2})| to \w+(?: \w+){0,2}| in total| long| doing "
@@ -91,7 +95,7 @@ _NOT_WANTED = re.compile(
     r"(?:it|he|she|the \w+(?: \w+)?) (?:to )?(?:hit|hits|reach|reaches|touch|bump|crash|"
     r"end up|(?:run|roll|go|walk|drive|move|get|come|travel)s? (?:all the way|right up|as far as|up|quite as far))\b.*$"
 )
-_LAST_JOINTS = (" , and then ", " , but ", " , and ", " , then ", " and then ", " but ", " , ")
+_LAST_JOINTS = (" , and then ", " , but ", " , and ", " , then ", " and then ", " but ", " while ", " , ")
 _OPENS = bag("when how what at with to in let keep")  # which begin a time or an order, and no remark
 _ITS_TIME = re.compile(rf"\bits (?:full|whole|usual|normal|entire) {DURATION}")
 _JOINT = re.compile(r" ,(?: (?:and|but))? | (?:and|but) ")
@@ -106,13 +110,13 @@ def folded(said: str) -> str:
     parts = [_without_end(p) for p in (p.strip(" ,.;") for p in _SPLIT.split(f"{said} . ")) if p]
     if len(parts) < 2:
         return parts[0] if parts else said
-    told = [p for i, p in enumerate(parts) if not _is_said_beside(p, first=i == 0)]
+    told = [p for i, p in enumerate(parts) if topic_of(p) is not None or not _is_said_beside(p, first=i == 0)]
     made: list[str] = []
     for part in told:
-        detail = _detail(part) if made else None
+        detail = _detail(part) if made and topic_of(made[-1]) is None else None
         if detail is not None:
             made[-1] = f"{made[-1]} {detail}"
-        elif not made or not _goes_without_saying(made[-1], part):
+        elif not made or topic_of(made[-1]) is not None or not _goes_without_saying(made[-1], part):
             made.append(part)
     return " . ".join(made) if made else said
 
@@ -121,7 +125,11 @@ def _without_end(part: str) -> str:
     """A sentence without what goes without saying behind its last comma: "..., leave it up there"."""
     for joint in _LAST_JOINTS:
         head, mark, tail = part.rpartition(joint)
-        if mark and len(head.split()) > 2 and (_goes_without_saying(head, tail) or _says_no_more(tail)):
+        if (
+            mark
+            and len(head.split()) > 2
+            and (_goes_without_saying(head, tail) or _says_no_more(tail) or asks_nothing(tail))
+        ):
             return _without_end(head.rstrip(" ,"))
     return part
 
@@ -143,7 +151,7 @@ def _is_said_beside(part: str, first: bool) -> bool:
     """Whether a sentence asks for nothing: "it is drafty", "my daughter would love that"."""
     if first and _NOT_WANTED.match(part):
         return True  # the sentence behind it says what is wanted
-    return _STATED.match(part) is not None and not _ASKS.search(part)
+    return asks_nothing(part) or (_STATED.match(part) is not None and not _ASKS.search(part))
 
 
 def _detail(part: str) -> str | None:
@@ -151,8 +159,8 @@ def _detail(part: str) -> str | None:
     for pattern, plain in _DETAILS:
         if (found := pattern.match(part)) is not None:
             return found.expand(plain)
-    pieces = [p.strip(" ,") for p in _JOINT.split(part) if p.strip(" ,")]
-    if len(pieces) < 2:
+    pieces = [p.strip(" ,") for p in _JOINT.split(part) if p.strip(" ,") and not asks_nothing(p.strip(" ,"))]
+    if not pieces or pieces == [part]:
         return None
     details = [_detail(piece) for piece in pieces]
     return None if None in details else " ".join(d for d in details if d is not None)

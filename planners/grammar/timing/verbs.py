@@ -29,7 +29,7 @@ SENSES: dict[str, str] = {
         "trundle, dance, creep, rush, race, sail, slither, cruise, zoom, drift, trot, bounce, swing, float, "
         "ride, sway, shuffle, step, proceed, coast, saunter",
     "move": "move, go, come, slide, shift, return, head, get, push, pull, carry, send, bring, take, drag, "
-        "shove, haul, relocate, transfer, put, lead, steer, pass",
+        "shove, haul, translate, relocate, transfer, put, lead, steer, pass",
     "rise": "rise, ascend, climb, levitate, lift, lift off, lift up, raise, hoist, elevate, float up, rise up, "
         "soar",
     "sink": "sink, descend, lower, sink down",
@@ -53,7 +53,8 @@ SENSES: dict[str, str] = {
         "hold still, hold, hold on, cease, come to a stop, come to a halt, come to rest, come to a rest, "
         "come to a standstill, come to an end, settle, take a break, hang back, hold off, hang on, stand by, bring "
         "to a halt, bring to a stop, bring to a standstill, bring to rest, come to a complete stop, "
-        "stop dead, end, finish, park, be done, rest",
+        "stop dead, come to a dead stop, come to a sudden stop, get stuck, stand still, end, finish, park, be done, "
+        "rest",
     "prevent": "prevent, hinder, stop, keep, block, hold",
     "stay": "stay, remain, stand, keep, sit, lie",
     "start": "start, begin, commence, set off, set out, get going, get moving, kick off, launch, trigger, "
