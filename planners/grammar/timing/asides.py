@@ -41,7 +41,7 @@ _COMPARED = tuple(
         rf"(?<=er )than {_DOES}?{_NOW}?(?<!than )",
         r"(?:just |exactly )?where (?:it|he|she|they) (?:would|will|should) (?:normally |usually |otherwise )?[a-z]+"
         r"(?: (?:its|his|her|their|the|to) [a-z]+)?",
-        r"(?:, )?(?:as though|as if|like) (?:nothing|somebody|someone|anybody|it|they|he|she)(?: (?:had|has|was|"
+        r"(?:, )?(?:as though|as if|like) (?:somebody|someone|anybody|it|they|he|she)(?: (?:had|has|was|"
         r"were|is))*"
         r" [a-z]+(?:ed|ing|s)?(?: [a-z]+){0,5}",
         r"(?:, )?(?:if|when) (?:(?:that|it|this) (?:is|was) (?:at all )?(?:possible|ok|okay|all right|fine|"

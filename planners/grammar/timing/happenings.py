@@ -226,10 +226,8 @@ def _who(said: str, thing: Thing) -> Query | None:
         return None
     if (first := re.match(r"^(?:the )?(?:first|last|other) (?=\w)", said)) is not None:
         noun = said[first.end() :]
-        if noun != "one" and "other" not in first[0]:
-            place = "first" if "first" in first[0] else "last"
-            if (one := thing(f"the {noun} that moves {place}")) is not None:
-                return one
+        if noun != "one" and "last" in first[0] and (one := thing(f"the {noun} that moves last")) is not None:
+            return one
         return IT if noun == "one" else thing(f"all {noun if noun.endswith('s') else plural(noun)}")
     return thing(said)
 

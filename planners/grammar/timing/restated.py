@@ -138,7 +138,7 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      r"(?= ?(?:[,.]|while|when|until|from|once|after|before|at)|$)", r"hide \g<np>"),
     (r"(?:^|(?<=[.!?;] ))(?:could|can|would|will|should) (?:not )?(?P<it>it|he|she|they) (?:not )?(?:just |simply "
      r"|please |perhaps )*"
-     rf"(?=(?:{any_of(tuple(SENSES), 'plain')}|be) )", r"let \g<it> "),  # "could it not just keep still"
+     rf"(?=(?:{any_of(tuple(SENSES), 'plain')}|be(?! (?:possible|ok|okay|nice|great|all))) )", r"let \g<it> "),
     (r"\bdo (?:everything|it all|all of it|its thing|all that)\b", "move"),
     (r"\b(?P<v>waits?|holds? (?:on|back)) and (?:then |only then )?(?=(?:only )?(?:sets?|starts?|begins?|goes?|go|"
      r"leaves?|"
@@ -242,7 +242,8 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      r"he|she|we|the [a-z]+)(?: all| both)? [a-z ]+$", r"\g<r>"),
     (r"\b(?P<w>go|come|went|came)(?:es|s)? down together\b", "fell"),
     # what it is not
-    (rf"(?: ,)? (?:instead of|rather than|and not|not)(?: (?:at|after|until|by|in))?(?: already| only)? "
+    (rf"(?<=second|econds)(?: ,)? (?:instead of|rather than|and not|not)(?: (?:at|after|until|by|in))?(?: already|"
+     rf" only)? "
      rf"{_POINT}(?: and a half)?(?= ?(?:[,.]|$))", ""),
     (rf"^(?P<x>.+?) (?:should|must|shall|may|does|will) not (?P<y>.+?) (?:at|after|from|by) {_POINT}(?: already)?"
      rf"(?: ,)? but (?:(?:first|only|rather|instead|already|just) )*(?P<w>at|after|from) (?P<d>{_POINT})$",
@@ -298,7 +299,7 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)?)(?: dead)? in (?:mid ?-? ?(?:air|flight|swing|step|fall|"
      r"turn)|its tracks|place)\b",
      r"\g<v>"),
-    (rf"(?: ,)?(?: and)?(?: it| he| she)? (?:holds?|hangs?|waits?|rests?|stands?)(?: (?:there|still|motionless|"
+    (rf"(?: ,| and)+(?: it| he| she)? (?:holds?|hangs?|waits?|rests?|stands?)(?: (?:there|still|motionless|"
      rf"frozen|like that|in "
      rf"place|in mid-air))+ for (?:exactly |just )?(?P<d>{DURATION})", r" for \g<d>"),
     (rf"(?: ,)?(?: and| but)?(?: only)?(?: then| after (?:that|this)| afterwards)*(?: it| he| she)? (?:continues?|"
@@ -306,7 +307,7 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      rf"goes on|resumes?|proceeds?|keeps? on)(?: (?:to )?(?:{_PLAIN}|{_ING}))?(?: on)?(?: (?:with )?(?:its|the) "
      rf"(?:way|journey|path|"
      rf"{_EVENT}))?(?: ,)? (?:until|till|to|up to|as far as) (?:the|its) [a-z]+$", " and then it carries on"),
-    (r"\b(?P<v>leave|keep|hold) (?P<x>the [a-z ]+?|it|them) (?:(?:up|down|over) )?there(?: (?:up |over )?(?:on|in|"
+    (r"\b(?P<v>leave|keep|hold) (?P<x>the [a-z ]+?) (?:(?:up|down|over) )?there(?: (?:up |over )?(?:on|in|"
      r"at) the [a-z]+"
      r"(?: [a-z]+)?)?(?= ?(?:[,.]|$))", r"do not let \g<x> move"),
     (r"\b(?P<w>stays?|remains?) where (?P<it>it|he|she) is(?: (?:up|down|over))? (?:on|in|at) the [a-z]+(?: [a-z]+)??"

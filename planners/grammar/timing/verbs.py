@@ -53,7 +53,7 @@ SENSES: dict[str, str] = {
         "hold still, hold, hold on, cease, come to a stop, come to a halt, come to rest, come to a rest, "
         "come to a standstill, come to an end, settle, take a break, hang back, hold off, hang on, stand by, bring "
         "to a halt, bring to a stop, bring to a standstill, bring to rest, come to a complete stop, "
-        "stop dead, come to a dead stop, come to a sudden stop, get stuck, stand still, end, finish, park, be done, "
+        "stop dead, come to a dead stop, come to a sudden stop, get stuck, end, finish, park, be done, "
         "rest",
     "prevent": "prevent, hinder, stop, keep, block, hold",
     "stay": "stay, remain, stand, keep, sit, lie",
