@@ -188,13 +188,10 @@ class TimeReader:
                     found = tuple(self._understand(part))
                 except Refusal as error:
                     refusal = refusal or error
-            ops = (
-                _resting(ops, found or ())
-                if not _says_again(ops, found or ())
-                else [
-                    {**found[0], "target": ops[-1]["target"]}  # "close the door. Start closing it at 3 s"
-                ]
-            )
+            if found and _says_again(ops, found):
+                ops = [{**found[0], "target": ops[-1]["target"]}]  # "close the door. Start closing it at 3 s"
+            else:
+                ops = _resting(ops, found or ())
         if not timed:
             return None
         if refusal is not None:
