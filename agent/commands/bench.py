@@ -47,7 +47,7 @@ def command(
     """Run a benchmark and print its figures as a table (Markdown) or, with --json, as data.
 
     Times do not carry over to other machines; ratios and accuracies do. `bench all` runs every benchmark and writes
-    one page with its charts: 3 to 5 minutes with --quick, else about an hour; --resume goes on with a run that was stopped.
+    one page with its charts: 3 to 5 minutes with --quick, else about an hour; --resume goes on with a stopped run.
     `bench guard` holds quick accuracies against the committed baseline, exit code 3 if one is worse; with
     --force it takes them as the new baseline. `bench calibrate` measures in a few minutes how fast this machine is,
     for the predictions of --effort; it needs no checkout.
@@ -102,7 +102,7 @@ def _all(quick: bool, folder: Path, against: Path | None, force: bool, resume: b
     make_folder(folder)
     earlier = [_read(path) for path in sorted(against.glob("*.json"))] if against else []
     for result in earlier:
-        _refuse_other_form(result, quick)
+        _refuse_other_form(result, running.in_quick_form(result.name, quick))
     kept = running.kept_folder(quick)
     if kept is not None and not resume:
         shutil.rmtree(kept, ignore_errors=True)

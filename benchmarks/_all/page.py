@@ -10,8 +10,8 @@ from ..harness import Result, duration
 from . import running
 
 PAGE = "README.md"
+_PARTS_BESIDE = ", ".join(sorted(set(running.SHARED_PARTS) - running.TOGETHER))
 # What whole runs measure less of than they once did, or than a benchmark does by itself.
-_PARTS_BESIDE = ", ".join(sorted(set(running.SHARED_PARTS) - {"edits"}))
 LESS = (
     f"{', '.join(sorted(running.TOGETHER))}, and parts of {_PARTS_BESIDE}, ran beside each other with one thread each: "
     "their times are of the processor, or describe a core beside a busy one; all other times were measured alone",
@@ -85,12 +85,13 @@ def _head(results: Sequence[Result], failed: Mapping[str, str], elapsed: float |
     took = "in several starts" if elapsed is None else f"in {elapsed / 60:.0f} minutes"
     took += f" ({sum(r.processor for r in results) / 60:.0f} minutes of the processor)"
     left = sorted(set(harness.names()) - {r.name for r in results} - set(failed))
-    form = "the quick forms, rougher than the full ones" if first.quick else "the full forms"
+    quick = all(result.quick for result in results)  # whole runs measure some in quick forms
+    form = "the quick forms, rougher than the full ones" if quick else "the full forms"
     form += f" (left out: {', '.join(left)})" if left else ""
     parts = [f"{name}: {', '.join(some)} only" for name, some in running.QUICK_PARTS.items()]
-    less = ["", *(f"- {line}" for line in (parts if first.quick else LESS))]
+    less = ["", *(f"- {line}" for line in (parts if quick else LESS))]
     return [
-        f"`scenewright bench all{' --quick' if first.quick else ''}` wrote this page: {len(results)} benchmarks, "
+        f"`scenewright bench all{' --quick' if quick else ''}` wrote this page: {len(results)} benchmarks, "
         f"{form}, on revision {first.revision or 'unknown'}, {took}. Every chart and figure here is of "
         f"this one revision; {_ONCE}.",
         "",

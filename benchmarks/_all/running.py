@@ -55,7 +55,7 @@ ALONE = {
     "scale": "docs/scale.md",
     "view": "docs/view.md",
 }
-# What whole runs measure in its quick form: a few things or rooms of what each measures by itself.
+# What whole runs measure in their quick forms: a few things or rooms of what each measures by itself.
 BRIEF = frozenset({"dream", "edits", "fill", "fit_sizes", "layout", "mesh", "restyle"})
 # What quick runs leave out: it takes minutes, or has no point on a chart of time against accuracy.
 LONG = frozenset(
@@ -159,6 +159,11 @@ def jobs(names: Sequence[str], quick: bool) -> list[Job]:
         return longest.index(title) if title in longest else len(longest)
 
     return sorted(found, key=lambda job: (job.shares, place(job)))
+
+
+def in_quick_form(name: str, quick: bool) -> bool:
+    """Whether a run of all measures a benchmark in its quick form; `quick`: of all in theirs."""
+    return quick or name in BRIEF
 
 
 def prepare(say: Callable[[str], None]) -> None:
@@ -272,8 +277,8 @@ def _again(found: Mapping[Job, Sequence[Result]], until: float) -> Iterator[Job]
 
 def _run(job: Job, quick: bool, besides: Mapping[str, str] | None = None) -> Result | str:
     """The result of a job in a process of its own, or why there is none."""
-    brief = quick or job.name in BRIEF
-    command = [sys.executable, "-m", "scenewright", "bench", job.name, "--json", *(["--quick"] if brief else [])]
+    form = ["--quick"] if in_quick_form(job.name, quick) else []
+    command = [sys.executable, "-m", "scenewright", "bench", job.name, "--json", *form]
     command += [word for part in job.parts for word in ("--part", part)]
     less = {} if quick else _LESS.get(job.name, {})
     surroundings = {**less, **os.environ, **(_ONE_THREAD if job.shares and not quick else {}), **(besides or {})}

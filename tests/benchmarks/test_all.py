@@ -161,6 +161,21 @@ def test_quick_and_whole_results_are_not_compared(tmp_path: Path) -> None:
             CliRunner().invoke(BENCH, ["bench", *command, "--quick", "--against", str(earlier)], catch_exceptions=False)
 
 
+def test_whole_runs_compare_with_earlier_ones_of_which_some_are_in_quick_form(
+    tmp_path: Path, processes: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(harness, "names", lambda: ("mesh", "plan"))
+    monkeypatch.setattr(running, "prepare", lambda say: None)
+    monkeypatch.setattr(page, "write", lambda folder, *_: (folder / page.PAGE,))
+    (tmp_path / "mesh.json").write_text(result(name="mesh", quick=True).to_json())
+    (tmp_path / "plan.json").write_text(result().to_json())
+    command = ["bench", "all", "-o", str(tmp_path / "new"), "--against", str(tmp_path)]
+    assert CliRunner().invoke(BENCH, command, catch_exceptions=False).exit_code == 0
+    assert sorted(processes[:2]) == ["mesh", "plan"]
+    mixed = [result(name="mesh", quick=True), result()]
+    assert "the full forms" in page.text(mixed, {}) and "the quick forms" in page.text(mixed[:1], {})
+
+
 def test_a_benchmark_that_takes_too_long_is_stopped_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
     def run(command: list[str], timeout: float, **_: Any) -> subprocess.CompletedProcess[str]:
         raise subprocess.TimeoutExpired(command, timeout)

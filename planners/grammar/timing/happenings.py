@@ -113,8 +113,9 @@ _OWN = ("moving", "still", "falling", "turning", "open", "fully_open")
 def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     """The state that a clause tells of."""
     sense, fields = clause.sense, manner.fields
-    if sense in ("be", "stay") and manner.state == "still" and manner.only("state", "at", "whom", "goal"):
-        return ("moving", _ENDED) if manner.whom is not None else ("still", _LASTS)  # "it is lying still at the wall"
+    at_rest = sense in ("be", "stay") and manner.state == "still" and manner.whom is not None
+    if at_rest and manner.only("state", "at", "whom", "goal"):
+        return "moving", _ENDED  # "it is lying still at the wall"
     ended = clause.form == "past" and bool({"has", "have", "is", "are", "was", "were", "had"} & set(clause.aux))
     place = _RELATED.get(manner.at) if manner.whom is not None else None
     only_place = manner.only("goal", "at", "whom")

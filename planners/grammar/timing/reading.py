@@ -29,7 +29,7 @@ from ..tagging.words import bag, split
 from ..vocabulary.nouns import is_known
 from ..vocabulary.quantities import NUMBERS
 from . import happenings, moments, phrases
-from .asides import topic_of, without_comparisons
+from .asides import told_of, without_comparisons
 from .clauses import AUXILIARIES
 from .command import Command, Fields
 from .commands import commands, loose_commands
@@ -454,7 +454,7 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
 
 def _about(part: str) -> str | None:
     """The name of what a part tells of that asks for nothing; None if it asks."""
-    topic = topic_of(part)
+    topic = told_of(part)
     if topic is None and (found := phrases.REMARK.match(part)) is not None:
         topic = found["np"] or found["kept"]
     return None if topic is None else re.sub(r"^(?:this|that|these|those) ", "the ", topic)
@@ -493,9 +493,9 @@ def _resting(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
         _waits_until(last)
         and then.get("when") is None
         and then.get("change") in ("begin", "open", "go_on")
-        and (then["target"] in (IT, last["target"]))
+        and then["target"] in (IT, last["target"])
     ):
-        return [*ops]  # "keep it closed until 3 s, then let it open"
+        return list(ops)  # "keep it closed until 3 s, then let it open"
     stop, start = last.get("when"), then.get("when")
     if (last.get("change"), then.get("change")) != ("stop", "begin") or then["target"] not in (IT, last["target"]):
         return [*ops, *more]

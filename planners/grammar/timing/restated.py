@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ....gaussians import late_re as re
+from .asides import HUES
 from .manner import MOTION
 from .moments import DURATION, OWN, seconds_of
 from .verbs import SENSES, any_of, forms
@@ -21,22 +22,12 @@ _BEGIN = (
     "(?:sets? (?:off|out)|starts?|begins?|moves?(?: off)?|goes|gets? (?:going|moving)|got (?:going|moving)|"
     "began|started|set off|moved)"
 )
-_COLOR = (
-    "(?:(?:light |dark |bright |deep )?(?:red|blue|green|yellow|white|black|purple|pink|orange|gold|silver|gr[ae]y|"
-    "brown|turquoise))"
-)
+_COLOR = f"(?:(?:light |dark |bright |deep )?(?:{HUES}|turquoise))"
 _SHARE = "(?:a )?(?:half|quarter|third|double|triple|twice)(?: (?:of )?(?:the|its))?"
 _POINT = rf"(?:(?:t|second) =? ?\d+(?:\.\d+)?(?: s(?:econds?)?)?|{DURATION}|\d+(?:\.\d+)?|one|two|three|four|five)"
 _LENGTHS = "for over within in lasting by until till from between last first next the and"
 _NO_LENGTH = "".join(f"(?<!{w})" for w in _LENGTHS.split())  # behind one of these words it is no time after something
-_CAUSING = {
-    "letting": "let",
-    "making": "make",
-    "having": "have",
-    "keeping": "keep",
-    "leaving": "leave",
-    "putting": "put",
-}
+_CAUSING = {"letting": "let", "having": "have"}  # which no sense of a verb holds
 _PASTS = {past: verb for verbs in SENSES.values() for verb in verbs.split(", ") for past, form in forms(verb)
           if form == "past" and " " not in verb}  # fmt: skip
 
@@ -45,6 +36,11 @@ def _with_unit(time: str) -> str:
     """A number of seconds with its unit."""
     time = re.sub(r"^(?:t|second) =? ?", "", time)
     return time if re.search(r"\bs(?:ec|$)", time) else f"{time} seconds"
+
+
+def _from_to(found: re.Match[str]) -> str:
+    """ "leaving at one and getting there at three"."""
+    return f" from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
 
 
 def _wished(found: re.Match[str]) -> str:
@@ -58,7 +54,7 @@ def _between(found: re.Match[str]) -> str:
     before = found["before"]
     if found["how"]:  # it moves already, at another pace
         before = re.sub(rf" (?={_PLAIN}$)", " start to ", before)
-    return f"{before} from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
+    return f"{before}{_from_to(found)}"
 
 
 def _plain_of(verb: str) -> str:
@@ -74,12 +70,12 @@ def _unwished(said: str) -> str:
 
 def _gone(found: re.Match[str]) -> str:
     """ "have the lamp vanish at three seconds and come back at four"."""
-    return f"hide {_unwished(found['x'])} from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
+    return f"hide {_unwished(found['x'])}{_from_to(found)}"
 
 
 def _colored(found: re.Match[str]) -> str:
     """ "the vase goes red at 1 s, back to blue at 3 s"."""
-    return f"make {found['x']} {found['c']} from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
+    return f"make {found['x']} {found['c']}{_from_to(found)}"
 
 
 def _counted(found: re.Match[str]) -> str:
@@ -92,11 +88,6 @@ _IS_THERE = (
     "(?:(?:getting|being|gets|is) there|arriv(?:es|ing)(?: there)?|reaching it|done|end(?:s|ing)?|stop(?:s|ping)?|"
     "finish(?:ed|es|ing)?|over|there)"
 )
-
-
-def _from_to(found: re.Match[str]) -> str:
-    """ "leaving at one and getting there at three"."""
-    return f" from {_with_unit(found['a'])} to {_with_unit(found['b'])}"
 
 
 def _slowed_to(found: re.Match[str]) -> str:
@@ -118,7 +109,7 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?P<w>whatever|what|anything) (?:it is|is it) (?:that|which) (?=is |are |\w+s\b)", r"\g<w> "),
     (r"\bso long as\b", "as long as"), (r"\bdouble (?:so|as) (?=fast|quick|slow)", "twice as "),
     # who asks, and how
-    (rf"^(?P<v>{any_of(tuple(SENSES), 'ing')}|letting|making|having|keeping|leaving|putting) (?=(?:the|all|my|our|"
+    (rf"^(?P<v>{any_of(tuple(SENSES), 'ing')}|{'|'.join(_CAUSING)}) (?=(?:the|all|my|our|"
      rf"it|both|"
      r"that|this|every) )",  # "would you mind letting the ball go"
      lambda m: f"{_CAUSING.get(m['v']) or _plain_of(m['v'])} "),
@@ -327,12 +318,12 @@ _RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      rf"(?: again)?) at (?P<b>{_POINT})$", _colored),
     (rf"(?: ,)? and (?:this|that|the|its|the whole) (?:whole )?{_EVENT} (?:(?:should|must|has to|is to|shall|to) )?"
      rf"(?:take|last|takes|lasts) (?P<d>{DURATION})", r" in \g<d>"),
-    (rf"(?:^|(?<=[.!?;] ))(?:start|begin) (?P<v>{_ING}|shutting|closing|opening) (?P<x>it|the [a-z ]+?) (?:at|"
+    (rf"(?:^|(?<=[.!?;] ))(?:start|begin) (?P<v>{_ING}) (?P<x>it|the [a-z ]+?) (?:at|"
      rf"from) (?P<a>{_POINT}) (?:, |and |"
      r"please |then )+(?:have it |be |finish |end |it should be |it must be |let it be )(?:(?:fully|completely|"
      r"all the way|quite) "
      rf")?(?:shut|closed|open|done|there|finished)? ?(?:by|at) (?P<b>{_POINT})$",
-     lambda m: f"{_plain_of(m['v'])} {m['x']} from {_with_unit(m['a'])} to {_with_unit(m['b'])}"),
+     lambda m: f"{_plain_of(m['v'])} {m['x']}{_from_to(m)}"),
     (rf"(?: ,)? {_SETS_OFF} (?:at|from) (?P<a>{_POINT})(?: ,)?(?: and)? {_IS_THERE} (?:at|by) (?P<b>{_POINT})$",
      _from_to),
     (r"\bfor (?:a|one) (?:sec|second|moment|bit)(?: ,)? (?=(?:from|between) )", ""),

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from ....gaussians import late_re as re
 from ..tagging.words import bag
-from .asides import asks_nothing, topic_of
+from .asides import changes_nothing, told_of
 from .manner import MOTION
 from .moments import DURATION
 from .verbs import has_form
@@ -110,14 +110,18 @@ def folded(said: str) -> str:
     parts = [_without_end(p) for p in (p.strip(" ,.;") for p in _SPLIT.split(f"{said} . ")) if p]
     if len(parts) < 2:
         return parts[0] if parts else said
-    told = [p for i, p in enumerate(parts) if topic_of(p) is not None or not _is_said_beside(p, first=i == 0)]
     made: list[str] = []
-    for part in told:
-        detail = _detail(part) if made and topic_of(made[-1]) is None else None
-        if detail is not None:
+    asks = False  # whether the last one made asks for something, to which the next may belong
+    for i, part in enumerate(parts):
+        tells = told_of(part) is not None
+        if not tells and _is_said_beside(part, first=i == 0):
+            continue
+        if asks and (detail := _detail(part)) is not None:
             made[-1] = f"{made[-1]} {detail}"
-        elif not made or topic_of(made[-1]) is not None or not _goes_without_saying(made[-1], part):
+            asks = told_of(made[-1]) is None
+        elif not (asks and _goes_without_saying(made[-1], part)):
             made.append(part)
+            asks = not tells
     return " . ".join(made) if made else said
 
 
@@ -128,7 +132,7 @@ def _without_end(part: str) -> str:
         if (
             mark
             and len(head.split()) > 2
-            and (_goes_without_saying(head, tail) or _says_no_more(tail) or asks_nothing(tail))
+            and (_goes_without_saying(head, tail) or _says_no_more(tail) or changes_nothing(tail))
         ):
             return _without_end(head.rstrip(" ,"))
     return part
@@ -151,7 +155,7 @@ def _is_said_beside(part: str, first: bool) -> bool:
     """Whether a sentence asks for nothing: "it is drafty", "my daughter would love that"."""
     if first and _NOT_WANTED.match(part):
         return True  # the sentence behind it says what is wanted
-    return asks_nothing(part) or (_STATED.match(part) is not None and not _ASKS.search(part))
+    return changes_nothing(part) or (_STATED.match(part) is not None and not _ASKS.search(part))
 
 
 def _detail(part: str) -> str | None:
@@ -159,7 +163,7 @@ def _detail(part: str) -> str | None:
     for pattern, plain in _DETAILS:
         if (found := pattern.match(part)) is not None:
             return found.expand(plain)
-    pieces = [p.strip(" ,") for p in _JOINT.split(part) if p.strip(" ,") and not asks_nothing(p.strip(" ,"))]
+    pieces = [p.strip(" ,") for p in _JOINT.split(part) if p.strip(" ,") and not changes_nothing(p.strip(" ,"))]
     if not pieces or pieces == [part]:
         return None
     details = [_detail(piece) for piece in pieces]
