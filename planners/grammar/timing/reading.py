@@ -36,7 +36,8 @@ from .commands import commands, loose_commands
 from .happenings import IT, Happening
 from .manner import MOTION
 from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
-from .restated import restated
+from .pieces import without_remarks
+from .restated.restating import restated
 from .sentences import folded
 from .verbs import SENSES, any_of, forms, has_form
 
@@ -87,6 +88,11 @@ class TimeReader:
             return found
         if (guess := next(self._guesses(said), None)) is not None:
             return None if self._is_timeless(guess, cleaned) else guess
+        for shorter in without_remarks(said, self.thing, self._is_command):
+            shorter = self._unfronted(_tidy(shorter))
+            found = self._whole(shorter) or next(self._guesses(shorter), None)
+            if found is not None and not self._is_timeless(found, shorter):
+                return found
         numbers = moments.TIMED.search(said)
         if numbers is not None:
             raise Refusal(f"what is to happen “{numbers[0]}” is not understood", numbers[0])
@@ -223,6 +229,10 @@ class TimeReader:
         if timed and (moments.TIMED.search(cleaned) or any(True for _ in happenings.cut(cleaned, self.thing))):
             return False
         return self._is_plain(cleaned)
+
+    def _is_command(self, said: str) -> bool:
+        """Whether words are a command, about time or not."""
+        return self._whole(said) is not None or self._is_plain(said)
 
     def _is_plain(self, cleaned: str) -> bool:
         """Whether the rest of the grammar understands an instruction."""

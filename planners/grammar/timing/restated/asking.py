@@ -1,0 +1,90 @@
+"""Who asks, and how: a wish in any form as an order or as what is to be."""
+
+from __future__ import annotations
+
+from ..moments import DURATION
+from ..verbs import SENSES, any_of
+from .wording import CAUSING, COLOR, EVENT, PASTS, PLAIN, POINT, Rules, S, plain_of, wished
+
+RULES: Rules = (
+    # how it is written
+    (r"\bthats\b", "that is"),
+    (r"\bdont\b", "do not"),
+    (r"\bdoesnt\b", "does not"),
+    (r"\bb4\b", "before"),
+    (r"\b(?P<w>whatever|what|anything) (?:it is|is it) (?:that|which) (?=is |are |\w+s\b)", r"\g<w> "),
+    (r"\bso long as\b", "as long as"),
+    (r"\bdouble (?:so|as) (?=fast|quick|slow)", "twice as "),
+    # who asks, and how
+    (rf"^(?P<v>{any_of(tuple(SENSES), 'ing')}|{'|'.join(CAUSING)}) (?=(?:the|all|my|our|it|both|that|this|every) )",
+     lambda m: f"{CAUSING.get(m['v']) or plain_of(m['v'])} "),  # "would you mind letting the ball go"
+    (r"\b(?:(?:i|we) (?:would (?:like|love|prefer)|want|need|wish)(?: to (?:see|have|show|get|watch))?|show|display|"
+     r"render|have|see|dress|tint)(?: us| me)? (?P<np>it|him|her|them|the [a-z ]+?|my [a-z]+) (?:in "
+     rf")?(?P<c>{COLOR})(?= (?:,|\.|and|from|while|when|once|until|till|for|as|at|between|after|before|during|"
+     r"throughout|all|only|instead)\b|$| [,.])", r"make \g<np> \g<c>"),
+    (r"^(?:someone|somebody|you|one) (?:really )?(?:ought to|should|must|has to|have to|needs to|need to|could|can) ",
+     ""),
+    (r"^it would (?:look|be|seem|feel|get) (?:(?:much|far|a bit|a lot|so|more|even) )*[a-z]+ if ",
+     "it would be nice if "),
+    (r"\b(?:i|we) (?:do not|would not|no longer) (?:want|wish|like|need) (?:(?:anyone|anybody|people|them|you|us) "
+     r")?to (?:be able to )?see (?P<np>it|him|her|them|(?:the|my) [a-z ]+?)(?: (?:any ?more|any longer|again|at "
+     r"all))*(?= ?(?:[,.]|while|when|until|from|once|after|before|at)|$)", r"hide \g<np>"),
+    (r"(?:^|(?<=[.!?;] ))(?:could|can|would|will|should) (?:not )?(?P<it>it|he|she|they) (?:not )?(?:just |simply |"
+     rf"please |perhaps )*(?=(?:{any_of(tuple(SENSES), 'plain')}|be(?! (?:possible|ok|okay|nice|great|all))) )",
+     r"let \g<it> "),
+    (r"\bdo (?:everything|it all|all of it|its thing|all that)\b", "move"),
+    (r"\b(?P<v>waits?|holds? (?:on|back)) and (?:then |only then )?(?=(?:only )?(?:sets?|starts?|begins?|goes?|go|"
+     r"leaves?|moves?) )", ""),
+    (r"(?: ,)? so (?:please |just )*(?=(?:make|let|have|turn|put|stop|start|move|play|slow|speed|delay|hide|paint|"
+     r"open|close|keep|freeze) (?:it|him|her|them|the|that|all)\b)", " . "),
+    (r"\bin the direction of (?=the |my |its )", "toward "),
+    (r"^(?:what (?:i|we) (?:would )?(?:really )?(?:like|love|want|need)(?: to (?:see|have))? is|(?:all|the thing) "
+     r"(?:i|we) (?:want|need|ask)(?: for)? is)(?: that| for| to see)? (?=\S)", "i want "),
+    (r"^(?:(?:i|we) (?:am|was|were|are) (?:just )?wondering (?:what|how) it would (?:look|be)(?: like)?|what would "
+     r"it (?:look|be) like|what|imagine(?: that)?|(?:i|we) would (?:much )?rather(?: have it)?(?: that)?|how would "
+     r"it look) (?:if (?:, )?)?(?=(?:(?:starting|beginning) |the |my |our |all |both |every )[^?]*$)",
+     "it would be nice if "),
+    (rf"^it would be nice if (?:starting|beginning) (?:at|from|with) (?P<d>{POINT})(?: ,)? (?P<x>(?:the|my|our|all|"
+     r"both|every) .+)$", r"it would be nice if \g<x> from \g<d>"),
+    (rf"^(?:starting|beginning) (?:at|from|with) (?P<d>{POINT}) , (?P<x>.+)$", r"\g<x> from \g<d>"),
+    (rf"^do (?={any_of(tuple(SENSES), 'plain')} )", ""),  # "do hide it"
+    (r"^(?P<i>i|we) should (?:(?:rather|quite|very much|really|so) )*(?=like\b)", r"\g<i> would "),
+    (r"^(?:i|we) (?:would|should|am|are) be (?:(?:very|so|most|rather|quite|really) )*(?:pleased|glad|happy|grateful|"
+     r"delighted|thankful|obliged) if (?:(?:you|we) (?:could|would|can|will) )?", "it would be nice if "),
+    (rf"^it would be nice if you (?P<verb>{'|'.join(sorted(PASTS))})(?= )", lambda m: PASTS[m["verb"]]),
+    (rf"^it would be nice if (?P<np>(?:the|my|our|every|all|both) [a-z ]+?) (?P<verb>{'|'.join(sorted(PASTS))})"
+     r"(?P<rest>(?: .*)?)$", wished),
+    (rf"^(?:i|we) (?:should|want to|would like to|must|wish to|need to) see (?P<np>the [a-z ]+?) {PLAIN} "
+     rf"back\b[^;]*? (?:;|:|\.|,) (?:so )?(?:please )?(?:run|play) its (?P<event>{EVENT}) (?:backwards?|in reverse)$",
+     r"play \g<np> 's \g<event> backwards"),
+    (r"^be so (?:kind|good|nice) as to ", ""),
+    (rf"^(?:let|have|make) (?P<np>the [a-z ]+?) (?:run|play|do|make) its (?:{EVENT}|path|way) (?:backwards?|in "
+     r"reverse)$", r"play \g<np> 's motion backwards"),
+    (r"^(?:i|we) (?:wish|hope|ask|request|demand|suggest|propose)(?: that)? (?=the |my |it )", "i want "),
+    (r"^(?:(?:could|can|would|will) you (?:perhaps |please |maybe )?)?(?:arrange|see to it|set it up|(?:would |will "
+     r")?it be possible|is it possible|(?:is|would) there (?:be )?(?:a|any) way|make it possible|we need|i need) for "
+     r"(?P<x>.+?) to (?=[a-z])", r"let \g<x> "),
+    (r"^(?:how|what) about (?:we )?(?:have|let|make|get) ", "let "),
+    (r"^(?:let|have|make) only (?P<x>(?:the |my )?[a-z ]+?) (?P<v>[a-z]+)$", r"only \g<x> \g<v>"),
+    (r"^(?:there is )?no need for (?P<x>(?:the |my )?[a-z ]+?) to (?=[a-z])", r"do not let \g<x> "),
+    (r"^(?:skip|leave out|omit|cancel|drop|cut out|lose) (?:the (?:part|bit|moment) (?:where|when|in which) )"
+     rf"(?P<x>the [a-z ]+?) (?P<v>{S})(?: again)?$", lambda m: f"do not let {m['x']} {plain_of(m['v'])}"),
+    (r"^(?:skip|leave out|omit|cancel|drop|cut out) the (?P<v>opening|closing|falling|rolling|walking|moving|"
+     r"spinning) of (?P<x>the [a-z ]+)$", lambda m: f"do not let {m['x']} {plain_of(m['v'])}"),
+    (r"^(?:drop|start|launch) (?P<x>(?:the |all )[a-z ]+?) (?:at (?:exactly )?the same (?:time|moment|instant) as|"
+     r"together with|along with) (?P<y>(?:the |all )[a-z ]+)$", r"let \g<x> start at the same time as \g<y>"),
+    (r"\b(?:heads?|heading|sets? (?:off|out)|departs?|leaves?|makes? its way) (?:for|towards?) (?=the |my )", "go to "),
+    (r"\b(?P<w>when|once|while|until|as soon as) "
+     rf"(?P<v>{any_of(('stop', 'start', 'reach', 'leave', 'open', 'close'), 's')})(?= the |$)", r"\g<w> it \g<v>"),
+    (rf"^(?P<x>(?:the )?[a-z ]+?) (?:is |are )?(?P<v>starts?|begins?|starting|{S})(?: [a-z]+){{0,2}} (?:too "
+     r")?(?:early|late|soon)(?: for my taste)? , (?:please )?(?:(?:make|have|do) it (?:at )?|at |better (?:at |make "
+     rf"it )?)?(?P<d>{DURATION})(?: (?:would|is|would be|might) (?:be )?(?:better|nicer|good|nice|fine))?$",
+     r"start the \g<x> at \g<d>"),
+    (r"^start the the ", "start the "),
+    (rf"\b(?:start|begin) (?P<v>{any_of(('close', 'open', 'hide', 'rise', 'sink'), 'ing')}) (?=(?:the|it|my|that|all|"
+     r"them)\b)", lambda m: f"{plain_of(m['v'])} "),  # what begins is not what moves already
+    (rf"\b(?:tips?|topples?)(?: over)? (?=(?:about |exactly )?{DURATION} (?:later|earlier|sooner))", "start "),
+    (r"\b(?P<w>begin|start)(?P<s>s)? (?:to tip|tipping|to topple|toppling)(?: over)?\b", r"\g<w>\g<s>"),
+    (r"\blet (?P<x>it|him|her|them|the [a-z ]+?) (?:keep|stay|remain|be|hold|stand) still\b", r"keep \g<x> still"),
+    (rf"\b(?P<x>it|he|she) takes? (?P<d>{DURATION}) to (?P<v>{PLAIN})\b", r"\g<x> \g<v> in \g<d>"),
+)  # fmt: skip

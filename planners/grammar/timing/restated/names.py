@@ -1,0 +1,32 @@
+"""Where something is, and which of several is meant."""
+
+from __future__ import annotations
+
+from .wording import EVENT, ING, PLAIN, Rules, S
+
+RULES: Rules = (
+    # where
+    (r"\b(?P<w>up|upwards) (?:off|from|above) (?:the|its|his) [a-z]+(?: [a-z]+)?(?= (?:from|between|at|in|for|over|"
+     r"until)|$)", r"\g<w>"),
+    (r"\bback (?:up |down |over |in )?to (?:its|his|her) (?!start|place|spot|old|first|original|former|colou?r)"
+     r"(?P<x>[a-z]+)", r"to the \g<x>"),
+    (r"\b(?P<w>stays?|remains?|staying) (?:up|down|over|right|back) there\b", r"\g<w> where it is"),
+    (rf"(?P<v>\b(?:{PLAIN}|{S}|{ING}))(?: (?:across|through|along|over) the (?:room|floor|scene|ground|air))? and "
+     r"(?:to )?(?:ends?|ended|ending|finish(?:es)?|wind|winds) up (?=(?:at|beside|next|by|in|on|near) )", r"\g<v> "),
+    (r"(?P<v>\b(?:float|go|move|rise|lift|come|fly)s? (?:up )?(?:by )?)(?P<d>(?:\d+(?:\.\d+)?|[a-z]+) (?:cm|"
+     r"centimet(?:re|er)s?|m|met(?:re|er)s?)) (?:from|off|above|over) the [a-z]+(?: [a-z]+)?(?= ?(?:[,.]|$))",
+     r"\g<v>\g<d>"),
+    (r"(?P<d>\b(?:\d+(?:\.\d+)?|[a-z]+) (?:cm|centimet(?:re|er)s?|m|met(?:re|er)s?)) (?:off|above) the [a-z]+(?: "
+     r"[a-z]+)?(?= ?(?:[,.]|$))", r"\g<d>"),
+    (r"\b(?P<v>(?:drive|roll|move|walk|go|come|slide|run|fly|hop)s?)(?: up| over)? and (?:then )?(?:stop|park|halt|"
+     r"wait|stand|stay)s? (?=(?:beside|next to|by|near|in front of|behind|at|on) )", r"\g<v> "),
+    # which
+    (rf"\bthe (?:whole|entire|complete|full) (?P<e>{EVENT}|action) (?=of the )", r"the \g<e> "),
+    (r"\bthe (?:whole |entire )?(?P<x>[a-z]+(?: [a-z]+)?) action\b", r"the \g<x> motion"),
+    (rf"\bthe (?:whole|entire|complete) (?P<x>[a-z]+(?: 's)?) (?P<e>{EVENT})\b", r"the \g<x> \g<e>"),
+    (rf"\b(?:cut|break) (?P<x>.+? (?:'s )?{EVENT}) (?:off|short) (?=at|after|when|once)", r"stop \g<x> "),
+    (rf"\b(?P<det>the [a-z ]*?)(?P<noun>[a-z]+) (?P<rest>(?:(?:to|should|must|shall) )?{PLAIN} (?:before|after|"
+     r"while) the [a-z]+) one (?P<do>does|do|did)$", r"\g<det>\g<noun> \g<rest> \g<noun> \g<do>"),
+    (rf"\b(?P<verb>{PLAIN}) (?P<w>before|after|while) (?P<x>(?:the|my|our|both|all) [a-z ]+?) (?:does|do|did)$",
+     r"\g<verb> \g<w> \g<x> \g<verb>"),
+)  # fmt: skip

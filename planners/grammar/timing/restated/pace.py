@@ -1,0 +1,70 @@
+"""How fast, which way, and how in passing."""
+
+from __future__ import annotations
+
+from ..moments import DURATION
+from .wording import EVENT, ING, IT, PLAIN, POINT, SHARE, Rules, S, rate, slowed_to, with_unit
+
+RULES: Rules = (
+    # how fast
+    (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {IT} (?:(?:does|do|is|are|did) )?(?:at present|"
+     r"at the moment|right now|currently|so far)\b", r"\g<a>"),
+    (rf"^(?P<f>{SHARE}) (?:speed|pace|tempo) (?:on|for) (?P<x>.+)$", r"play \g<x> at \g<f> speed"),
+    (rf"\bin slow ?motion ,? ?(?:at )?(?P<f>{SHARE}) (?:speed|pace|tempo)\b", r"at \g<f> speed"),
+    (r"\b(?:one|1|a|a single|a full|one full) (?:round|turn|revolution|rotation) (?:in|every|per|each) "
+     rf"(?P<d>{DURATION})(?=(?: ,)? (?:from|between|all|always|the whole|throughout|for|until))", rate),
+    (r"(?<= )(?:its|his|the) (?:whole|entire|full|complete) (?:way|path|route)(?= \S)(?! (?:to|from|back)\b)", ""),
+    (r"\b(?:with|at|to|in) (?:the |its )?(?P<f>double|half|triple|twice)(?: of)?(?: the| its)? (?:speed|velocity|"
+     r"pace|tempo)\b", r"at \g<f> speed"),
+    (r"^(?:put|set|run|get) (?P<x>the [a-z ]+?) (?=at (?:double|half|triple|twice) speed)", r"play \g<x> "),
+    (r"(?:\b(?:(?:could|can|should|must|let|have) )*(?P<w>the [a-z ]+?|it) (?:(?:should|must|to|can|could) )?be "
+     r")?\b(?:slow(?:ed)?|sped|speed|brought|reduced|bring|set)(?: down| up)? (?P<x>(?:the [a-z ]+? |it ))?(?:down |"
+     r"up )?(?:to|at) (?:just |only )?(?:one|1|a|a single|one full) (?:round|turn|revolution|rotation) (?:in|every|"
+     rf"per|each) (?P<d>{DURATION})", slowed_to),
+    (r"(?: ,)? (?:as )?(?:seen|viewed|looking|looked at|when (?:one|you|we) (?:looks?|sees? it)|if (?:one|you|we) "
+     r"looks?) (?:at it )?(?:down )?from (?:above|the top|on top|the ceiling)\b|^(?:as )?(?:seen|viewed|looking) "
+     r"from (?:above|the top) ,", ""),
+    (r"(?: ,)?(?: so)? (?:counter|anti)? ?-?clockwise(?: ,)? (?:rather than|instead of|and not|not) (?:counter|"
+     r"anti)? ?-?clockwise\b", " the other way"),
+    (r"\b(?P<w>(?:other|opposite) (?:way(?: round| around)?|direction))(?: ,)? (?:so|i e|that is|meaning|namely|"
+     r"hence) (?:counter|anti)? ?-?clockwise\b", r"\g<w>"),
+    (r"(?: ,)? (?:and |but )?still (?:running|turning|going|moving|spinning) (?=from |until |between )", " "),
+    (r"^(?P<r>(?:rewind|reverse) .+?|play .+? (?:in reverse|backwards?)|.+? (?:in reverse|backwards?))(?: ,)? so "
+     r"(?:that )?(?:it|they|he|she|we|the [a-z]+)(?: all| both)? [a-z ]+$", r"\g<r>"),
+    (r"\b(?P<w>go|come|went|came)(?:es|s)? down together\b", "fell"),
+    # what it is not
+    (r"(?<=second|econds)(?: ,)? (?:instead of|rather than|and not|not)(?: (?:at|after|until|by|in))?(?: already| "
+     rf"only)? {POINT}(?: and a half)?(?= ?(?:[,.]|$))", ""),
+    (rf"^(?P<x>.+?) (?:should|must|shall|may|does|will) not (?P<y>.+?) (?:at|after|from|by) {POINT}(?: already)?(?: "
+     rf",)? but (?:(?:first|only|rather|instead|already|just) )*(?P<w>at|after|from) (?P<d>{POINT})$",
+     r"\g<x> should \g<y> \g<w> \g<d>"),
+    (rf" not (?:at|after|from) {POINT}(?: ,)? but (?:(?:first|only|rather|instead|already) )*(?=(?:at|after|from) )",
+     " "),
+    (rf"(?: ,)? (?:instead of|rather than) (?:it )?{ING} (?:(?:at|after|by|until|from) (?:already )?{POINT}|there|"
+     r"then|halfway|early|on)$", ""),
+    # what it comes to
+    (rf"(?: ,)? so (?:that )?{IT} (?:starts?|begins?|ends?|stops?|happens?|moves?|comes?) (?:later|earlier|sooner)"
+     r"(?: than (?:now|before|it does))?$", ""),
+    (rf"(?P<b>\b(?:backwards?|in reverse|the other way(?: round| around)?)) ,? ?so (?:that )?{IT} (?:starts?|"
+     r"begins?|sets?)(?: out| off)? (?:at|from|by|on|in) [a-z ]+? and (?:finishes|ends|stops|arrives)(?: up)? (?:at "
+     r"|in )?where [a-z ]+$", "backwards"),
+    (r" (?:,|-|–|—|;|and|then|so)(?: and| then)* (?:it |he |she )?(?:just |simply |then )*(?:stands?|stays?|remains?|"
+     r"rests?|waits?|lies?|sits?)(?: just| simply)*(?: (?:there|still|so|put))* from (?:then|there|that (?:point|"
+     r"moment|time)) on(?:wards?)?$", ""),
+    (r"^(?P<x>(?:everything|all|all that|whatever|anything)(?: that| which)? (?P<np>the [a-z ]+?) (?:does|is doing))"
+     r"\b", r"the movement of \g<np>"),
+    # how, in passing
+    (r"(?: ,(?: just| a bit| kind of| sort of)? like| (?:, )?as if| (?:, )?as though) (?:a|an|some|it|there|someone|"
+     r"somebody|they|you|he|she|in a|on a|in the|for)\b(?! (?:is|was) now)[^.]*$", ""),
+    (r"\b(?:to (?:the|its|his) )?(?P<a>left|right)(?:wards?)? ,? ?(?:instead of|rather than|and not|not)(?: "
+     r"turning)? (?:to (?:the|its|his) )?(?!(?P=a))(?:left|right)\b", "to the opposite side"),
+    (rf"^(?:move|shift|push|put|set|reschedule) (?P<x>the {EVENT} of the [a-z ]+?|the [a-z ]+? 's {EVENT}) to "
+     rf"(?P<d>{POINT})$", lambda m: f"start {m['x']} at {with_unit(m['d'])}"),
+    (r"^(?:let |make |have )?(?P<x>(?:the |my )?[a-z ]+?) (?:(?:should|must|may|shall|can|to) )?(?:(?:only|just) "
+     rf"(?:{PLAIN}|{S}) (?:for|during|in)|(?:{PLAIN}|{S}) (?:only|just) (?:for|during|in)) the first "
+     rf"(?P<d>{DURATION})$", r"stop \g<x> at \g<d>"),
+    (r"\b(?:changes?|switch(?:es)?|reverses?) (?:its |the |his )?direction(?: of (?:rotation|travel|spin))?(?= |$)"
+     r"(?! of)", "turn the other way"),
+    (r"\bafter (?=(?:only |just )?(?:[\d.]+|one|two|three|a|half a) ?(?:m|cm|metres?|meters?|centimet(?:re|er)s?)\b)",
+     "at "),
+)  # fmt: skip

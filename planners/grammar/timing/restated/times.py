@@ -1,0 +1,107 @@
+"""When, from when on, until when."""
+
+from __future__ import annotations
+
+from .....gaussians import late_re as re
+from ..moments import DURATION
+from .wording import (
+    BEGIN,
+    COLOR,
+    EVENT,
+    ING,
+    IS_THERE,
+    IT,
+    NO_LENGTH,
+    PLAIN,
+    POINT,
+    SETS_OFF,
+    Rules,
+    S,
+    between,
+    colored,
+    counted,
+    from_to,
+    gone,
+    plain_of,
+    unwished,
+)
+
+RULES: Rules = (
+    (rf"\b(?P<w>until|till|at|from|after) (?P<d>{DURATION}) in(?:to it)?(?= ?(?:[,.]|and\b|then\b|$))", r"\g<w> \g<d>"),
+    (r"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)?)(?: dead)? in (?:mid ?-? ?(?:air|flight|swing|step|fall|turn)|"
+     r"its tracks|place)\b", r"\g<v>"),
+    (r"(?: ,| and)+(?: it| he| she)? (?:holds?|hangs?|waits?|rests?|stands?)(?: (?:there|still|motionless|frozen|"
+     rf"like that|in place|in mid-air))+ for (?:exactly |just )?(?P<d>{DURATION})", r" for \g<d>"),
+    (r"(?: ,)?(?: and| but)?(?: only)?(?: then| after (?:that|this)| afterwards)*(?: it| he| she)? (?:continues?|"
+     rf"carr(?:y|ies) on|goes on|resumes?|proceeds?|keeps? on)(?: (?:to )?(?:{PLAIN}|{ING}))?(?: on)?(?: (?:with "
+     rf")?(?:its|the) (?:way|journey|path|{EVENT}))?(?: ,)? (?:until|till|to|up to|as far as) (?:the|its) [a-z]+$",
+     " and then it carries on"),
+    (r"\b(?P<v>leave|keep|hold) (?P<x>the [a-z ]+?) (?:(?:up|down|over) )?there(?: (?:up |over )?(?:on|in|at) the "
+     r"[a-z]+(?: [a-z]+)?)?(?= ?(?:[,.]|$))", r"do not let \g<x> move"),
+    (r"\b(?P<w>stays?|remains?) where (?P<it>it|he|she) is(?: (?:up|down|over))? (?:on|in|at) the [a-z]+(?: "
+     r"[a-z]+)??(?= (?:while|and|but|until|when|,|[.])|$)", r"\g<w> where \g<it> is"),
+    (r"\b(?P<w>until|till|from|at|after|before) (?:exactly |just )?the (?:very |exact )?(?:moment|point|instant|time)"
+     r"(?: (?:when|that|where|in which|at which))? (?=(?:the|my|it|he|she|they|all|both) )",
+     lambda m: {"at": "when", "from": "once", "after": "after"}.get(m["w"], m["w"]) + " "),
+    (rf"(?P<d>{DURATION}) (?:sharp|exactly|precisely|on the dot)(?= ?(?:[,.]|$))", r"\g<d>"),
+    (r"^(?P<x>.+?) (?:vanish|disappear|hide|go away|be gone|be hidden|be invisible)(?:s|es)?(?: at| from)? (?:at |"
+     rf"from )?(?P<a>{POINT}) (?:, |and |then )+(?:it |he |she )?(?:to )?(?:comes?|is|be|reappears?|appears?|"
+     rf"returns?|shows?)(?: (?:back|again|there|up|visible))* (?:at|from) (?P<b>{POINT})$", gone),
+    (rf"^(?P<x>(?:the |my )?[a-z ]+?) (?:goes|turns|becomes|is|should (?:be|turn|go|become)) (?P<c>{COLOR}) at "
+     rf"(?P<a>{POINT}) (?:, |and |then )+(?:it |turns |goes |is )*(?:back(?: to (?:{COLOR}|normal|its own "
+     rf"colou?r))?|{COLOR} again|normal(?: again)?) at (?P<b>{POINT})$", colored),
+    (rf"(?: ,)? and (?:this|that|the|its|the whole) (?:whole )?{EVENT} (?:(?:should|must|has to|is to|shall|to) "
+     rf")?(?:take|last|takes|lasts) (?P<d>{DURATION})", r" in \g<d>"),
+    (rf"(?:^|(?<=[.!?;] ))(?:start|begin) (?P<v>{ING}) (?P<x>it|the [a-z ]+?) (?:at|from) (?P<a>{POINT}) (?:, |and "
+     r"|please |then )+(?:have it |be |finish |end |it should be |it must be |let it be )(?:(?:fully|completely|all "
+     rf"the way|quite) )?(?:shut|closed|open|done|there|finished)? ?(?:by|at) (?P<b>{POINT})$",
+     lambda m: f"{plain_of(m['v'])} {m['x']}{from_to(m)}"),
+    (rf"(?: ,)? {SETS_OFF} (?:at|from) (?P<a>{POINT})(?: ,)?(?: and)? {IS_THERE} (?:at|by) (?P<b>{POINT})$",
+     from_to),
+    (r"\bfor (?:a|one) (?:sec|second|moment|bit)(?: ,)? (?=(?:from|between) )", ""),
+    (r"(?<=\d) already$", ""),
+    (r"\b(?:right|just|shortly|immediately|directly|straight) (?=(?:before|after|when|once) (?:the|it|he|she|they|"
+     r"all) )", ""),
+    (r"\b(?:during|in|for) (?:all )?the (?:whole )?time (?:in which|during which|when|that|while)\b", "while"),
+    (rf"^(?P<x>(?:the )?[a-z ]+?) (?:is |are )?(?:starts?|begins?|starting|{S})(?: [a-z]+){{0,2}} (?:too )?(?:early|"
+     rf"late|soon) ,(?: please)? (?:let it |have it |make it |it should )?(?:start|begin|{PLAIN})(?: it)? at "
+     rf"(?P<d>{POINT})$", lambda m: f"start the {re.sub('^the ', '', m['x'])} at {m['d']}"),
+    (r"^(?:(?:move|push|shift|set|put|change|bring|pull)(?: forward| back)? )?the (?:start|beginning|onset) (?:of|"
+     rf"for) (?P<x>(?:the |my )?[a-z ]+?)(?: 's)? (?:(?:should|must|shall) be )?(?:(?:to|at|is) )?(?P<d>{DURATION})"
+     r"(?: mark)?$", r"start the \g<x> at \g<d>"),
+    (rf"^start of (?P<x>[a-z ]+?)(?: :)?(?: to| at)? (?P<d>{DURATION})$", r"start the \g<x> at \g<d>"),
+    (r"^start the the ", "start the "),
+    (rf"\blasts? (?:only |just |for )*(?P<d>{DURATION})$", r"take \g<d>"),
+    (rf"^(?P<x>.+?) (?:be|being|to be) the (?P<r>last|first)(?: one| thing| of them)? to (?P<v>{PLAIN})\b(?P<y>.*)$",
+     lambda m: f"let {unwished(m['x'])} {m['v']} {m['r']}{m['y']}"),
+    (r"^(?P<before>.+?)(?: (?P<how>more (?:gently|slowly)|slower|faster))?(?: ,)? (?:beginning|starting|setting off)"
+     rf" (?:only )?(?:at|from) (?P<a>{POINT}) and (?:only )?(?:being|ending|finishing|stopping|coming to rest|done)"
+     r"(?: (?:fully|completely|all the way|wide|open|closed|shut|done|there|finished|only|just))* (?:at|by) "
+     rf"(?P<b>{POINT})$", between),
+    (r"(?: ,)? but (?:no|not any) longer(?: than that)?$| , and only then(?= ,)", ""),
+    (rf"^(?:let|have|make) (?P<np>(?:the|my|our) [a-z ]+?) wait (?:for )?(?P<d>{DURATION}) before {IT} {BEGIN}$",
+     r"keep \g<np> still for the first \g<d>"),
+    (rf"(?P<b>^|(?<!until)(?<!till)(?<!from)(?<!between)(?<!by) )(?:at )?(?P<d>{DURATION}) before the (?:very )?end\b",
+     r"\g<b>for the last \g<d>"),
+    (rf"(?P<b>^|{NO_LENGTH} )(?:at )?(?P<d>{DURATION}) after (?=(?:the|my|our|all|both|it|he|she|they) )",
+     lambda m: f"{m['b']}after {re.sub(r'(half )?an? (?=second)', counted, m['d'])} after "),
+    (rf"^only after (?P<d>{DURATION}) (?:should|must|may|shall|can) (?P<x>.+)$", r"\g<x> at \g<d>"),
+    (r"^only (?P<w>(?:when|once|after) (?:the|it|my|both|all) .+?) (?:should|must|may|shall|can) (?P<x>.+)$",
+     r"let \g<x> \g<w>"),
+    (r"\b(?P<w>first|last|final) second and a half\b", r"\g<w> one and a half seconds"),
+    (r"\bfor (?:just|only) the (?=first|last|final)", "for the "),
+    (r"^might (?=(?:the|my|our|this|that|all|every|it) )", ""),
+    (rf"^not (?:before|until) (?P<d>{POINT}) (?:should|must|may|shall|can) (?P<x>.+)$", r"\g<x> at \g<d>"),
+    (rf"(?: ,)? (?:but |and |though )?not (?:before|earlier than|sooner than|until) (?P<d>{DURATION})$", r" at \g<d>"),
+    (rf"\b(?P<e>{EVENT})(?P<aux>(?: (?:to|should|must|shall))?) lasts? (?P<d>{DURATION})$",
+     r"\g<e>\g<aux> be over \g<d>"),
+    (rf"\b(?P<d>{DURATION}) of (?:stillness|standing still|rest|resting|waiting|doing nothing|quiet|silence)\b",
+     r"\g<d>"),
+    (rf"\b(?P<w>until|till|after|once|when) (?P<d>{DURATION}) (?:has|have|is|are) (?:gone(?: by)?|passed(?: by)?|"
+     r"elapsed|over|up)\b", lambda m: f"{'after' if m['w'] in ('once', 'when') else m['w']} {m['d']}"),
+    (rf"\bfor the first (?P<d>{DURATION}|second) (?:before|and (?:only )?then|until) {IT} {BEGIN}(?: (?:to "
+     rf")?(?:{PLAIN}|{ING}))?$", r"for the first \g<d>"),
+    (r"\b(?:right |straight |on )?through (?:to|until|till) the (?:very )?end\b", "until the end"),
+    (r"\bat (?:exactly |just )?(?:the same|one and the same) (?:moment|instant)\b(?! (?:as|when)\b)",
+     "at the same time"),
+)  # fmt: skip
