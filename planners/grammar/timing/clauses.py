@@ -48,7 +48,8 @@ _WAY = (
 )
 _EVENT = (
     "motion|movement|animation|anim|path|walk|roll|fall|drop|swing|ride|flight|turn|way|trip|journey|opening|closing|"
-    "slide|run|move"
+    "slide|run|move|departure|entrance|launch|takeoff|tumble|descent|ascent|course|march|stroll|tour|crossing|rolling|"
+    "walking|falling"
 )
 _NAMES = {"speed": _SPEED, "way": _WAY, "event": _EVENT}
 _ASPECTS = tuple(  # "the speed of the fan", "the fan 's speed"; and "the fan speed", where that is no name
@@ -59,7 +60,7 @@ _ASPECTS = tuple(  # "the speed of the fan", "the fan 's speed"; and "the fan sp
     )
     for aspect, names in _NAMES.items()
 )
-_ALONE = re.compile(r"^(?:the|its) (?:motion|movement|animation|walk|roll|fall|drop|flight|turn|opening|closing)$")
+_ALONE = re.compile(r"^(?:the|its) (?:motion|movement|animation|walk|roll|fall|drop|flight|turn|opening|closing|departure)$")
 _ANIMATION = re.compile(r"^(?P<who>.+?) (?:animation|anim|motion|movement)$")
 _ONLY = re.compile(r"^only (?P<who>.+?) (?:(?:should|may|must|shall|can|is to|are to) )*(?P<verb>[a-z]+)$")
 _NOT = re.compile(r"^(?:do not|never|no longer) (?=\S)")

@@ -354,6 +354,9 @@ def _begun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
 
 def _opened(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     sense, target = clause.sense, clause.target
+    swung = sense in ("go", "spin", "move") and manner.degrees is not None and "door" in target.text
+    if swung and clause.verb is not None and clause.verb.first in ("swing", "turn", "push", "move", "pivot"):
+        sense = "open"  # "swing the door to 45 degrees"
     change = {"open": "open", "close": "close"}.get(sense) or {"open": "open", "closed": "close"}.get(manner.state)
     stays = sense in ("stay", "be") or (sense == "continue" and clause.verb is not None and clause.verb.first == "keep")
     halfway = sense == "stop" and manner.share is not None and manner.fields == {"share"}

@@ -57,7 +57,7 @@ _ONES = "|".join(sorted((w for w in NUMBERS if NUMBERS[w] < 61), key=len, revers
 _WORD = rf"(?:(?:{_ONES})(?: (?:{_ONES}))?|a couple of|a few|a|an)"
 _DIGITS = r"\d+(?:[.,]\d+)?"
 _HALVES = r"(?:a half|half|a quarter|three quarters|one and a half|a)"
-_HEDGE = r"(?:(?:like|about|around|exactly|just|roughly|only|approximately|some|the|full|good|whole|first) )*"
+_HEDGE = r"(?:(?:like|about|around|exactly|just|roughly|only|approximately|some|the|full|good|whole|first|same|say) )*"
 _NUMBER = rf"(?:{_DIGITS}|{_WORD})"
 _DURATION = (
     rf"(?:{_NUMBER} and (?:a )?half {_UNIT}|{_NUMBER} {_UNIT} and a half|(?:{_NUMBER} and )?(?:a "
@@ -76,7 +76,7 @@ _NAMED: dict[str, End] = {
     "middle": "middle",
     "halfway": "middle",
 }
-_CLIP = r"(?:clip|film|video|animation|shot|sequence|movie|time)"
+_CLIP = r"(?:clip|film|video|animation|shot|sequence|movie|time|recording|footage|take|playback)"
 _NAME = (
     rf"(?:(?:the )?(?:very )?(?:start|beginning|outset|end|finish)(?: of (?:the |this )?(?:scene|"
     rf"{_CLIP}))?|(?:the )?middle of (?:the |this )?{_CLIP})"
@@ -87,10 +87,9 @@ _POINT = rf"(?:{_NUMERIC}|{_NAME})"
 _BARE = rf"(?:{_POINT}|{_DIGITS}|(?:{_ONES}))"
 _TO = r"(?:to|until|till|til|and|up to|through|thru|-|through to|untill)"
 _ALWAYS = (
-    r"(?:(?:(?:for|during|over|through|,) (?:the )?(?:whole|entire|full) (?:clip|scene|film|video|animation|shot|"
-    r"sequence)|"
+    rf"(?:(?:(?:for|during|over|through|in|,) (?:the )?(?:whole|entire|full|complete) (?:scene|thing|{_CLIP})|"
     r"(?:for |during |over |through )?(?:the )?(?:whole|entire|full) time)|"
-    r"all the time|all through|throughout(?: the (?:scene|clip|film|shot))?|always|permanently|"
+    rf"all the time|all through|throughout(?: the (?:whole |entire )?(?:scene|{_CLIP}))?|always|permanently|"
     r"forever|for ever|constantly|"
     r"from (?:the )?(?:start|beginning) to (?:the )?(?:end|finish)|at all times|the whole way(?: "
     r"through)?|the entire time)"
@@ -217,7 +216,7 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
         _start,
     ),
     (
-        rf"(?:at|@|when (?:it is|the time is|time is|t is)) (?:around |about |exactly "
+        rf"(?:at|@|on(?= (?:the )?[\w. ]+ mark\b)|when (?:it is|the time is|time is|t is)) (?:around |about |exactly "
         rf")*(?P<a>{_POINT})(?: (?:on|onwards?))?",
         _start,
     ),

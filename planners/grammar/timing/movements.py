@@ -267,6 +267,38 @@ def ordered(said: str, thing: Thing, moment: Moment) -> Iterator[Command]:
         if one is not None and not one.last and one.pick != "all":
             yield from _order(MOVING, "listed", first=(one,))
     yield from _listed(said, thing)
+    yield from _ranked(said, thing)
+
+
+_RANK = re.compile(
+    rf"^(?:and |then |with |but )*(?P<np>.+?) ?,? ?(?:(?:(?:is|are|be|being|goes?|comes?) )?(?:to )?{_MODAL}(?:{_VERBS} )?)"
+    r"(?:the |as |as the |coming |going )*(?P<rank>first|second|third|fourth|next|last|in the middle|in between|at the "
+    r"end|finally)$"
+)
+_RANKS = {"first": 1, "second": 2, "next": 2, "in the middle": 2, "in between": 2, "third": 3, "fourth": 4, "last": 9,
+          "at the end": 9, "finally": 9}  # fmt: skip
+_OF_ORDER = re.compile(
+    r"^(?:flip|reverse|change|swap|switch|turn around|mix up|set|make) the order(?: of (?:the )?[a-z]+| in which [a-z ]+?)? "
+    r"(?=(?:the )?[a-z]+(?: [a-z]+)? first\b)"
+)
+
+
+def _ranked(said: str, thing: Thing) -> Iterator[Command]:
+    """ "the blue book is to fall first and the red one last, with the green in the middle"."""
+    said = re.sub(rf"^{_LED}", "", _OF_ORDER.sub("", said))
+    parts = [p.strip(" ,") for p in re.split(r" , | and (?=(?:the )?[a-z]+(?: one)? )|(?: then| with)(?= )", said)]
+    found = [_RANK.match(p) for p in parts if p]
+    if len(found) < 2 or any(f is None for f in found):
+        return
+    ranked = sorted((f for f in found if f is not None), key=lambda f: _RANKS[f["rank"]])
+    names = [_one(re.sub(r" (?:should|to|must|is|are|will|can)$", "", f["np"])) for f in ranked]
+    read = [thing(n) or thing(f"{n} one") for n in names]
+    queries = [q for q in read if q is not None and not q.last and q.pick != "all"]
+    if len(queries) != len(ranked):
+        return
+    text = next((q.text for q in queries if q.text and q.text != "one"), "")
+    named = tuple(q if q.text and q.text != "one" else q.model_copy(update={"text": text}) for q in queries)
+    yield from _order(MOVING, "listed", first=named)
 
 
 def _listed(said: str, thing: Thing) -> Iterator[Command]:

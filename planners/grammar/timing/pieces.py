@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 
 from ....gaussians import late_re as re
 from ..restating.speech.remarks import is_remark
+from ..vocabulary.nouns import is_known
 from .asides import HUES, told_of
 from .manner import MOTION, Thing, starts
 from .moments import DURATION, cut
@@ -36,7 +37,7 @@ _OF_IT = re.compile(
 )
 _ASKS = re.compile(
     r"\b(?:not only|except|without|other|others|rest|until|till|while|once|after|before|during|as soon|should|must|"
-    r"shall|ought|instead|also|too|again|back|both|all|each|every|same|first|last|next|more|less|only|to be)\b"
+    r"shall|ought|instead|also|too|again|back|both|all|each|every|same|first|last|next|more|less|(?<!'s )(?<!is )(?<!are )only|to be)\b"
 )
 _WISH = re.compile(
     r"\b(?:want|need|like|prefer|wish|love)s? (?:it|him|her|them|that|the|all|both|my|our)\b(?! (?:so|like))"
@@ -111,6 +112,6 @@ def _says(words: list[str], thing: Thing) -> bool:
     for i in range(len(words)):
         if any(fields for fields, _ in starts(" ".join(words[i:]), thing)):
             return True
-        if any(thing(" ".join(words[i:end])) is not None for end in range(i + 1, len(words) + 1)):
+        if is_known(words[i]) and thing(words[i]) is not None:
             return True
     return False

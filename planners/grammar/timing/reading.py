@@ -93,6 +93,8 @@ class TimeReader:
             found = self._whole(shorter) or next(self._guesses(shorter), None)
             if found is not None and not self._is_timeless(found, shorter):
                 return found
+            if found is None and self._is_plain(shorter) and not self._is_plain(cleaned):
+                return tuple(self._understand(shorter))
         numbers = moments.TIMED.search(said)
         if numbers is not None:
             raise Refusal(f"what is to happen “{numbers[0]}” is not understood", numbers[0])
@@ -178,6 +180,8 @@ class TimeReader:
                 if topic is not None:
                     continue
             found = self._whole(part)
+            if found is None and topic is not None and not ops:
+                found = self._whole(f"make it {part}")  # "that fan is too wild, half as quick would do"
             if found is None and ops and ops[-1]["op"] in ("recolor", "restyle"):
                 found = self._whole(f"make it {part}")  # "red at 1 s and blue at 3 s"
             first = part.split(" ")[0]
@@ -553,10 +557,14 @@ def _in_order(query: Query, place: int) -> Query:
     return _which_moves(query, True).model_copy(update={"pick": "nth", "ordinal": place})
 
 
+_MANY_COMMAS = re.compile(r"(?: ,)+")
+
+
 def _tidy(said: str) -> str:
     """What is written, in words that the readers know."""
     for _ in range(3):
         said = phrases.NOISE.sub("", said).strip(" ,.!?\n")
+    said = _MANY_COMMAS.sub(" ,", said)
     said = restated(without_comparisons(said))
     for pattern, plain in phrases.RESTATED:
         said = pattern.sub(plain, said)
@@ -566,7 +574,7 @@ def _tidy(said: str) -> str:
         "",
         said.strip(" ,."),
     )
-    return " ".join(re.sub(r"(?: ,)+", " ,", said).split())
+    return " ".join(_MANY_COMMAS.sub(" ,", said).split())
 
 
 def _forms(said: str) -> Iterator[tuple[str, str]]:
@@ -596,7 +604,7 @@ def _bare(said: str) -> str:
 
 _PART = (
     r"(?=(?:open|close|make|let|paint|hide|remove|delete|stop|turn|move|spin|have|put|play|slow|speed|start|freeze|"
-    r"do not|never)\b)"
+    r"do not|never|keep|hold|leave|delay|reverse|pause|show|spread|lift|slide|push|pull)\b)"
 )
 _JOINTS = tuple(
     re.compile(joint)

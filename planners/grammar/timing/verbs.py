@@ -18,7 +18,7 @@ Form = Literal["plain", "s", "ing", "past"]
 SENSES: dict[str, str] = {
     # what moves how
     "open": "open, open up, unlatch, crack open, swing open, slide open, slide out, come out, pull open, pull "
-        "out, push open, fling open, throw open, go open, roll out, extend, draw open, draw out",
+        "out, push open, fling open, throw open, go open, roll out, extend, draw open, draw out, crack",
     "close": "close, close up, shut, swing shut, swing closed, slide shut, slide closed, slide in, slide back "
         "in, go back in, push in, push shut, pull shut, slam, slam shut, fall shut, push closed, pull "
         "closed, retract",
@@ -54,18 +54,20 @@ SENSES: dict[str, str] = {
         "come to a standstill, come to an end, settle, take a break, hang back, hold off, hang on, stand by, bring "
         "to a halt, bring to a stop, bring to a standstill, bring to rest, come to a complete stop, "
         "stop dead, come to a dead stop, come to a sudden stop, get stuck, end, finish, park, be done, "
-        "rest",
+        "rest, have a rest, take a rest, have a break, take a breather, have a breather, have a pause, take a pause, "
+        "make a pause, make a stop, make a halt, pull up, draw to a halt, grind to a halt",
     "prevent": "prevent, hinder, stop, keep, block, hold",
-    "stay": "stay, remain, stand, keep, sit, lie",
+    "stay": "stay, remain, stand, keep, sit, lie, stay up",
     "start": "start, begin, commence, set off, set out, get going, get moving, kick off, launch, trigger, "
         "activate, take off, depart, start up, initiate, happen, start off, kick in, set in, get started, come on, "
-        "spring into action, get under way",
+        "spring into action, get under way, make its entrance, make his entrance, make its move, make a start, "
+        "get off, swing into action",
     "continue": "continue, go on, carry on, keep, keep on, continue on, resume",
     "faster": "speed up, step up, rush, accelerate, step on it, rev up, hurry, hurry up, quicken, hasten, speed, "
     "get faster, pick up speed, become "
         "faster",
     "slower": "slow, slow down, decelerate, brake, get slower, become slower, slow up",
-    "change": "change, set, adjust, alter",
+    "change": "change, set, adjust, alter, take, bring, take down, bring down, dial down, take up, bring up, dial up",
     "increase": "increase, bump up, crank up, turn up",
     "reduce": "reduce, decrease, cut, drop, turn down, lower",
     "double": "double",
@@ -95,7 +97,8 @@ SENSES: dict[str, str] = {
         "collide with, knock into, knock against, arrive at, arrive in, arrive by, get to, come to, make it "
         "to, run into, roll to, roll into, roll against, roll up to, walk to, walk up to, drive to, go to, "
         "move to, land on, land in, come up to, arrive on, slam into, bang into, get near, approach, be at, "
-        "be against",
+        "be against, bump, knock, smack, slam, bang, nudge, make contact with, come into contact with, hit against, "
+        "bounce off",
     "arrive": "arrive, land, touch down",
     "leave": "leave, exit, get off, roll off, go off, move off, come off, fall off, drive off, walk off, step "
         "off, get away from, roll away from, move away from, be off, be past, come out from, lose contact "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..moments import DURATION
 from ..verbs import SENSES, any_of
-from .wording import CAUSING, COLOR, EVENT, PASTS, PLAIN, POINT, Rules, S, plain_of, wished
+from .wording import CAUSING, COLOR, EVENT, ING, PASTS, PLAIN, POINT, Rules, S, plain_of, wished
 
 RULES: Rules = (
     # how it is written
@@ -15,7 +15,43 @@ RULES: Rules = (
     (r"\b(?P<w>whatever|what|anything) (?:it is|is it) (?:that|which) (?=is |are |\w+s\b)", r"\g<w> "),
     (r"\bso long as\b", "as long as"),
     (r"\bdouble (?:so|as) (?=fast|quick|slow)", "twice as "),
+    (r"\bgimme\b", "give me"),
+    (r"\b(?:do not need|need not|does not need)(?: to)? (?=(?:move|open|close|fall|turn|spin|go|stop|start)\b)",
+     "should not "),
+    (r"\b(?P<w>everything|all|anything) (?:what|which|as) (?=(?:is|are|moves?|falls?|turns?|stands?|rolls?) )",
+     r"\g<w> that "),
+    (r"\b(?:is it|it is|it would be) (?:also )?poss?ible (?:that|if) (?P<np>(?:the|my|all) [a-z ]+?) (?:is|are|be) ",
+     r"\g<np> should be "),
     # who asks, and how
+    (r"^(?:(?:oh|ah|well|so|right|hello|hi|okay|ok|now|um|uh|perhaps|maybe|actually|hmm|and then|and|but) (?:[,!.] )*)+(?=\S)", ""),
+    (r"^(?:(?:slower|faster|quicker|softer|earlier|later|sooner|careful|easy|not so fast|stop|wait|no|yes)"
+     r"(?: ,)? ?)+ (?:!|\.) (?=\S)", ""),
+    (r"^(?P<np>(?:the|my|that|this) (?:poor |little |old )*[a-z]+(?: [a-z]+)??) must be (?:so |very |really )?(?:tired|exhausted|"
+     r"bored|dizzy|thirsty|lonely|sleepy|worn out|cold|hot) [.!,;] (?P<rest>.*?)\b(?:it|him|her)\b",
+     r"\g<rest>\g<np>"),
+    (r"^only (?=(?:open|close|swing|turn|move|slide|push|pull|let|roll|rotate|lift|raise|crack|drop|spin|play|make) (?:the|it|"
+     r"my|all)\b)", ""),
+    (r"^(?P<np>(?:the|my|this|that|those|these|all the) [a-z ]{2,30}?) , (?P<do>can|could|would|should|may|must|will|"
+     r"might) (?:it|they|he|she) (?=[a-z])", r"\g<np> should "),
+    (rf"^(?P<np>(?:the|my|this|that) [a-z]+(?: [a-z]+)?) (?:, )?(?:i|we) (?:would )?(?:rather )?(?:like|prefer|want|need|"
+     rf"love|see) (?:it|him|her|them) (?:to be |in |to |as )*(?P<c>{COLOR})\b", r"make \g<np> \g<c>"),
+    (rf"^(?:let us have|give (?:me|us)|show (?:me|us)|(?:i|we) (?:would like|want|need|would love|fancy)) an? "
+     rf"(?P<c>{COLOR}) (?P<np>[a-z]+(?: [a-z]+)??)(?= (?:for|from|while|when|until|during|at|between|after|once|,|all|"
+     rf"in|throughout|the whole)\b|$| ,)", r"make the \g<np> \g<c>"),
+    (rf"^(?P<d>(?:for|during|from|between|until|in) (?:the )?[a-z0-9. ]+?) (?:i|we) (?:would like|want|need|would love) "
+     rf"an? (?P<c>{COLOR}) (?P<np>[a-z]+)\b", r"make the \g<np> \g<c> \g<d>"),
+    (rf"\b(?P<v>put|paint|make|have|turn|let) (?P<np>(?:the|my) [a-z ]+?) (?:of|in|with) (?:the |a )?(?:colou?r (?:of )?)?"
+     rf"(?P<c>{COLOR})(?: colou?r)?\b(?! [a-z]+ (?:to|from)\b)", r"make \g<np> \g<c>"),
+    (rf"^(?:(?:i|we) (?:think|feel|believe|guess|say|bet|reckon)(?: that)? )?(?P<np>(?:the|my|this|that) [a-z ]+?) (?:would|"
+     rf"might|could|will) (?:look|be) (?:(?:so|really|much|very|quite|even|rather|far|a lot|way) )*"
+     rf"(?:[a-z]+er|lovely|nice|good|great|better|best|well|pretty|beautiful|perfect|cool|sweet|fun|smart|super|"
+     rf"gorgeous) (?:in|as) (?:a )?(?P<c>{COLOR}|cream|beige|navy|teal|ivory|black|lilac|mint|maroon|cyan|magenta)\b",
+     r"\g<np> should be \g<c>"),
+    (rf"^(?:i|we) (?:do not|would not) (?:want|like)(?: to (?:see|have))? (?:any|the|those|these|all the) "
+     rf"(?P<np>[a-z]+(?: [a-z]+)?) (?P<v>{ING})(?: (?:on camera|here|at all|around|about|down))*(?= ,|$)",
+     lambda m: f"do not let the {m['np']} {plain_of(m['v'])}"),
+    (r"^(?:give|show|let) (?:me|us)(?: (?:have|see))? (?P<np>(?:the|my) [a-z ]+?) in (?P<s>slow ?-? ?mo(?:tion)?)\b",
+     r"play \g<np> in slow motion"),
     (rf"^(?P<v>{any_of(tuple(SENSES), 'ing')}|{'|'.join(CAUSING)}) (?=(?:the|all|my|our|it|both|that|this|every) )",
      lambda m: f"{CAUSING.get(m['v']) or plain_of(m['v'])} "),  # "would you mind letting the ball go"
     (r"\b(?:(?:i|we) (?:would (?:like|love|prefer)|want|need|wish)(?: to (?:see|have|show|get|watch))?|show|display|"

@@ -6,8 +6,21 @@ from .wording import EVENT, ING, PLAIN, Rules, S
 
 RULES: Rules = (
     # where
-    (r"\b(?P<w>up|upwards) (?:off|from|above) (?:the|its|his) [a-z]+(?: [a-z]+)?(?= (?:from|between|at|in|for|over|"
+    (rf"\b(?P<v>{PLAIN}|{S}) (?:until|till|up until) (?P<np>(?:the|my) (?!end|start|beginning|finish|middle|final|second|"
+     r"moment|time|last|first|very)[a-z]+)(?= (?:in|from|at|over|within|during|between|for|by|,)\b|$| ,)",
+     r"\g<v> to \g<np>"),
+    (rf"\b(?P<v>{PLAIN}|{S})(?: (?:across|over|along|up|down|around|through))? and (?:then )?(?:settles?|parks?|lands?|"
+     r"(?:come|comes) to (?:a )?(?:rest|stop|halt)|sits?|stops?|waits?|stands?|rests?|halts?|stays?) "
+     r"(?P<at>next to|beside|by|near|in front of|behind|at|on|under|against)\b", r"\g<v> \g<at>"),
+    (r"\b(?:straight|right|directly) (?=(?:up|down|into the air)\b)", ""),
+    (r"\b(?P<w>stays?|remains?) (?:up|down|over|right|exactly|just) (?=where\b|put\b)", r"\g<w> "),
+    (r"\b(?P<v>pushe?s?|moves?|slides?|shoves?|rolls?|drives?|put|bring|pull|drag)(?P<x>(?: .*?)?) (?:right )?up (?:against|"
+     r"next to|close to|beside|to) (?=the )", r"\g<v>\g<x> to "),
+    (r"\b(?P<v>moved?|pushed?|brought|carried|slid|shifted|placed|put) (?:right )?over (?:by|to|next to|beside|near) "
+     r"(?=the )", r"\g<v> to "),
+    (r"\b(?P<w>up|upwards) (?:off|from|above) (?:the|its|his) [a-z]+(?: [a-z]+)?(?= (?:,|from|between|at|in|for|over|"
      r"until)|$)", r"\g<w>"),
+    (r"\bback up (?:on |on to |onto |to )(?:its|their|the) (?:board|shelf|shelves|place|spot)\b", "back"),
     (r"\bback (?:up |down |over |in )?to (?:its|his|her) (?!start|place|spot|old|first|original|former|colou?r)"
      r"(?P<x>[a-z]+)", r"to the \g<x>"),
     (r"\b(?P<w>stays?|remains?|staying) (?:up|down|over|right|back) there\b", r"\g<w> where it is"),

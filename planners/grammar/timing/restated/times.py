@@ -27,6 +27,35 @@ from .wording import (
 )
 
 RULES: Rules = (
+    # how a time is named
+    (rf"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)? .+?) , (?:and )?(?:then )?(?:hold|wait|pause|stay|rest)s?"
+     rf"(?: (?:it|him|her|there|still|for))* (?P<d>{DURATION})", r"\g<v> for \g<d>"),
+    (r"\b(?P<w>start|begin)(?P<s>s|ing)? (?:to )?(?:slid(?:e|ing)|swing(?:ing)?|go(?:ing)?|mov(?:e|ing)|com(?:e|ing)|roll(?:ing)?) "
+     r"(?:shut|closed|back in|in|back)\b", "close"),
+    (r"(?: ,)? (?:only|just) (?:in|for|during|at) (?:this|that) (?:moment|time|part|bit)\b", ""),
+    (r"^(?P<x>do not let .+? [a-z]+) (?:, |and )+(?:just |simply )*(?:keep|leave|let) (?:it|them|him|her)(?: stay| be)? (?:up|"
+     r"down|over|right|there|where|on|in|at)\b[a-z ]*$", r"\g<x>"),
+    (r"\b(?:in|during|for|over|within) the (?:time|period|interval|window|span|stretch)(?: of time)? (?=(?:from|between) )",
+     ""),
+    (r"\b(?P<w>until|till|til|to) the (?:final|finale|finish|close|curtain|credits|last frame|fade ?out|very end)\b"
+     r"(?! of (?:the|its) [a-z]*[^a-z])", r"\g<w> the end"),
+    (r"\b(?:right |straight |all the way |on |up |right up )+(?:to|until|till) the (?:very )?end\b", "until the end"),
+    (rf"\b(?P<v>keep|keeps|go on|goes on|continue|carry on|stay) (?P<x>.*?{ING}) to the (?:very )?end\b",
+     r"\g<v> \g<x> until the end"),
+    (r"\b(?:spread|stretched|drawn|spread out|drawn out|stretched out) over (?=[a-z0-9])", "over "),
+    (r"\b(?:at|in) (?:the|his|her|its) (?:corner|turning point|turning|bend|curve)\b", "when it turns"),
+    (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:goes|carries|moves|walks|rolls|continues|proceeds|heads|drives) ?"
+     r"(?:on|onwards?|off)?(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
+    (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:stays?|remains?|keeps?|is left) (?:so|that way|like that|there|still|"
+     r"gone|hidden|put|where it is)(?: (?:until|till|to) the (?:very )?end(?: of [a-z ]+)?)$", ""),
+    (r"(?: ,)? (?:and |but )?(?:leave|keep|let) (?:it|him|her|them) (?:so|that way|like that|as it is)$", ""),
+    (rf"(?: ,)? (?P<d>{DURATION}) for (?:it|that|this|the {EVENT}|the whole thing)$", r" in \g<d>"),
+    (rf"\b(?:take|takes|use|uses|need|needs|spend) (?P<d>{DURATION}) (?:to |for )?(?P<v>{PLAIN}|{ING})(?P<x>(?: (?:out|in|up|down))?)"
+     r"(?: again)?$", lambda m: f"{plain_of(m['v'])}{m['x']} in {m['d']}"),
+    (rf"(?: ,)? (?:and )?give (?:it|him|her|them) (?P<d>{DURATION}) (?:to|for) (?:get there|do (?:it|so|that)|it|that|"
+     r"arrive|go|move)$", r" in \g<d>"),
+    (r"(?: ,)? (?:and |then |after that |afterwards )+(?:it |turn it |go |goes )*back to (?:the |its )?(?:[a-z]+)"
+     r"(?: one| colou?r| again)?$", " and then back to normal"),
     (rf"\b(?P<w>until|till|at|from|after) (?P<d>{DURATION}) in(?:to it)?(?= ?(?:[,.]|and\b|then\b|$))", r"\g<w> \g<d>"),
     (r"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)?)(?: dead)? in (?:mid ?-? ?(?:air|flight|swing|step|fall|turn)|"
      r"its tracks|place)\b", r"\g<v>"),
