@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from ...agent.session.session import Session
 from ...gaussians.errors import ScenewrightError
+from ...gaussians.language.field.language_field import Group
 from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
 from ...gaussians.motion import events
 from ...gaussians.motion.at import at
@@ -83,6 +84,11 @@ class _Effect:
     def course(self, name: str, before: bool = False) -> Course:
         """Where a thing is through time."""
         return course_of(self.before if before else self.after, self.group(name))
+
+    @property
+    def end(self) -> float:
+        """Seconds at which the film ends: an edit may make it longer."""
+        return _LAST if self.after.motion is None else max(_LAST, self.after.motion.stop)
 
     @cached_property
     def shots(self) -> list[tuple[float, Scene, Scene]]:
@@ -269,7 +275,7 @@ def _turning(expect: dict[str, Any], course: Course, earlier: Course, spans: lis
         turned = abs(math.degrees(events.yawed(course, after)))
         return f"it turns by {turned:.0f} degrees" if abs(turned - expect["angle_deg"]) > 15 else ""
     if "angle_deg" in expect and (expect.get("factor") or 1) > 0:  # an angle is from how it is at the start
-        angle = math.degrees(float(course.angles(np.array([_LAST]))[0]))
+        angle = math.degrees(float(course.angles(np.array([effect.end]))[0]))
         return f"it is open by {angle:.0f} degrees" if abs(angle - expect["angle_deg"]) > 5 else ""
     if "turn_deg" in expect:
         turned = sum(math.degrees(events.yawed(course, s)) for s in spans)
@@ -287,7 +293,7 @@ def _reaching(expect: dict[str, Any], course: Course, earlier: Course, spans: li
         if expect.get(key) in (None, "up", "open"):
             continue
         pair = events.Encounter.of(effect.after, course.group, [effect.group(expect[key])])
-        first, gap = (float(g) for g in pair.gaps(np.array([0.0, _LAST])))
+        first, gap = (float(g) for g in pair.gaps(np.array([0.0, effect.end])))
         if "distance_m" in expect:  # only so far
             if gap >= first:
                 return f"it does not come nearer to the {expect[key]}"
@@ -306,10 +312,23 @@ def _others(named: Sequence[str], effect: _Effect) -> str:
             continue
         if not _count(effect.after, group.id):
             return f"the {group.label} is gone"
-        ways = [course_of(s, group.id).centers(times) for s in (effect.before, effect.after)]
-        if float(np.abs(ways[0] - ways[1]).max()) > _MOVED:
+        before, after = (course_of(s, group.id).centers(times) for s in (effect.before, effect.after))
+        if float(np.abs(before - after).max()) > _MOVED and not _is_carried(group, after - before, spoken, effect):
             return f"the {group.label} moves, too"
     return ""
+
+
+def _is_carried(group: Group, moved: F64, carriers: set[int], effect: _Effect) -> bool:
+    """Whether a thing stands on one that moves, and moves as that does: the lamp on the desk that is pushed away."""
+    times = np.linspace(0.0, _LAST, 11)
+    assert effect.before.language is not None
+    for carrier in (effect.before.language.groups[i] for i in carriers):
+        off = np.array(group.box.center) - np.array(carrier.box.center)
+        ways = [course_of(s, carrier.id).centers(times) for s in (effect.before, effect.after)]
+        over = np.linalg.norm(off[:2]) < np.linalg.norm(np.array(carrier.box.size)[:2]) / 2 and off[2] > 0
+        if over and float(np.abs(moved - (ways[1] - ways[0])).max()) <= _MOVED:
+            return True
+    return False
 
 
 def metrics(which: str) -> list[Metric]:

@@ -47,11 +47,11 @@ class Pace(TargetedOp):
 
     "stop": it stands still in the time of `when`, and goes on behind it; without `when` at all times. "begin": its
     movement begins at `when`, and takes as long as that lasts. "speed": `factor` times as fast. "later": by `seconds`,
-    negative is earlier. "reverse": played backwards. "return": it goes back the way it came. "go_on": it keeps its last
-    speed until the end of `when`. "part": it goes only a `share` of its way, or a `distance`, and stands still there.
-    "repeat": it does the same again and again, "back_and_forth": there and back, `times` times or until the end of the
-    scene. "mirror": it turns right where it turned left. Everything is the whole scene, which then gets longer or
-    shorter.
+    negative is earlier. "reverse": played backwards in its own time; one that is then the same, in that of the scene.
+    "return": it goes back the way it came. "go_on": it keeps its last speed until the end of `when`. "part": it goes
+    only a `share` of its way, or a `distance`, and stands still there. "repeat": it does the same again and again,
+    "back_and_forth": there and back, `times` times or until the end of the scene. "mirror": it turns right where it
+    turned left. Everything is the whole scene, which then gets longer or shorter.
     """
 
     model_config = ConfigDict(
@@ -137,9 +137,10 @@ class Pace(TargetedOp):
                     made[i] = track
                 continue
             if self.change in ("part", "repeat", "back_and_forth"):
-                warp, end = self._again(scene, own, group, span)
+                warp, end = self._again(scene, own, group, span, spans)
             else:
-                warp, end = self._warp(motion, span, spans)
+                mirrored = self.change == "reverse" and not _is_even(own, span)
+                warp, end = self._warp(motion, span, spans, own_time=mirrored and not self._whole)
             for i in held:
                 made[i] = playing(tracks[i], warp)
             stop = end if self._whole else max(stop, end)
@@ -150,9 +151,14 @@ class Pace(TargetedOp):
     def _notes(self, stop: float, motion: Motion) -> tuple[str, ...]:
         return (f"the scene lasts {stop - motion.start:g} s now",) if abs(stop - motion.stop) > _NO_TIME else ()
 
-    def _warp(self, motion: Motion, span: Span, spans: list[Span]) -> tuple[Warp, float]:
-        """Which old time is shown when, and when the scene or the movement then ends."""
-        low, high = (motion.start, motion.stop) if self._whole or self.change == "reverse" else span
+    def _warp(self, motion: Motion, span: Span, spans: list[Span], own_time: bool) -> tuple[Warp, float]:
+        """Which old time is shown when, and when the scene or the movement then ends.
+
+        Args:
+            own_time: whether what is reversed keeps the time in which it moves.
+        """
+        whole = self._whole or (self.change == "reverse" and not own_time)
+        low, high = (motion.start, motion.stop) if whole else span
         start = spans[0][0] if spans and math.isfinite(spans[0][0]) else None
         stop = spans[0][1] if spans and math.isfinite(spans[0][1]) else None
         if self.change == "stop":
@@ -191,10 +197,14 @@ class Pace(TargetedOp):
         gained = first + (last - first) * self.factor
         return Warp((first, last), (first, gained), 1.0, 1.0), high + last - gained
 
-    def _again(self, scene: Scene, own: list[Track], group: I64, span: Span) -> tuple[Warp, float]:
+    def _again(self, scene: Scene, own: list[Track], group: I64, span: Span, spans: list[Span]) -> tuple[Warp, float]:
         """Which old time is shown when, of what goes a part of its way or goes it several times."""
         assert scene.motion is not None
         (low, high), whole = span, scene.motion.stop
+        if self.change == "repeat" and spans and math.isfinite(spans[0][0]):  # once more, from then on
+            first = max(spans[0][0], high + _NO_TIME)
+            new = (low, high, first, first + _NO_TIME, first + _NO_TIME + high - low)
+            return Warp(new, (low, high, high, low, high), 0.0, 0.0), new[-1]
         if self.change == "part":
             until = self._until(scene, own, group, span)
             return Warp((until,), (until,), 1.0, 0.0), until
@@ -299,6 +309,14 @@ class Pace(TargetedOp):
         lost = len(moving_ids(was)) - len(moving_ids(after)) if self.change != "stop" else 0
         said = f"{max(lost, 0)} Gaussians that moved before do not move any more"
         return count_matches(before, outcome.scene, outcome), at_most("still moves", max(lost, 0), 0, "Gaussians", said)
+
+
+def _is_even(own: list[Track], span: Span) -> bool:
+    """Whether a movement is the same backwards: there and back."""
+    times = np.linspace(span[0], span[1], 9)
+    turns, shifts = chained(own, times)
+    far = max(float(np.abs(shifts - shifts[0]).max()), _NO_TIME)
+    return bool(np.allclose(turns, turns[::-1], atol=0.02) and np.allclose(shifts, shifts[::-1], atol=0.02 * far))
 
 
 def _way_of(scene: Scene, own: list[Track], group: I64, times: F64) -> F64:

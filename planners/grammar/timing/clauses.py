@@ -60,7 +60,9 @@ _ASPECTS = tuple(  # "the speed of the fan", "the fan 's speed"; and "the fan sp
     )
     for aspect, names in _NAMES.items()
 )
-_ALONE = re.compile(r"^(?:the|its) (?:motion|movement|animation|walk|roll|fall|drop|flight|turn|opening|closing|departure)$")
+_ALONE = re.compile(
+    r"^(?:the|its) (?:motion|movement|animation|walk|roll|fall|drop|flight|turn|opening|closing|departure)$"
+)
 _ANIMATION = re.compile(r"^(?P<who>.+?) (?:animation|anim|motion|movement)$")
 _ONLY = re.compile(r"^only (?P<who>.+?) (?:(?:should|may|must|shall|can|is to|are to) )*(?P<verb>[a-z]+)$")
 _NOT = re.compile(r"^(?:do not|never|no longer) (?=\S)")

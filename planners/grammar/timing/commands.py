@@ -444,11 +444,18 @@ def _gone(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
         return
     far = "" if manner.length is None else f" {manner.length.value:g} {manner.length.unit}"
     to = f" {manner.goal}" if manner.goal else f" {way}"
+    if manner.at in _BY and not _SIDE.search(manner.goal):  # over a time it goes up to a thing, to no spot of its own
+        to = f" toward{manner.goal.removeprefix(manner.at)}"
+        far = ""
     first = clause.verb.first if clause.verb else ""
     lively = (
         not clause.ordered and sense != "be" and first not in _PLAIN and not (clause.verb and clause.form == "past")
     )
     yield plain(clause, "path", f"move {{}}{far}{to}" if manner.goal else f"move {{}}{to}{far}", needs=not lively)
+
+
+_BY = bag("beside by near") | {"next to", "close to"}
+_SIDE = re.compile(r" the (?:left|right|other) (?:side )?of | between ")
 
 
 # -- how it looks ------------------------------------------------------------------------------------------------------
@@ -500,7 +507,7 @@ def _colored(clause: Clause) -> Iterator[Command]:
 
 
 _RULES: tuple[Rule, ...] = (
-    movements.mirrored, movements.repeated, movements.swayed, movements.tipped, movements.orbited, movements.followed,
-    movements.parted, movements.blinked, _paced, _shifted, _reversed, _returned, _opened, _spun, _stopped, _continued,
-    _gone, _begun, _hidden,
+    movements.mirrored, movements.once_more, movements.repeated, movements.swayed, movements.tipped, movements.orbited,
+    movements.followed, movements.parted, movements.blinked, _paced, _shifted, _reversed, _returned, _opened, _spun,
+    _stopped, _continued, _gone, _begun, _hidden,
 )  # fmt: skip

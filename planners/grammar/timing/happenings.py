@@ -53,7 +53,8 @@ _COMES = _Course("from", "while", "until", "from")  # "it hits the wall"
 
 _ONCE = (
     r"(?:(?:right |just )as|(?:on|at|from) the (?:frame|point|instant|moment|time) (?:where|when|that|at which)|the "
-    r"(?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|once|when|as soon as|the moment|the instant|the second|at the moment when|at the moment|immediately when|"
+    r"(?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|once|when|as soon as|the moment|the "
+    r"instant|the second|at the moment when|at the moment|immediately when|"
     r"right "
     r"when|from when|from the moment|exactly when|directly when|each time|every time|from the time)"
 )
@@ -103,7 +104,8 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
             anchors = (manner.whom,) if manner.whom is not None and state not in _OWN else ()
             part = _part(word, course)
             if clause.negated:
-                part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: ignore[assignment]
+                part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: "
+                "ignore[assignment]
             return During(state=state, anchors=anchors, of=clause.target, part=part)
     return _touching(word, said, who) or _noun_event(word, said, who)
 

@@ -93,7 +93,7 @@ _AS_FAST = (
     (r"(?:as|so) (?:fast|quick|quickly|rapidly)(?: as (?:now|before|usual|it does))?", "fast"),
     (r"(?:as|so) slow(?:ly)?(?: as (?:now|before|usual|it does))?", "slow"),
     (r"(?:more )?(?:faster|quicker|quickly|rapidly|fast|quick)", "faster"),
-    (r"(?:more )?(?:slower|slowly|slow|gently|sluggish(?:ly)?|leisurely)", "slower"),
+    (r"(?:more )?(?:slower|slowly|slow|gently|sluggish(?:ly)?|leisurely|calmer|gentler)", "slower"),
     (r"(?:of )?(?:(?:the|its|their|his|her|a|original|normal|usual|present|current|old|real) )*(?:speed|pace|tempo|"
      r"rate|"
      r"velocity)", "speed"),
@@ -110,7 +110,8 @@ _WAYS = {
     "forward": "forwards?|to the front|ahead",
 }  # fmt: skip
 _STATES: dict[State, str] = {
-    "still": r"(?:completely |perfectly |absolutely |totally |dead |stock |quite )?(?:still|put|motionless|stationary|frozen|at rest|in "
+    "still": r"(?:completely |perfectly |absolutely |totally |dead |stock |quite )?(?:still|put|motionless|"
+    "stationary|frozen|at rest|in "
              r"(?:its )?place|unmoved|fixed|stopped|paused|immobile|where (?:it|he|she|they) (?:is|are|was|were|"
              r"stands?)|"
              r"as (?:it|they) (?:is|are|was|were)|at a standstill|dead|in its tracks|static|idle|parked|halted)",

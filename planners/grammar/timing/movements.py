@@ -143,6 +143,14 @@ def repeated(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command
         yield pace(clause.target, "repeat", **more)
 
 
+def once_more(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
+    """ "let the red book fall again at 3 s": the same movement a second time."""
+    again = re.search(r"\b(?:again|once more|one more time|a second time|another time)\b", " ".join(clause.tail))
+    moves = clause.sense in ("fall", "go", "bob", "rise", "sink") or (clause.sense == "do" and clause.aspect == "event")
+    if again and moves and moment.start is not None and not clause.negated and manner.only("turns", "times"):
+        yield pace(clause.target, "repeat", times=1)
+
+
 def mirrored(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     """ "the robot turns right instead of left"."""
     if clause.sense == "spin" and manner.instead and not clause.negated and manner.only("instead"):
@@ -271,27 +279,36 @@ def ordered(said: str, thing: Thing, moment: Moment) -> Iterator[Command]:
 
 
 _RANK = re.compile(
-    rf"^(?:and |then |with |but )*(?P<np>.+?) ?,? ?(?:(?:(?:is|are|be|being|goes?|comes?) )?(?:to )?{_MODAL}(?:{_VERBS} )?)"
+    rf"^(?:and |then |with |but )*(?P<np>.+?) ?,? ?(?:(?:(?:is|are|be|being|goes?|comes?) )?(?:to "
+    rf")?{_MODAL}(?:{_VERBS} )?)"
     r"(?:the |as |as the |coming |going )*(?P<rank>first|second|third|fourth|next|last|in the middle|in between|at the "
     r"end|finally)$"
 )
 _RANKS = {"first": 1, "second": 2, "next": 2, "in the middle": 2, "in between": 2, "third": 3, "fourth": 4, "last": 9,
           "at the end": 9, "finally": 9}  # fmt: skip
 _OF_ORDER = re.compile(
-    r"^(?:flip|reverse|change|swap|switch|turn around|mix up|set|make) the order(?: of (?:the )?[a-z]+| in which [a-z ]+?)? "
+    r"^(?:flip|reverse|change|swap|switch|turn around|mix up|set|make) the order(?: of (?:the )?[a-z]+| in which "
+    r"[a-z ]+?)? "
     r"(?=(?:the )?[a-z]+(?: [a-z]+)? first\b)"
 )
+
+
+def _first(placed: tuple[int, object]) -> int:
+    return placed[0]
 
 
 def _ranked(said: str, thing: Thing) -> Iterator[Command]:
     """ "the blue book is to fall first and the red one last, with the green in the middle"."""
     said = re.sub(rf"^{_LED}", "", _OF_ORDER.sub("", said))
+    said = re.sub(r"^(?:the )?(?:other|opposite) way (?:about|round|around)(?: please)? [:,]? ?", "", said)
     parts = [p.strip(" ,") for p in re.split(r" , | and (?=(?:the )?[a-z]+(?: one)? )|(?: then| with)(?= )", said)]
-    found = [_RANK.match(p) for p in parts if p]
-    if len(found) < 2 or any(f is None for f in found):
+    found = [(_RANK.match(p), p) for p in parts if p]
+    if sum(rank is not None for rank, _ in found) < 2:
         return
-    ranked = sorted((f for f in found if f is not None), key=lambda f: _RANKS[f["rank"]])
-    names = [_one(re.sub(r" (?:should|to|must|is|are|will|can)$", "", f["np"])) for f in ranked]
+    places = [_RANKS[rank["rank"]] if rank is not None else i + 1 for i, (rank, _) in enumerate(found)]
+    placed = sorted(zip(places, found, strict=True), key=_first)
+    ranked = [rank["np"] if rank is not None else p for _, (rank, p) in placed]
+    names = [_one(re.sub(r" (?:should|to|must|is|are|will|can)$", "", name)) for name in ranked]
     read = [thing(n) or thing(f"{n} one") for n in names]
     queries = [q for q in read if q is not None and not q.last and q.pick != "all"]
     if len(queries) != len(ranked):

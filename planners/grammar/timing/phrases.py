@@ -17,7 +17,8 @@ TIME_WORDS = re.compile(
     r"long as|the moment|during|still|motion|movement|rpm|revs?|fast|slow|fast(?:er)?|slower|pause|quicker|"
     r"backwards?|later|"
     r"earlier|"
-    r"sooner|slowly|gradually|halfway|way back|(?:half|double) speed|(?:whole|entire|full|complete) (?:time|clip|film|video|scene|shot|movie|thing)|always|permanently|throughout|"
+    r"sooner|slowly|gradually|halfway|way back|(?:half|double) speed|(?:whole|entire|full|complete) (?:time|clip|"
+    r"film|video|scene|shot|movie|thing)|always|permanently|throughout|"
     r"forever|other way|crazy|let|last|beginning|clip|do|does|doing|from \d\S* (?:to|until|till)|between \d|direction|"
     r"speed|moving|moves|that move|not|never|out|back|quick(?:er|ly)?|twice|as fast)\b"
 )
@@ -55,6 +56,7 @@ REMARKS = re.compile(  # what goes without saying behind a time: "..., then back
     rf"(?:only (?:then|afterwards) )?(?:(?:let it |let him |let her |it )?(?:opens?|goes?|moves?|rolls?|walks?|drives?|"
     rf"falls?|spins?|turns?|runs?)(?: on)?|(?:let it |it )?(?:starts?|begins?) (?:to )?"
     rf"{any_of(MOTION, 'plain', 'ing')})|"
+    rf"(?:down|up|on|off|away|round) (?:it|he|she) goes|"
     rf"(?:then )?(?:start|open|move|release|launch|restart) (?:it|him|her|them)(?: again| up)?|"
     rf"not (?:close|open|shut|move|fall|go|start)(?: again| any ?more)?|"
     rf"(?:(?:it|he|she|they) )?(?:(?:should|must|may|shall|does|do|will|can) )?(?:not|never)(?: ever)? "

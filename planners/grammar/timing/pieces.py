@@ -37,7 +37,8 @@ _OF_IT = re.compile(
 )
 _ASKS = re.compile(
     r"\b(?:not only|except|without|other|others|rest|until|till|while|once|after|before|during|as soon|should|must|"
-    r"shall|ought|instead|also|too|again|back|both|all|each|every|same|first|last|next|more|less|(?<!'s )(?<!is )(?<!are )only|to be)\b"
+    r"shall|ought|instead|also|too|again|back|both|all|each|every|same|first|last|next|more|less|(?<!'s )(?<!is "
+    r")(?<!are )only|to be)\b"
 )
 _WISH = re.compile(
     r"\b(?:want|need|like|prefer|wish|love)s? (?:it|him|her|them|that|the|all|both|my|our)\b(?! (?:so|like))"
@@ -45,7 +46,8 @@ _WISH = re.compile(
 _BUT_SEEING = re.compile(
     r"\b(?:want|need|like|prefer|wish|love)s? (?:that|it|this)$|\bto (?:see|look|watch|show|have a)\b"
 )
-_SHORT = 4  # words of a piece without a verb
+_APPEARS = re.compile(r"^(?:that |it )?(?:looks?|seems?|feels?|sounds?) (?!like)[a-z]+(?: (?!until|from|at)[a-z]+)*$")
+_SHORT = 5  # words of a piece without a verb
 
 Reads = Callable[[str], bool]
 
@@ -85,6 +87,8 @@ def _divided(said: str) -> list[tuple[str, str]]:
 def _is_idle(piece: str, mark: str, first: bool, thing: Thing, reads: Reads) -> bool:
     """Whether a piece asks for nothing."""
     words = piece.split()
+    if _APPEARS.match(piece):
+        return True
     if re.search(rf"\d|\b(?:{HUES})\b|{DURATION}", piece) or cut(piece)[0] != piece:
         return False
     if _LEADS.search(mark):

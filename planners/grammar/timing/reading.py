@@ -222,6 +222,9 @@ class TimeReader:
         parts = _parts(said)
         if len(parts) > 1 and (joined := self._joined(parts)) is not None:
             yield joined
+        head, mark, rest = said.partition(" , ")
+        if mark and told_of(head) is not None and (joined := self._joined([head, rest])) is not None:
+            yield joined
         if (spelled := _spelled(said)) != said and (right := self._whole(spelled)) is not None:
             yield right
         if (loose := self._loosely(said)) is not None:

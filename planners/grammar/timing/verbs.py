@@ -88,7 +88,7 @@ SENSES: dict[str, str] = {
     "fade": "fade, fade out, fade away, dissolve, melt away, dissolve away",
     "look": "turn, become, go, get, flash, glow, shine, look, change to, change into, change color to, change "
         "colour to, turn to, turn into, light up",
-    "paint": "paint, color, colour, dye, tint, stain, recolor, recolour, turn, make, repaint, flash, spray, "
+    "paint": "mark, paint, color, colour, dye, tint, stain, recolor, recolour, turn, make, repaint, flash, spray, "
         "change, light up",
     "off": "turn off, switch off, shut off, shut down, go off, turns off, power off, power down",
     "on": "turn on, switch on, power up, power on",

@@ -144,6 +144,7 @@ def test_every_operation_that_makes_motion_is_tried_here() -> None:
         ({"change": "return"}, {3.0: 0.5, 4.001: 0.25, 5.001: 0.0}),
         ({"change": "part", "share": 0.5}, {1.0: 0.0, 2.0: 0.25, 3.0: 0.25}),
         ({"change": "part", "distance": {"value": 10, "unit": "cm"}}, {2.0: 0.1, 4.0: 0.1}),
+        ({"change": "repeat", "times": 1, "when": {"start": 4}}, {3.0: 0.5, 4.002: 0.0, 5.001: 0.25, 6.001: 0.5}),
         ({"change": "repeat", "times": 2}, {2.0: 0.25, 2.99: 0.4975, 4.001: 0.25, 5.0: 0.5}),
         ({"change": "back_and_forth", "times": 1}, {2.0: 0.25, 3.0: 0.5, 4.0: 0.25, 5.0: 0.0}),
     ],
@@ -267,11 +268,21 @@ def test_what_tips_over_lies_on_the_level_on_which_it_stood(moving: Scene, conte
     assert float(now[:, 0].mean()) < float(was[:, 0].mean())
 
 
-def test_one_thing_is_played_backwards_in_the_time_of_the_scene(moving: Scene, context: Context) -> None:
+def test_one_thing_is_played_backwards_in_its_own_time(moving: Scene, context: Context) -> None:
     longer = moving.replace(motion=replace(moving.motion, stop=6.0))
     made = done(longer, {"op": "pace", "target": A_CHAIR, "change": "reverse"}, context)
-    for time in (0.0, 2.0, 3.5, 4.0, 6.0):
-        assert np.allclose(middle(made.scene, time), middle(longer, 6.0 - time), atol=2e-3)
+    for time in (0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0):  # it moves from 1 to 3 s
+        assert np.allclose(middle(made.scene, time), middle(longer, 4.0 - time), atol=2e-3)
+
+
+def test_what_goes_there_and_back_is_played_backwards_in_the_time_of_the_scene(moving: Scene, context: Context) -> None:
+    there = {"op": "pace", "target": A_CHAIR, "change": "back_and_forth", "times": 1}
+    even = done(moving.replace(motion=replace(moving.motion, stop=6.0)), there, context).scene  # from 1 to 5 s
+    late = done(even, {"op": "pace", "target": A_CHAIR, "change": "later", "seconds": 0.5}, context).scene
+    made = done(late, {"op": "pace", "target": A_CHAIR, "change": "reverse"}, context).scene
+    assert made.motion is not None and made.motion.stop == 6.0
+    for time in (0.0, 1.0, 2.0, 3.0, 4.0, 6.0):
+        assert np.allclose(middle(made, time), middle(late, 6.0 - time), atol=2e-3)
 
 
 def test_the_whole_scene_at_half_speed_lasts_twice_as_long(moving: Scene, context: Context) -> None:

@@ -16,6 +16,10 @@ RULES: Rules = (
     (r"\bso long as\b", "as long as"),
     (r"\bdouble (?:so|as) (?=fast|quick|slow)", "twice as "),
     (r"\bgimme\b", "give me"),
+    (r"\bdiss?app?ear(?P<s>s|ed|ing)?\b", r"disappear\g<s>"),
+    (r"\bmore (?P<w>fast|quick)\b", "faster"),
+    (r"\bmore slow\b", "slower"),
+    (r"\bhalf (?:of )?(?:a |the )?second\b", "half a second"),
     (r"\b(?:do not need|need not|does not need)(?: to)? (?=(?:move|open|close|fall|turn|spin|go|stop|start)\b)",
      "should not "),
     (r"\b(?P<w>everything|all|anything) (?:what|which|as) (?=(?:is|are|moves?|falls?|turns?|stands?|rolls?) )",
@@ -23,31 +27,46 @@ RULES: Rules = (
     (r"\b(?:is it|it is|it would be) (?:also )?poss?ible (?:that|if) (?P<np>(?:the|my|all) [a-z ]+?) (?:is|are|be) ",
      r"\g<np> should be "),
     # who asks, and how
-    (r"^(?:(?:oh|ah|well|so|right|hello|hi|okay|ok|now|um|uh|perhaps|maybe|actually|hmm|and then|and|but) (?:[,!.] )*)+(?=\S)", ""),
-    (r"^(?:(?:slower|faster|quicker|softer|earlier|later|sooner|careful|easy|not so fast|stop|wait|no|yes)"
-     r"(?: ,)? ?)+ (?:!|\.) (?=\S)", ""),
-    (r"^(?P<np>(?:the|my|that|this) (?:poor |little |old )*[a-z]+(?: [a-z]+)??) must be (?:so |very |really )?(?:tired|exhausted|"
-     r"bored|dizzy|thirsty|lonely|sleepy|worn out|cold|hot) [.!,;] (?P<rest>.*?)\b(?:it|him|her)\b",
-     r"\g<rest>\g<np>"),
-    (r"^only (?=(?:open|close|swing|turn|move|slide|push|pull|let|roll|rotate|lift|raise|crack|drop|spin|play|make) (?:the|it|"
-     r"my|all)\b)", ""),
+    (r"(?: ,)? (?:so |and )?(?:please )?(?:correct|adjust|fix|change|amend) (?:that|it|this)?(?: accordingly| "
+     r"please)?$|(?: ,)? (?:so |and )?(?:please )?(?:correct|adjust|amend)$", ""),
+    (r"^(?:according to (?:the|my|our|a) [a-z]+(?: [a-z]+)?|as far as (?:i|we) (?:know|can tell)|in reality|in fact|"
+     r"(?:the |a |one |my )?(?:witness|witnesses|report|log|script|director|client|boss|police|neighbou?r)s? "
+     r"(?:says?|said|reports?|claims?|states?|tells? (?:me|us)|told (?:me|us)|wants?|shows?)(?: that)?)(?: ,)? "
+     r"(?=(?:the|all|my|both) )", "it would be nice if "),
+    (r"^(?:nobody|no one|(?:i|we|you|people) (?:do not|should not|must not|cannot|can not)) (?:sees?|should see|can "
+     r"see|may see|is to see|must see) (?=(?:the|my) )", "hide "),
+    (r"^(?P<np>(?:the|my|this|that) [a-z]+(?: [a-z]+)?) (?:was|is|were|are) [^,.]*? , (?:so|therefore|which is why) "
+     r"(?:it|he|she|they) (?=(?:has|have|must|should|needs?|ought|shall) )", r"\g<np> "),
+    (r"\b(?P<v>take|takes|get|have|keep|leave|move|put)s? (?P<np>(?:the|all the|my) [a-z ]+?|it|them) out of (?:the "
+     r")?(?:view|sight|shot|frame|picture|image|way of the camera)\b(?: (?:altogether|completely|entirely))?",
+     r"hide \g<np>"),
+    (r"\b(?P<b>in|for|during) this version\b", ""),
+    (r"^(?:(?:oh|ah|well|so|right|hello|hi|okay|ok|now|um|uh|perhaps|maybe|actually|hmm|and then|and|but) (?:[,!.] "
+     r")*)+(?=\S)", ""),
+    (r"^(?:(?:slower|faster|quicker|softer|earlier|later|sooner|careful|easy|not so fast|stop|wait|no|yes)(?: "
+     r",)? ?)+ (?:!|\.) (?=\S)", ""),
+    (r"^(?P<np>(?:the|my|that|this) (?:poor |little |old )*[a-z]+(?: [a-z]+)??) must be (?:so |very |really "
+     r")?(?:tired|exhausted|bored|dizzy|thirsty|lonely|sleepy|worn out|cold|hot) [.!,;] (?P<rest>.*?)\b(?:it|him|her)"
+     r"\b", r"\g<rest>\g<np>"),
+    (r"^only (?=(?:open|close|swing|turn|move|slide|push|pull|let|roll|rotate|lift|raise|crack|drop|spin|play|make) "
+     r"(?:the|it|my|all)\b)", ""),
     (r"^(?P<np>(?:the|my|this|that|those|these|all the) [a-z ]{2,30}?) , (?P<do>can|could|would|should|may|must|will|"
      r"might) (?:it|they|he|she) (?=[a-z])", r"\g<np> should "),
-    (rf"^(?P<np>(?:the|my|this|that) [a-z]+(?: [a-z]+)?) (?:, )?(?:i|we) (?:would )?(?:rather )?(?:like|prefer|want|need|"
-     rf"love|see) (?:it|him|her|them) (?:to be |in |to |as )*(?P<c>{COLOR})\b", r"make \g<np> \g<c>"),
-    (rf"^(?:let us have|give (?:me|us)|show (?:me|us)|(?:i|we) (?:would like|want|need|would love|fancy)) an? "
-     rf"(?P<c>{COLOR}) (?P<np>[a-z]+(?: [a-z]+)??)(?= (?:for|from|while|when|until|during|at|between|after|once|,|all|"
-     rf"in|throughout|the whole)\b|$| ,)", r"make the \g<np> \g<c>"),
-    (rf"^(?P<d>(?:for|during|from|between|until|in) (?:the )?[a-z0-9. ]+?) (?:i|we) (?:would like|want|need|would love) "
-     rf"an? (?P<c>{COLOR}) (?P<np>[a-z]+)\b", r"make the \g<np> \g<c> \g<d>"),
-    (rf"\b(?P<v>put|paint|make|have|turn|let) (?P<np>(?:the|my) [a-z ]+?) (?:of|in|with) (?:the |a )?(?:colou?r (?:of )?)?"
-     rf"(?P<c>{COLOR})(?: colou?r)?\b(?! [a-z]+ (?:to|from)\b)", r"make \g<np> \g<c>"),
-    (rf"^(?:(?:i|we) (?:think|feel|believe|guess|say|bet|reckon)(?: that)? )?(?P<np>(?:the|my|this|that) [a-z ]+?) (?:would|"
-     rf"might|could|will) (?:look|be) (?:(?:so|really|much|very|quite|even|rather|far|a lot|way) )*"
-     rf"(?:[a-z]+er|lovely|nice|good|great|better|best|well|pretty|beautiful|perfect|cool|sweet|fun|smart|super|"
+    (r"^(?P<np>(?:the|my|this|that) [a-z]+(?: [a-z]+)?) (?:, )?(?:i|we) (?:would )?(?:rather )?(?:like|prefer|want|"
+     rf"need|love|see) (?:it|him|her|them) (?:to be |in |to |as )*(?P<c>{COLOR})\b", r"make \g<np> \g<c>"),
+    (r"^(?:let us have|give (?:me|us)|show (?:me|us)|(?:i|we) (?:would like|want|need|would love|fancy)) an? "
+     rf"(?P<c>{COLOR}) (?P<np>[a-z]+(?: [a-z]+)??)(?= (?:for|from|while|when|until|during|at|between|after|once|,|"
+     r"all|in|throughout|the whole)\b|$| ,)", r"make the \g<np> \g<c>"),
+    (r"^(?P<d>(?:for|during|from|between|until|in) (?:the )?[a-z0-9. ]+?) (?:i|we) (?:would like|want|need|would "
+     rf"love) an? (?P<c>{COLOR}) (?P<np>[a-z]+)\b", r"make the \g<np> \g<c> \g<d>"),
+    (r"\b(?P<v>put|paint|make|have|turn|let) (?P<np>(?:the|my) [a-z ]+?) (?:of|in|with) (?:the |a )?(?:colou?r "
+     rf"(?:of )?)?(?P<c>{COLOR})(?: colou?r)?\b(?! [a-z]+ (?:to|from)\b)", r"make \g<np> \g<c>"),
+    (r"^(?:(?:i|we) (?:think|feel|believe|guess|say|bet|reckon)(?: that)? )?(?P<np>(?:the|my|this|that) [a-z ]+?) "
+     r"(?:would|might|could|will) (?:look|be) (?:(?:so|really|much|very|quite|even|rather|far|a lot|way) "
+     r")*(?:[a-z]+er|lovely|nice|good|great|better|best|well|pretty|beautiful|perfect|cool|sweet|fun|smart|super|"
      rf"gorgeous) (?:in|as) (?:a )?(?P<c>{COLOR}|cream|beige|navy|teal|ivory|black|lilac|mint|maroon|cyan|magenta)\b",
      r"\g<np> should be \g<c>"),
-    (rf"^(?:i|we) (?:do not|would not) (?:want|like)(?: to (?:see|have))? (?:any|the|those|these|all the) "
+    (r"^(?:i|we) (?:do not|would not) (?:want|like)(?: to (?:see|have))? (?:any|the|those|these|all the) "
      rf"(?P<np>[a-z]+(?: [a-z]+)?) (?P<v>{ING})(?: (?:on camera|here|at all|around|about|down))*(?= ,|$)",
      lambda m: f"do not let the {m['np']} {plain_of(m['v'])}"),
     (r"^(?:give|show|let) (?:me|us)(?: (?:have|see))? (?P<np>(?:the|my) [a-z ]+?) in (?P<s>slow ?-? ?mo(?:tion)?)\b",
@@ -55,9 +74,9 @@ RULES: Rules = (
     (rf"^(?P<v>{any_of(tuple(SENSES), 'ing')}|{'|'.join(CAUSING)}) (?=(?:the|all|my|our|it|both|that|this|every) )",
      lambda m: f"{CAUSING.get(m['v']) or plain_of(m['v'])} "),  # "would you mind letting the ball go"
     (r"\b(?:(?:i|we) (?:would (?:like|love|prefer)|want|need|wish)(?: to (?:see|have|show|get|watch))?|show|display|"
-     r"render|have|see|dress|tint)(?: us| me)? (?P<np>it|him|her|them|the [a-z ]+?|my [a-z]+) (?:in "
-     rf")?(?P<c>{COLOR})(?= (?:,|\.|and|from|while|when|once|until|till|for|as|at|between|after|before|during|"
-     r"throughout|all|only|instead)\b|$| [,.])", r"make \g<np> \g<c>"),
+     rf"render|have|see|dress|tint)(?: us| me)? (?P<np>it|him|her|them|the [a-z ]+?|my [a-z]+) (?:in )?(?P<c>{COLOR})"
+     r"(?= (?:,|\.|and|from|while|when|once|until|till|for|as|at|between|after|before|during|throughout|all|only|"
+     r"instead)\b|$| [,.])", r"make \g<np> \g<c>"),
     (r"^(?:someone|somebody|you|one) (?:really )?(?:ought to|should|must|has to|have to|needs to|need to|could|can) ",
      ""),
     (r"^it would (?:look|be|seem|feel|get) (?:(?:much|far|a bit|a lot|so|more|even) )*[a-z]+ if ",

@@ -6,16 +6,18 @@ from .wording import EVENT, ING, PLAIN, Rules, S
 
 RULES: Rules = (
     # where
-    (rf"\b(?P<v>{PLAIN}|{S}) (?:until|till|up until) (?P<np>(?:the|my) (?!end|start|beginning|finish|middle|final|second|"
-     r"moment|time|last|first|very)[a-z]+)(?= (?:in|from|at|over|within|during|between|for|by|,)\b|$| ,)",
+    (r"(?: (?:across|over|along))? so (?:that )?(?:it|he|she|they) (?:ends? up|stands?|is|lands?|sits?) (?=(?:next "
+     r"to|beside|by|near|at|in front of|behind|on|under) the )", " "),
+    (rf"\b(?P<v>{PLAIN}|{S}) (?:until|till|up until) (?P<np>(?:the|my) (?!end|start|beginning|finish|middle|final|"
+     r"second|moment|time|last|first|very)[a-z]+)(?= (?:in|from|at|over|within|during|between|for|by|,)\b|$| ,)",
      r"\g<v> to \g<np>"),
-    (rf"\b(?P<v>{PLAIN}|{S})(?: (?:across|over|along|up|down|around|through))? and (?:then )?(?:settles?|parks?|lands?|"
-     r"(?:come|comes) to (?:a )?(?:rest|stop|halt)|sits?|stops?|waits?|stands?|rests?|halts?|stays?) "
+    (rf"\b(?P<v>{PLAIN}|{S})(?: (?:across|over|along|up|down|around|through))? and (?:then )?(?:settles?|parks?|"
+     r"lands?|(?:come|comes) to (?:a )?(?:rest|stop|halt)|sits?|stops?|waits?|stands?|rests?|halts?|stays?) "
      r"(?P<at>next to|beside|by|near|in front of|behind|at|on|under|against)\b", r"\g<v> \g<at>"),
     (r"\b(?:straight|right|directly) (?=(?:up|down|into the air)\b)", ""),
     (r"\b(?P<w>stays?|remains?) (?:up|down|over|right|exactly|just) (?=where\b|put\b)", r"\g<w> "),
-    (r"\b(?P<v>pushe?s?|moves?|slides?|shoves?|rolls?|drives?|put|bring|pull|drag)(?P<x>(?: .*?)?) (?:right )?up (?:against|"
-     r"next to|close to|beside|to) (?=the )", r"\g<v>\g<x> to "),
+    (r"\b(?P<v>pushe?s?|moves?|slides?|shoves?|rolls?|drives?|put|bring|pull|drag)(?P<x>(?: .*?)?) (?:right )?up "
+     r"(?:against|next to|close to|beside|to) (?=the )", r"\g<v>\g<x> to "),
     (r"\b(?P<v>moved?|pushed?|brought|carried|slid|shifted|placed|put) (?:right )?over (?:by|to|next to|beside|near) "
      r"(?=the )", r"\g<v> to "),
     (r"\b(?P<w>up|upwards) (?:off|from|above) (?:the|its|his) [a-z]+(?: [a-z]+)?(?= (?:,|from|between|at|in|for|over|"
@@ -38,8 +40,8 @@ RULES: Rules = (
     (r"\bthe (?:whole |entire )?(?P<x>[a-z]+(?: [a-z]+)?) action\b", r"the \g<x> motion"),
     (rf"\bthe (?:whole|entire|complete) (?P<x>[a-z]+(?: 's)?) (?P<e>{EVENT})\b", r"the \g<x> \g<e>"),
     (rf"\b(?:cut|break) (?P<x>.+? (?:'s )?{EVENT}) (?:off|short) (?=at|after|when|once)", r"stop \g<x> "),
-    (rf"\b(?P<det>the [a-z ]*?)(?P<noun>[a-z]+) (?P<rest>(?:(?:to|should|must|shall) )?{PLAIN} (?:before|after|"
-     r"while) the [a-z]+) one (?P<do>does|do|did)$", r"\g<det>\g<noun> \g<rest> \g<noun> \g<do>"),
+    (rf"\b(?P<det>the [a-z ]*?)(?P<noun>[a-z]+) (?P<rest>(?:(?:to|should|must|shall) )?{PLAIN} (?:before|after|while)"
+     r" the [a-z]+) one (?P<do>does|do|did)$", r"\g<det>\g<noun> \g<rest> \g<noun> \g<do>"),
     (rf"\b(?P<verb>{PLAIN}) (?P<w>before|after|while) (?P<x>(?:the|my|our|both|all) [a-z ]+?) (?:does|do|did)$",
      r"\g<verb> \g<w> \g<x> \g<verb>"),
 )  # fmt: skip

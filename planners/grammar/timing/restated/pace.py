@@ -7,26 +7,37 @@ from .wording import EVENT, ING, IT, PLAIN, POINT, SHARE, Rules, S, rate, slowed
 
 RULES: Rules = (
     # how fast
+    (r"\b(?:no more than|not more than|at most|a maximum of|at maximum|as much as) (?=(?:\d|[a-z]+ (?:degrees?|cm|"
+     r"centimet(?:re|er)s?|m|met(?:re|er)s?|seconds?)\b))", ""),
+    (rf"(?:,|\.|and)? ?(?P<d>{DURATION}) (?:is|will be|would be|should be) (?:enough|plenty|sufficient|fine|ok|okay)"
+     r"(?: for (?:it|that|this|him|her))?$", r" in \g<d>"),
+    (r"^(?:let |have |make )?(?P<np>(?:the |my )?[a-z ]+?) (?:(?:should|must|shall|to|can|could|may) )?(?:do|does|"
+     rf"play|run|walk|perform|make)s? (?:its|his|her|the) (?:{EVENT}|way|path|route|thing) (?P<b>backwards?|in "
+     r"reverse)\b", r"play \g<np> 's motion \g<b>"),
+    (r"\b(?P<n>one|a|1|two|2|three|3) (?:full )?(?P<t>twirl|spin|turn|pirouette|rotation|revolution)s?(?: ,)? all "
+     r"the way (?:round|around)\b", r"\g<n> \g<t>"),
+    (r"(?: ,)? (?:but )?(?:for )?(?:just |exactly )?as long as (?:now|before|it does(?: now)?|usual)$", ""),
     (r"\b(?:its|his|her|the) (?:way|path|route) (?=in reverse|backwards?)", ""),
-    (r"\ba (?:little|bit|little bit)(?: (?:as well|too|also|more))? (?:, )?(?=(?:\d+|[a-z]+) (?:cm|m|degrees?|centimet(?:re|er)s?|"
-     r"met(?:re|er)s?)\b)", ""),
-    (rf"(?: ,)? (?:instead of|rather than) (?:it )?{ING} (?:all the way|on|further|right|over|the whole way|up)"
-     r"(?: (?:to|into|against|up to|until) (?:the|its) [a-z]+(?: [a-z]+)?)?(?= ?(?:[,.]|$))", ""),
+    (r"\ba (?:little|bit|little bit)(?: (?:as well|too|also|more))? (?:, )?(?=(?:\d+|[a-z]+) (?:cm|m|degrees?|"
+     r"centimet(?:re|er)s?|met(?:re|er)s?)\b)", ""),
+    (rf"(?: ,)? (?:instead of|rather than) (?:it )?{ING} (?:all the way|on|further|right|over|the whole way|up)(?: "
+     r"(?:to|into|against|up to|until) (?:the|its) [a-z]+(?: [a-z]+)?)?(?= ?(?:[,.]|$))", ""),
     (r"\bto (?P<f>half|a third|a quarter|double|twice|triple) (?:of )?(?:its|the|his|her) (?:pace|speed|tempo|rate|"
      r"velocity)\b", r"to \g<f> the speed"),
-    (r"^(?:take|bring|dial|drop|turn|set|cut|put|knock) (?P<x>(?:the |it)(?:[a-z]+(?: [a-z]+)?)?) (?:down |back |up )?"
-     r"(?:to|at) (?P<f>half|a third|a quarter|double|twice|triple) (?:of )?(?:its|the|his|her) speed\b",
+    (r"^(?:take|bring|dial|drop|turn|set|cut|put|knock) (?P<x>(?:the |it)(?:[a-z]+(?: [a-z]+)?)?) (?:down |back |up "
+     r")?(?:to|at) (?P<f>half|a third|a quarter|double|twice|triple) (?:of )?(?:its|the|his|her) speed\b",
      r"play \g<x> at \g<f> speed"),
     (r"\b(?P<n>two|three|four|five|\d+) times (?:as )?slow(?:er|ly)?\b", r"\g<n> times slower"),
-    (r"(?: ,| and)? say (?=(?:over|in|at|by|for|about|around|half|twice|double|a |an |\d|one|two|three|four|five|ten) ?)",
-     " "),
-    (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {IT} (?:(?:does|do|is|are|did) )?(?:at present|"
-     r"at the moment|right now|currently|so far)\b", r"\g<a>"),
+    (r"(?: ,| and)? say (?=(?:over|in|at|by|for|about|around|half|twice|double|a |an |\d|one|two|three|four|five|ten)"
+     r" ?)", " "),
+    (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {IT} (?:(?:does|do|is|are|did) )?(?:at present|at "
+     r"the moment|right now|currently|so far)\b", r"\g<a>"),
     (rf"^(?P<f>{SHARE}) (?:speed|pace|tempo) (?:on|for) (?P<x>.+)$", r"play \g<x> at \g<f> speed"),
     (rf"\bin slow ?motion ,? ?(?:at )?(?P<f>{SHARE}) (?:speed|pace|tempo)\b", r"at \g<f> speed"),
     (r"\b(?:one|1|a|a single|a full|one full) (?:round|turn|revolution|rotation) (?:in|every|per|each) "
      rf"(?P<d>{DURATION})(?=(?: ,)? (?:from|between|all|always|the whole|throughout|for|until))", rate),
-    (r"(?<= )(?:its|his|the) (?:whole|entire|full|complete) (?:way|path|route)(?= \S)(?! (?:to|from|back|through)\b)", ""),
+    (r"(?<= )(?:its|his|the) (?:whole|entire|full|complete) (?:way|path|route)(?= \S)(?! (?:to|from|back|through)\b)",
+     ""),
     (r"\b(?:with|at|to|in) (?:the |its )?(?P<f>double|half|triple|twice)(?: of)?(?: the| its)? (?:speed|velocity|"
      r"pace|tempo)\b", r"at \g<f> speed"),
     (r"^(?:put|set|run|get) (?P<x>the [a-z ]+?) (?=at (?:double|half|triple|twice) speed)", r"play \g<x> "),
@@ -46,11 +57,12 @@ RULES: Rules = (
      r"(?:that )?(?:it|they|he|she|we|the [a-z]+)(?: all| both)? [a-z ]+$", r"\g<r>"),
     (r"\b(?P<w>go|come|went|came)(?:es|s)? down together\b", "fell"),
     # what it is not
-    (r"(?P<a>\d(?:\.\d+)? ?(?:cm|m|degrees?|deg|°|centimet(?:re|er)s?|met(?:re|er)s?|%|percent))(?: ,)? (?:and )?(?:not|"
-     r"instead of|rather than)(?: the)?(?: (?:usual|present|current|full|whole|all))* \d+(?:\.\d+)?"
-     r"(?: ?(?:cm|m|degrees?|deg|°|centimet(?:re|er)s?|met(?:re|er)s?|%|percent))?(?= ?(?:[,.]|$))", r"\g<a>"),
-    (r"(?P<b>\b(?:backwards?|in reverse|the other way(?: round| around)?))(?: ,)?(?: so)? from (?:the|its) [a-z]+"
-     r"(?: [a-z]+)? (?:back )?to (?:the|its) [a-z]+(?: [a-z]+)?$", r"\g<b>"),
+    (r"(?P<a>\d(?:\.\d+)? ?(?:cm|m|degrees?|deg|°|centimet(?:re|er)s?|met(?:re|er)s?|%|percent))(?: ,)? (?:and "
+     r")?(?:not|(?<=m )(?:instead of|rather than))(?: the)?(?: (?:usual|present|current|full|whole|all))* "
+     r"\d+(?:\.\d+)?(?: ?(?:cm|m|degrees?|deg|°|centimet(?:re|er)s?|met(?:re|er)s?|%|percent))?(?= ?(?:[,.]|$))",
+     r"\g<a>"),
+    (r"(?P<b>\b(?:backwards?|in reverse|the other way(?: round| around)?))(?: ,)?(?: so)? from (?:the|its) [a-z]+(?: "
+     r"[a-z]+)? (?:back |home )?to (?:the|its) [a-z]+(?: [a-z]+)?$", r"\g<b>"),
     (r"(?<=second|econds)(?: ,)? (?:instead of|rather than|and not|not)(?: (?:at|after|until|by|in))?(?: already| "
      rf"only)? {POINT}(?: and a half)?(?= ?(?:[,.]|$))", ""),
     (rf"^(?P<x>.+?) (?:should|must|shall|may|does|will) not (?P<y>.+?) (?:at|after|from|by) {POINT}(?: already)?(?: "
@@ -63,22 +75,22 @@ RULES: Rules = (
     # what it comes to
     (rf"(?: ,)? so (?:that )?{IT} (?:starts?|begins?|ends?|stops?|happens?|moves?|comes?) (?:later|earlier|sooner)"
      r"(?: than (?:now|before|it does))?$", ""),
-    (rf"(?P<b>\b(?:backwards?|in reverse|the other way(?: round| around)?)) ,? ?so (?:that )?{IT} (?:starts?|"
-     r"begins?|sets?)(?: out| off)? (?:at|from|by|on|in) [a-z ]+? and (?:finishes|ends|stops|arrives)(?: up)? (?:at "
-     r"|in )?where [a-z ]+$", "backwards"),
+    (rf"(?P<b>\b(?:backwards?|in reverse|the other way(?: round| around)?)) ,? ?so (?:that )?{IT} (?:starts?|begins?|"
+     r"sets?)(?: out| off)? (?:at|from|by|on|in) [a-z ]+? and (?:finishes|ends|stops|arrives)(?: up)? (?:at |in "
+     r")?where [a-z ]+$", "backwards"),
     (r" (?:,|-|–|—|;|and|then|so)(?: and| then)* (?:it |he |she )?(?:just |simply |then )*(?:stands?|stays?|remains?|"
      r"rests?|waits?|lies?|sits?)(?: just| simply)*(?: (?:there|still|so|put))* from (?:then|there|that (?:point|"
      r"moment|time)) on(?:wards?)?$", ""),
     (r"^(?P<x>(?:everything|all|all that|whatever|anything)(?: that| which)? (?P<np>the [a-z ]+?) (?:does|is doing))"
      r"\b", r"the movement of \g<np>"),
     # how, in passing
-    (r"(?: ,)? (?:as (?:though|if)|like) (?:he |she |it )?(?:is |was |were )?[a-z]+ing(?: [a-z]+)?(?= ?(?:[,.]|and\b|$))",
-     ""),
+    (r"(?: ,)? (?:as (?:though|if)|like) (?:he |she |it )?(?:is |was |were )?(?!(?:no|any|some|every)thing)"
+     r"[a-z]+ing(?: [a-z]+)?(?= ?(?:[,.]|and\b|$))", ""),
     (r"(?: ,)? (?:nicely|neatly|dramatically|elegantly|gracefully|majestically|mysteriously|magically|happily|sadly|"
      r"proudly|obediently|politely|dutifully|cheerfully|spookily|silently|quietly|on its own|all by itself|by itself|"
      r"for (?:me|us|you)|spinny|in style|like magic)(?= |$)", ""),
-    (r"\b(?:a (?:bit|little|touch|tad)|slightly|somewhat|much|way|far) (?P<w>sooner|earlier|later) (?=(?:, )?(?:please )?"
-     r"(?:, )?(?:already )?(?:at|from) )", r"\g<w> "),
+    (r"\b(?:a (?:bit|little|touch|tad)|slightly|somewhat|much|way|far) (?P<w>sooner|earlier|later) (?=(?:, "
+     r")?(?:please )?(?:, )?(?:already )?(?:at|from) )", r"\g<w> "),
     (r"(?: ,(?: just| a bit| kind of| sort of)? like| (?:, )?as if| (?:, )?as though) (?:a|an|some|it|there|someone|"
      r"somebody|they|you|he|she|in a|on a|in the|for)\b(?! (?:is|was) now)[^.]*$", ""),
     (r"\b(?:to (?:the|its|his) )?(?P<a>left|right)(?:wards?)? ,? ?(?:instead of|rather than|and not|not)(?: "

@@ -28,39 +28,54 @@ from .wording import (
 
 RULES: Rules = (
     # how a time is named
-    (rf"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)? .+?) , (?:and )?(?:then )?(?:hold|wait|pause|stay|rest)s?"
-     rf"(?: (?:it|him|her|there|still|for))* (?P<d>{DURATION})", r"\g<v> for \g<d>"),
-    (r"\b(?P<w>start|begin)(?P<s>s|ing)? (?:to )?(?:slid(?:e|ing)|swing(?:ing)?|go(?:ing)?|mov(?:e|ing)|com(?:e|ing)|roll(?:ing)?) "
-     r"(?:shut|closed|back in|in|back)\b", "close"),
+    (r"\b(?P<v>fall|falls|drop|drops|roll|rolls|walk|walks|tumble|tumbles|jump|jumps|hop|hops) again (?=(?:at|from|"
+     r"when|once|as soon as|after) )", r"\g<v> once more "),
+    (r"\b(?:right away |immediately |directly |straight away |just )?(?:when|as soon as|once) the (?:film|clip|video|"
+     r"movie|scene|shot|animation) (?:begins|starts|opens)\b", "at the start"),
+    (r"\bfrom the (?:very )?first (?:moment|second|frame|instant)? ?(?:on )?(?:to|until|till) the (?:very )?last(?: "
+     r"(?:one|moment|second|frame|instant))?\b", "from start to finish"),
+    (r"\bjust (?=when\b|as\b)", ""),
+    (r"\bat the (?:spot|place|point) where (?:it|he|she) (?:turns|changes direction)\b", "when it turns"),
+    (rf"^(?P<np>(?:the |my )?[a-z ]+?) (?:(?:need|needs|should|must|may|has) )?(?:to )?(?:only )?(?:{PLAIN}|{S}) "
+     r"(?:only )?(?:as far as|up to|until|to) the (?:point|spot|place) where (?:it|he|she) turns\b",
+     r"\g<np> should stop when it turns"),
+    (rf"\b(?P<w>waits?) (?:until|till|untill) (?P<d>{POINT}) before (?:it|he|she|they) (?:{S}|{PLAIN}|starts?|"
+     r"begins?)\b", r"\g<w> until \g<d>"),
+    (rf"\b(?P<v>starts?|begins?) (?:at|after|from) (?P<a>{POINT}) and (?:then )?(?:work|run|turn|go|last|spin|move|"
+     rf"keep going)s? (?:until|till|to|up to) (?P<b>{POINT})", lambda m: f"{m['v']}{from_to(m)}"),
+    (r"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)? .+?) , (?:and )?(?:then )?(?:hold|wait|pause|stay|rest)s?(?: "
+     rf"(?:it|him|her|there|still|for))* (?P<d>{DURATION})", r"\g<v> for \g<d>"),
+    (r"\b(?P<w>start|begin)(?P<s>s|ing)? (?:to )?(?:slid(?:e|ing)|swing(?:ing)?|go(?:ing)?|mov(?:e|ing)|com(?:e|ing)|"
+     r"roll(?:ing)?) (?:shut|closed|back in|in|back)\b", "close"),
     (r"(?: ,)? (?:only|just) (?:in|for|during|at) (?:this|that) (?:moment|time|part|bit)\b", ""),
-    (r"^(?P<x>do not let .+? [a-z]+) (?:, |and )+(?:just |simply )*(?:keep|leave|let) (?:it|them|him|her)(?: stay| be)? (?:up|"
-     r"down|over|right|there|where|on|in|at)\b[a-z ]*$", r"\g<x>"),
-    (r"\b(?:in|during|for|over|within) the (?:time|period|interval|window|span|stretch)(?: of time)? (?=(?:from|between) )",
-     ""),
-    (r"\b(?P<w>until|till|til|to) the (?:final|finale|finish|close|curtain|credits|last frame|fade ?out|very end)\b"
-     r"(?! of (?:the|its) [a-z]*[^a-z])", r"\g<w> the end"),
+    (r"^(?P<x>do not let .+? [a-z]+) (?:, |and )+(?:just |simply )*(?:keep|leave|let) (?:it|them|him|her)(?: stay| "
+     r"be)? (?:up|down|over|right|there|where|on|in|at)\b[a-z ]*$", r"\g<x>"),
+    (r"\b(?:in|during|for|over|within) the (?:time|period|interval|window|span|stretch)(?: of time)? (?=(?:from|"
+     r"between) )", ""),
+    (r"\b(?P<w>until|till|til|to) the (?:final|finale|finish|close|curtain|credits|last frame|fade ?out|very end)"
+     r"\b(?! of (?:the|its) [a-z]*[^a-z])", r"\g<w> the end"),
     (r"\b(?:right |straight |all the way |on |up |right up )+(?:to|until|till) the (?:very )?end\b", "until the end"),
     (rf"\b(?P<v>keep|keeps|go on|goes on|continue|carry on|stay) (?P<x>.*?{ING}) to the (?:very )?end\b",
      r"\g<v> \g<x> until the end"),
     (r"\b(?:spread|stretched|drawn|spread out|drawn out|stretched out) over (?=[a-z0-9])", "over "),
     (r"\b(?:at|in) (?:the|his|her|its) (?:corner|turning point|turning|bend|curve)\b", "when it turns"),
-    (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:goes|carries|moves|walks|rolls|continues|proceeds|heads|drives) ?"
-     r"(?:on|onwards?|off)?(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
-    (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:stays?|remains?|keeps?|is left) (?:so|that way|like that|there|still|"
-     r"gone|hidden|put|where it is)(?: (?:until|till|to) the (?:very )?end(?: of [a-z ]+)?)$", ""),
+    (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:goes|carries|moves|walks|rolls|continues|proceeds|heads|"
+     r"drives) ?(?:on|onwards?|off)?(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
+    (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:stays?|remains?|keeps?|is left) (?:so|that way|like that|there|"
+     r"still|gone|hidden|put|where it is)(?: (?:until|till|to) the (?:very )?end(?: of [a-z ]+)?)$", ""),
     (r"(?: ,)? (?:and |but )?(?:leave|keep|let) (?:it|him|her|them) (?:so|that way|like that|as it is)$", ""),
-    (rf"(?: ,)? (?P<d>{DURATION}) for (?:it|that|this|the {EVENT}|the whole thing)$", r" in \g<d>"),
-    (rf"\b(?:take|takes|use|uses|need|needs|spend) (?P<d>{DURATION}) (?:to |for )?(?P<v>{PLAIN}|{ING})(?P<x>(?: (?:out|in|up|down))?)"
-     r"(?: again)?$", lambda m: f"{plain_of(m['v'])}{m['x']} in {m['d']}"),
-    (rf"(?: ,)? (?:and )?give (?:it|him|her|them) (?P<d>{DURATION}) (?:to|for) (?:get there|do (?:it|so|that)|it|that|"
-     r"arrive|go|move)$", r" in \g<d>"),
-    (r"(?: ,)? (?:and |then |after that |afterwards )+(?:it |turn it |go |goes )*back to (?:the |its )?(?:[a-z]+)"
-     r"(?: one| colou?r| again)?$", " and then back to normal"),
+    (rf" , (?P<d>{DURATION}) for (?:it|that|this|the {EVENT}|the whole thing)$", r" in \g<d>"),
+    (rf"\b(?:take|takes|use|uses|need|needs|spend) (?P<d>{DURATION}) (?P<v>coming|going|sliding|moving|rolling|"
+     r"swinging) (?P<x>out|in|open|shut|closed)(?: again)?$", lambda m: f"{plain_of(m['v'])} {m['x']} in {m['d']}"),
+    (rf"(?: ,)? (?:and )?give (?:it|him|her|them) (?P<d>{DURATION}) (?:to|for) (?:get there|do (?:it|so|that)|it|"
+     r"that|arrive|go|move)$", r" in \g<d>"),
+    (r"(?: ,)? (?:and |then |after that |afterwards )+(?:it |turn it |go |goes )*back to (?:the |its )?(?:[a-z]+)(?: "
+     r"one| colou?r| again)?$", " and then back to normal"),
     (rf"\b(?P<w>until|till|at|from|after) (?P<d>{DURATION}) in(?:to it)?(?= ?(?:[,.]|and\b|then\b|$))", r"\g<w> \g<d>"),
     (r"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)?)(?: dead)? in (?:mid ?-? ?(?:air|flight|swing|step|fall|turn)|"
      r"its tracks|place)\b", r"\g<v>"),
     (r"(?: ,| and)+(?: it| he| she)? (?:holds?|hangs?|waits?|rests?|stands?)(?: (?:there|still|motionless|frozen|"
-     rf"like that|in place|in mid-air))+ for (?:exactly |just )?(?P<d>{DURATION})", r" for \g<d>"),
+     rf"like that|in place|in mid-air))+ (?:for )?(?:exactly |just )?(?P<d>{DURATION})", r" for \g<d>"),
     (r"(?: ,)?(?: and| but)?(?: only)?(?: then| after (?:that|this)| afterwards)*(?: it| he| she)? (?:continues?|"
      rf"carr(?:y|ies) on|goes on|resumes?|proceeds?|keeps? on)(?: (?:to )?(?:{PLAIN}|{ING}))?(?: on)?(?: (?:with "
      rf")?(?:its|the) (?:way|journey|path|{EVENT}))?(?: ,)? (?:until|till|to|up to|as far as) (?:the|its) [a-z]+$",
@@ -81,12 +96,11 @@ RULES: Rules = (
      rf"colou?r))?|{COLOR} again|normal(?: again)?) at (?P<b>{POINT})$", colored),
     (rf"(?: ,)? and (?:this|that|the|its|the whole) (?:whole )?{EVENT} (?:(?:should|must|has to|is to|shall|to) "
      rf")?(?:take|last|takes|lasts) (?P<d>{DURATION})", r" in \g<d>"),
-    (rf"(?:^|(?<=[.!?;] ))(?:start|begin) (?P<v>{ING}) (?P<x>it|the [a-z ]+?) (?:at|from) (?P<a>{POINT}) (?:, |and "
-     r"|please |then )+(?:have it |be |finish |end |it should be |it must be |let it be )(?:(?:fully|completely|all "
+    (rf"(?:^|(?<=[.!?;] ))(?:start|begin) (?P<v>{ING}) (?P<x>it|the [a-z ]+?) (?:at|from) (?P<a>{POINT}) (?:, |and |"
+     r"please |then )+(?:have it |be |finish |end |it should be |it must be |let it be )(?:(?:fully|completely|all "
      rf"the way|quite) )?(?:shut|closed|open|done|there|finished)? ?(?:by|at) (?P<b>{POINT})$",
      lambda m: f"{plain_of(m['v'])} {m['x']}{from_to(m)}"),
-    (rf"(?: ,)? {SETS_OFF} (?:at|from) (?P<a>{POINT})(?: ,)?(?: and)? {IS_THERE} (?:at|by) (?P<b>{POINT})$",
-     from_to),
+    (rf"(?: ,)? {SETS_OFF} (?:at|from) (?P<a>{POINT})(?: ,)?(?: and)? {IS_THERE} (?:at|by) (?P<b>{POINT})$", from_to),
     (r"\bfor (?:a|one) (?:sec|second|moment|bit)(?: ,)? (?=(?:from|between) )", ""),
     (r"(?<=\d) already$", ""),
     (r"\b(?:right|just|shortly|immediately|directly|straight) (?=(?:before|after|when|once) (?:the|it|he|she|they|"
@@ -133,4 +147,7 @@ RULES: Rules = (
     (r"\b(?:right |straight |on )?through (?:to|until|till) the (?:very )?end\b", "until the end"),
     (r"\bat (?:exactly |just )?(?:the same|one and the same) (?:moment|instant)\b(?! (?:as|when)\b)",
      "at the same time"),
+    (r"(?: ,)? (?:and )?(?:arriving|finishing|ending|landing|getting there|being there|coming to rest|done|finished)"
+     rf" (?:right |just |exactly |back )?(?:at|by|on) (?P<b>{POINT}|the (?:very )?end(?: of the [a-z]+)?)$",
+     r" until \g<b>"),
 )  # fmt: skip
