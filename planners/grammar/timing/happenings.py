@@ -104,8 +104,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
             anchors = (manner.whom,) if manner.whom is not None and state not in _OWN else ()
             part = _part(word, course)
             if clause.negated:
-                part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: "
-                "ignore[assignment]
+                part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: ignore[assignment]
             return During(state=state, anchors=anchors, of=clause.target, part=part)
     return _touching(word, said, who) or _noun_event(word, said, who)
 

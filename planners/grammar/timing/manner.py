@@ -111,7 +111,7 @@ _WAYS = {
 }  # fmt: skip
 _STATES: dict[State, str] = {
     "still": r"(?:completely |perfectly |absolutely |totally |dead |stock |quite )?(?:still|put|motionless|"
-    "stationary|frozen|at rest|in "
+             r"stationary|frozen|at rest|in "
              r"(?:its )?place|unmoved|fixed|stopped|paused|immobile|where (?:it|he|she|they) (?:is|are|was|were|"
              r"stands?)|"
              r"as (?:it|they) (?:is|are|was|were)|at a standstill|dead|in its tracks|static|idle|parked|halted)",
