@@ -220,7 +220,7 @@ def _moves(expect: dict[str, Any], name: str, effect: _Effect) -> str:
 
 def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list[Span], effect: _Effect) -> str:
     closes = expect["kind"] == "articulate" and expect.get("angle_deg") == 0
-    start = spans[-1][0] if closes else spans[0][0]
+    start = _closes_at(course, spans) if closes else spans[0][0]
     if expect["kind"] == "spin" and expect.get("start"):
         start = next((a for a, _ in spans if abs(a - expect["start"]) <= _near(expect)), spans[-1][0])
         if any(a - NEAR <= expect["start"] <= b for a, b in spans):
@@ -241,6 +241,16 @@ def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list
         if any(s[0] < b - 0.1 and a + 0.1 < s[1] for s in spans):
             return f"it moves between {a} and {b} s"
     return ""
+
+
+def _closes_at(course: Course, spans: list[Span]) -> float:
+    """When something that opened begins to close: it may go straight on from opening."""
+    times = np.arange(0.0, spans[-1][1], 0.02)
+    angles = np.abs(course.angles(times) - course.angles(np.array([0.0])))
+    low, high = float(angles.min(initial=0.0)), float(angles.max(initial=0.0))
+    if not len(times) or high <= low or spans[-1][0] >= times[int(np.argmax(angles))] - NEAR:
+        return spans[-1][0]
+    return float(times[np.flatnonzero(angles >= high - 0.02 * (high - low))[-1]])
 
 
 def _pacing(expect: dict[str, Any], course: Course, earlier: Course, spans: list[Span], effect: _Effect) -> str:

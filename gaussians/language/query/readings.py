@@ -143,16 +143,20 @@ def _by_given_names(field: LanguageField, text: str, meant: frozenset[str], scor
     """Scores `[G]` in which names from elsewhere decide.
 
     A group with a label but without any evidence (inserted under another encoder) scores 1 or 0 by its label. One that
-    was given its name scores 1 by that name, and 0 by the name of another kind.
+    was given its name scores 1 by that name, and 0 by the name of another kind. Where one is called by the very words,
+    another word for the same kind is the name of something else: a dresser is no "drawer" where drawers have names.
     """
     scores = scores.copy()
     seen: Flags = np.asarray(field.embeddings.any(axis=1))
+    worded = any(g.named_by and g.count and label_matches(g.label, text) for g in field.groups)
     for g in field.groups:
         unseen = not seen[g.id] and not g.votes
         if not unseen and not g.named_by:
             continue
-        known = g.label_score >= OWN_NAME and (g.label in meant or label_matches(g.label, text))
-        if unseen or known or _another_kind(g.label, text):
+        own = label_matches(g.label, text)
+        other = worded and g.named_by != "" and not own and kinds.of(g.label) is kinds.of(text)
+        known = g.label_score >= OWN_NAME and (g.label in meant or own) and not other
+        if unseen or known or other or _another_kind(g.label, text):
             scores[g.id] = float(known)
     return scores
 

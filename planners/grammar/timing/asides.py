@@ -38,6 +38,7 @@ _COMPARED = tuple(
         rf"{_JOINT}same (?:time|way|length|place){_AS_NOW}",
         rf"(?:but |and |, )*(?:it |he |she )?(?:still )?(?:starts?|starting|begins?|beginning) when {_DOES}{_NOW}?",
         rf"(?<=er )than {_DOES}?{_NOW}?(?<!than )",
+        r"(?<=er )than (?:is )?(?:shown|seen|here|in the (?:film|video|clip))(?: here| now| there)?",
         r"(?:just |exactly )?where (?:it|he|she|they) (?:would|will|should) (?:normally |usually |otherwise )?[a-z]+"
         r"(?: (?:its|his|her|their|the|to) [a-z]+)?",
         r"(?:, )?(?:as though|as if|like) (?:somebody|someone|anybody|it|they|he|she)(?: (?:had|has|was|were|is))*"

@@ -62,7 +62,8 @@ def without_remarks(said: str, thing: Thing, reads: Reads) -> Iterator[str]:
     pieces = _divided(said)
     if not 1 < len(pieces) < 9:
         return
-    idle = [_is_idle(piece, mark, i == 0, thing, reads) for i, (mark, piece) in enumerate(pieces)]
+    before = ["", *(piece for _, piece in pieces)]
+    idle = [_is_idle(piece, mark, before[i], thing, reads) for i, (mark, piece) in enumerate(pieces)]
     if not any(idle) or all(idle):
         return
     seen = set[str]()
@@ -84,16 +85,22 @@ def _divided(said: str) -> list[tuple[str, str]]:
     return [(m, p.strip(" ,")) for m, p in found if p.strip(" ,")]
 
 
-def _is_idle(piece: str, mark: str, first: bool, thing: Thing, reads: Reads) -> bool:
-    """Whether a piece asks for nothing."""
+def _is_hue_again(piece: str, before: str) -> bool:
+    """Whether a piece names a colour that was named already: "red, a good strong red"."""
+    hue = re.match(rf"^(?:a|an|the|some) (?:[a-z]+ ){{0,3}}(?P<hue>{HUES})(?: colou?r)?$", piece)
+    return hue is not None and re.search(rf"\b{hue['hue']}\b", before) is not None
+
+
+def _is_idle(piece: str, mark: str, before: str, thing: Thing, reads: Reads) -> bool:
+    """Whether a piece asks for nothing, behind the one `before`, if there is any."""
     words = piece.split()
-    if _APPEARS.match(piece):
+    if _APPEARS.match(piece) or (before and _is_hue_again(piece, before)):
         return True
     if re.search(rf"\d|\b(?:{HUES})\b|{DURATION}", piece) or cut(piece)[0] != piece:
         return False
     if _LEADS.search(mark):
         return True
-    if first and _AIM.match(piece) and len(words) > 2:
+    if not before and _AIM.match(piece) and len(words) > 2:
         return True
     if _PERSON.match(piece):
         wished = _WISH.search(piece) is not None and _BUT_SEEING.search(piece) is None

@@ -86,21 +86,35 @@ class TimeReader:
         found = self._whole(said)
         if found is not None:
             return found
-        if (guess := next(self._guesses(said), None)) is not None:
+        refusal: Refusal | None = None
+        try:
+            guess = next(self._guesses(said), None)
+        except Refusal as error:
+            guess, refusal = None, error
+        if guess is not None:
             return None if self._is_timeless(guess, cleaned) else guess
-        for shorter in without_remarks(said, self.thing, self._is_command):
-            shorter = self._unfronted(_tidy(shorter))
-            found = self._whole(shorter) or next(self._guesses(shorter), None)
-            if found is not None and not self._is_timeless(found, shorter):
-                return found
-            if found is None and self._is_plain(shorter) and not self._is_plain(cleaned):
-                return tuple(self._understand(shorter))
+        if (found := self._without_remarks(said, cleaned)) is not None:
+            return found
+        if refusal is not None:
+            raise refusal
         numbers = moments.TIMED.search(said)
         if numbers is not None:
             raise Refusal(f"what is to happen “{numbers[0]}” is not understood", numbers[0])
         clause = next(iter(happenings.cut(said, self.thing)), None)
         if clause is not None and clause[1].said.split()[0] not in ("as", "after", "before"):
             raise Refusal(f"what is to happen “{clause[1].said}” is not understood", clause[1].said)
+        return None
+
+    def _without_remarks(self, said: str, cleaned: str) -> tuple[Fields, ...] | None:
+        """What is asked for beside the pieces that ask for nothing; None if that is not understood either."""
+        for shorter in without_remarks(said, self.thing, self._is_command):
+            shorter = self._unfronted(_tidy(shorter))
+            with suppress(Refusal):
+                found = self._whole(shorter) or next(self._guesses(shorter), None)
+                if found is not None and not self._is_timeless(found, shorter):
+                    return found
+                if found is None and self._is_plain(shorter) and not self._is_plain(cleaned):
+                    return tuple(self._understand(shorter))
         return None
 
     # -- things ------------------------------------------------------------------------------------------------------

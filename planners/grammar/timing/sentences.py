@@ -95,6 +95,7 @@ _NOT_WANTED = re.compile(
     r"(?:it|he|she|the \w+(?: \w+)?) (?:to )?(?:hit|hits|reach|reaches|touch|bump|crash|"
     r"end up|(?:run|roll|go|walk|drive|move|get|come|travel)s? (?:all the way|right up|as far as|up|quite as far))\b.*$"
 )
+_HOW_IT_IS = re.compile(r"^(?:it|he|she|they|the [a-z]+(?: [a-z]+)?) (?:is|are|stands?|stays?) ")
 _LAST_JOINTS = (" , and then ", " , but ", " , and ", " , then ", " and then ", " but ", " while ", " , ")
 _OPENS = bag("when how what at with to in let keep")  # which begin a time or an order, and no remark
 _ITS_TIME = re.compile(rf"\bits (?:full|whole|usual|normal|entire) {DURATION}")
@@ -132,6 +133,7 @@ def _without_end(part: str) -> str:
         if (
             mark
             and len(head.split()) > 2
+            and not (joint == " while " and _HOW_IT_IS.match(tail))
             and (_goes_without_saying(head, tail) or _says_no_more(tail) or changes_nothing(tail))
         ):
             return _without_end(head.rstrip(" ,"))

@@ -7,6 +7,9 @@ from .wording import EVENT, ING, IT, PLAIN, POINT, SHARE, Rules, S, rate, slowed
 
 RULES: Rules = (
     # how fast
+    (r"\bgive (?P<np>(?:the |my )?[a-z ]+?) (?P<n>a|an|one|two|three|four|\d+) (?:full |single |complete |slow |"
+     r"quick )?(?:twirl|pirouette|rotation|revolution|whirl|round)s?\b(?! (?:per|a|every|each|in a) )",
+     r"spin \g<np> \g<n> turns"),
     (r"\b(?:no more than|not more than|at most|a maximum of|at maximum|as much as) (?=(?:\d|[a-z]+ (?:degrees?|cm|"
      r"centimet(?:re|er)s?|m|met(?:re|er)s?|seconds?)\b))", ""),
     (rf"(?:,|\.|and)? ?(?P<d>{DURATION}) (?:is|will be|would be|should be) (?:enough|plenty|sufficient|fine|ok|okay)"

@@ -27,6 +27,16 @@ from .wording import (
 )
 
 RULES: Rules = (
+    # what stays open
+    (r"^(?:leave|keep|let) (?P<np>(?:the |my )?[a-z ]+?) (?:stay |remain |be )?(?:open|out)(?: ,| \.| and)+(?: there "
+     r"is)? (?:no need for (?:it|him|her) to|(?:it )?(?:should |must |need |does |do )?not(?: let (?:it|him|her))?|"
+     r"never)(?: ever)? (?:close|shut|go (?:back )?in|slide (?:back )?(?:in|shut)|come back in|return)(?: again| "
+     r"any ?more)?$", r"do not close \g<np>"),
+    (r"^(?:when|once|after) (?P<np>(?:the |my )?[a-z ]+?) (?:is|comes|has come|has opened|opens|gets)(?: fully| all "
+     r"the way)?(?: out| open)?(?: ,)? (?:it|he|she) (?:should|must|shall|may|does|need) (?:not|never)(?: ever)? "
+     r"(?:close|shut|go (?:back )?in|slide (?:back )?(?:in|shut)|come back in|return)(?: again| any ?more)?(?= [.]|$)"
+     r"(?: \. (?:leave|keep) it (?:open|out)(?: please)?)?",
+     lambda m: f"do not close the {re.sub('^the ', '', m['np'])}"),
     # how a time is named
     (r"\b(?P<v>fall|falls|drop|drops|roll|rolls|walk|walks|tumble|tumbles|jump|jumps|hop|hops) again (?=(?:at|from|"
      r"when|once|as soon as|after) )", r"\g<v> once more "),
@@ -61,8 +71,9 @@ RULES: Rules = (
     (r"\b(?:at|in) (?:the|his|her|its) (?:corner|turning point|turning|bend|curve)\b", "when it turns"),
     (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:goes|carries|moves|walks|rolls|continues|proceeds|heads|"
      r"drives) ?(?:on|onwards?|off)?(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
-    (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:stays?|remains?|keeps?|is left) (?:so|that way|like that|there|"
-     r"still|gone|hidden|put|where it is)(?: (?:until|till|to) the (?:very )?end(?: of [a-z ]+)?)$", ""),
+    (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:(?:must|should|has to|shall|can) )?(?:stays?|remains?|keeps?|is "
+     r"left) (?:so|that way|like that|there|still|gone|hidden|put|where it is)(?: (?:until|till|to) the (?:very "
+     r")?end(?: of [a-z ]+)?)$", ""),
     (r"(?: ,)? (?:and |but )?(?:leave|keep|let) (?:it|him|her|them) (?:so|that way|like that|as it is)$", ""),
     (rf" , (?P<d>{DURATION}) for (?:it|that|this|the {EVENT}|the whole thing)$", r" in \g<d>"),
     (rf"\b(?:take|takes|use|uses|need|needs|spend) (?P<d>{DURATION}) (?P<v>coming|going|sliding|moving|rolling|"
