@@ -127,7 +127,8 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
         return "moving", _ENDED
     if sense in ("be", "stay", "look", "stop") and fields == {"state"}:
         if manner.state == "open":
-            return ("fully_open" if _FULLY.search(" ".join(clause.tail)) else "open"), _HOLDS
+            fully = _FULLY.search(" ".join(clause.tail)) is not None or "out" in clause.tail
+            return ("fully_open" if fully else "open"), _HOLDS
         states: dict[str, tuple[str, _Course]] = {
             "closed": ("open", _LACKS),
             "still": ("still", _LASTS),

@@ -76,7 +76,7 @@ _NAMED: dict[str, End] = {
     "middle": "middle",
     "halfway": "middle",
 }
-_CLIP = r"(?:clip|film|video|animation|shot|sequence|movie|time|recording|footage|take|playback)"
+_CLIP = r"(?:clip|film|video|animation|shot|sequence|movie|time|recording|footage|take|playback|spot|advert|ad)"
 _NAME = (
     rf"(?:(?:the )?(?:very )?(?:start|beginning|outset|end|finish)(?: of (?:the |this )?(?:scene|"
     rf"{_CLIP}))?|(?:the )?middle of (?:the |this )?{_CLIP})"

@@ -308,6 +308,7 @@ def _ranked(said: str, thing: Thing) -> Iterator[Command]:
     places = [_RANKS[rank["rank"]] if rank is not None else i + 1 for i, (rank, _) in enumerate(found)]
     placed = sorted(zip(places, found, strict=True), key=_first)
     ranked = [rank["np"] if rank is not None else p for _, (rank, p) in placed]
+    ranked = [re.sub(r"^(?:(?:and|then|next|after that|finally|lastly) )+", "", name) for name in ranked]
     names = [_one(re.sub(r" (?:should|to|must|is|are|will|can)$", "", name)) for name in ranked]
     read = [thing(n) or thing(f"{n} one") for n in names]
     queries = [q for q in read if q is not None and not q.last and q.pick != "all"]

@@ -56,7 +56,7 @@ REMARKS = re.compile(  # what goes without saying behind a time: "..., then back
     rf"(?:only (?:then|afterwards) )?(?:(?:let it |let him |let her |it )?(?:opens?|goes?|moves?|rolls?|walks?|drives?|"
     rf"falls?|spins?|turns?|runs?)(?: on)?|(?:let it |it )?(?:starts?|begins?) (?:to )?"
     rf"{any_of(MOTION, 'plain', 'ing')})|"
-    rf"(?:down|up|on|off|away|round) (?:it|he|she) goes|"
+    rf"(?:down|up|on|off|away|round) (?:it|he|she) goes(?: again)?|"
     rf"(?:then )?(?:start|open|move|release|launch|restart) (?:it|him|her|them)(?: again| up)?|"
     rf"not (?:close|open|shut|move|fall|go|start)(?: again| any ?more)?|"
     rf"(?:(?:it|he|she|they) )?(?:(?:should|must|may|shall|does|do|will|can) )?(?:not|never)(?: ever)? "

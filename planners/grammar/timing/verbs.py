@@ -18,7 +18,9 @@ Form = Literal["plain", "s", "ing", "past"]
 SENSES: dict[str, str] = {
     # what moves how
     "open": "open, open up, unlatch, crack open, swing open, slide open, slide out, come out, pull open, pull "
-        "out, push open, fling open, throw open, go open, roll out, extend, draw open, draw out, crack",
+        "out, push open, fling open, throw open, go open, roll out, extend, draw open, draw out, crack, shoot out, "
+        "pop out, glide out, glide open, creep open, burst open, roll open, "
+        "shoot open, spring open, ease open, peek out",
     "close": "close, close up, shut, swing shut, swing closed, slide shut, slide closed, slide in, slide back "
         "in, go back in, push in, push shut, pull shut, slam, slam shut, fall shut, push closed, pull "
         "closed, retract",

@@ -26,7 +26,13 @@ RULES: Rules = (
      r"\g<w> that "),
     (r"\b(?:is it|it is|it would be) (?:also )?poss?ible (?:that|if) (?P<np>(?:the|my|all) [a-z ]+?) (?:is|are|be) ",
      r"\g<np> should be "),
+    (r"^soon as\b", "as soon as"),
+    (r"\b(?:is|are) not to (?=(?:fall|move|open|close|go|stop|start|turn|roll|walk|drive)\b)", "should not "),
+    (r"\bneeds? to be not\b", "should not"),
     # who asks, and how
+    (rf"\b(?:only )?(?:wants|needs) (?P<v>{ING})\b", lambda m: f"should {plain_of(m['v'])}"),
+    (r"^(?:the )?(?P<np>[a-z]+(?: [a-z]+)?) 's (?=[a-z]+ing (?:me|us|my|too|so|a bit|way)\b)", r"the \g<np> is "),
+    (rf"\btakes? on (?:a |an |the )?(?P<c>{COLOR})(?: colou?r| hue| shade| tone)?\b", r"become \g<c>"),
     (r"(?: ,)? (?:so |and )?(?:please )?(?:correct|adjust|fix|change|amend) (?:that|it|this)?(?: accordingly| "
      r"please)?$|(?: ,)? (?:so |and )?(?:please )?(?:correct|adjust|amend)$", ""),
     (r"^(?:according to (?:the|my|our|a) [a-z]+(?: [a-z]+)?|as far as (?:i|we) (?:know|can tell)|in reality|in fact|"
@@ -74,9 +80,9 @@ RULES: Rules = (
     (rf"^(?P<v>{any_of(tuple(SENSES), 'ing')}|{'|'.join(CAUSING)}) (?=(?:the|all|my|our|it|both|that|this|every) )",
      lambda m: f"{CAUSING.get(m['v']) or plain_of(m['v'])} "),  # "would you mind letting the ball go"
     (r"\b(?:(?:i|we) (?:would (?:like|love|prefer)|want|need|wish)(?: to (?:see|have|show|get|watch))?|show|display|"
-     rf"render|have|see|dress|tint)(?: us| me)? (?P<np>it|him|her|them|the [a-z ]+?|my [a-z]+) (?:in )?(?P<c>{COLOR})"
-     r"(?= (?:,|\.|and|from|while|when|once|until|till|for|as|at|between|after|before|during|throughout|all|only|"
-     r"instead)\b|$| [,.])", r"make \g<np> \g<c>"),
+     r"render|have|see|dress|tint)(?: us| me)? (?P<np>it|him|her|them|the [a-z ]+?|my [a-z]+) (?:(?:to )?(?:go|turn|"
+     rf"become|get|be) )?(?:in )?(?P<c>{COLOR})(?= (?:,|\.|and|from|while|when|once|until|till|for|as|at|between|"
+     r"after|before|during|throughout|all|only|instead)\b|$| [,.])", r"make \g<np> \g<c>"),
     (r"^(?:someone|somebody|you|one) (?:really )?(?:ought to|should|must|has to|have to|needs to|need to|could|can) ",
      ""),
     (r"^it would (?:look|be|seem|feel|get) (?:(?:much|far|a bit|a lot|so|more|even) )*[a-z]+ if ",

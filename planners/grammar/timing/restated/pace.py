@@ -7,6 +7,7 @@ from .wording import EVENT, ING, IT, PLAIN, POINT, SHARE, Rules, S, rate, slowed
 
 RULES: Rules = (
     # how fast
+    (r"(?: ,)? like (?=(?:in|over|for|about|at|around|half|twice|double) |\d)", " "),
     (r"\bgive (?P<np>(?:the |my )?[a-z ]+?) (?P<n>a|an|one|two|three|four|\d+) (?:full |single |complete |slow |"
      r"quick )?(?:twirl|pirouette|rotation|revolution|whirl|round)s?\b(?! (?:per|a|every|each|in a) )",
      r"spin \g<np> \g<n> turns"),
@@ -31,8 +32,8 @@ RULES: Rules = (
      r")?(?:to|at) (?P<f>half|a third|a quarter|double|twice|triple) (?:of )?(?:its|the|his|her) speed\b",
      r"play \g<x> at \g<f> speed"),
     (r"\b(?P<n>two|three|four|five|\d+) times (?:as )?slow(?:er|ly)?\b", r"\g<n> times slower"),
-    (r"(?: ,| and)? say (?=(?:over|in|at|by|for|about|around|half|twice|double|a |an |\d|one|two|three|four|five|ten)"
-     r" ?)", " "),
+    (r"(?: ,| and)?(?: let us)? say (?=(?:over|in|at|by|for|about|around|half|twice|double|a |an |\d|one|two|three|"
+     r"four|five|ten) ?)", " "),
     (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {IT} (?:(?:does|do|is|are|did) )?(?:at present|at "
      r"the moment|right now|currently|so far)\b", r"\g<a>"),
     (rf"^(?P<f>{SHARE}) (?:speed|pace|tempo) (?:on|for) (?P<x>.+)$", r"play \g<x> at \g<f> speed"),

@@ -38,6 +38,16 @@ RULES: Rules = (
      r"(?: \. (?:leave|keep) it (?:open|out)(?: please)?)?",
      lambda m: f"do not close the {re.sub('^the ', '', m['np'])}"),
     # how a time is named
+    (r"\bafter (?P<x>it|he|she|(?:the|my) [a-z]+(?: [a-z]+)??) (?:has|have|is|'s) (?:been|stood|stayed) (?:fully "
+     rf")?(?:open|out) for (?P<d>{DURATION})", r"\g<d> after \g<x> is fully open"),
+    (r"\bfor (?:a|one|the first|the) sec(?:ond)? (?:right )?at the (?:very )?(?:start|beginning)\b",
+     "for the first second"),
+    (r"\b(?P<v>fall|falls|drop|drops|roll|rolls|walk|walks|tumble|tumbles|jump|jumps|hop|hops) (?:a second time|one "
+     r"more time|another time|once again) ", r"\g<v> once more "),
+    (rf"\bwhen (?:it|the (?:clock|film|time|video|clip)|time) (?:gets|comes|reaches)(?: to| up to)? (?P<d>{POINT})",
+     r"at \g<d>"),
+    (rf" , (?:and )?(?:please )?takes? (?:about |maybe |around )?(?P<d>{DURATION})(?: for (?:it|that)| over it| "
+     r"maybe| or so)*$", r" in \g<d>"),
     (r"\b(?P<v>fall|falls|drop|drops|roll|rolls|walk|walks|tumble|tumbles|jump|jumps|hop|hops) again (?=(?:at|from|"
      r"when|once|as soon as|after) )", r"\g<v> once more "),
     (r"\b(?:right away |immediately |directly |straight away |just )?(?:when|as soon as|once) the (?:film|clip|video|"
@@ -68,7 +78,7 @@ RULES: Rules = (
     (rf"\b(?P<v>keep|keeps|go on|goes on|continue|carry on|stay) (?P<x>.*?{ING}) to the (?:very )?end\b",
      r"\g<v> \g<x> until the end"),
     (r"\b(?:spread|stretched|drawn|spread out|drawn out|stretched out) over (?=[a-z0-9])", "over "),
-    (r"\b(?:at|in) (?:the|his|her|its) (?:corner|turning point|turning|bend|curve)\b", "when it turns"),
+    (r"\b(?:at|in) (?:the|his|her|its) (?:corner|turning point|turning|turn|bend|curve)\b", "when it turns"),
     (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:goes|carries|moves|walks|rolls|continues|proceeds|heads|"
      r"drives) ?(?:on|onwards?|off)?(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
     (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:(?:must|should|has to|shall|can) )?(?:stays?|remains?|keeps?|is "
@@ -82,7 +92,8 @@ RULES: Rules = (
      r"that|arrive|go|move)$", r" in \g<d>"),
     (r"(?: ,)? (?:and |then |after that |afterwards )+(?:it |turn it |go |goes )*back to (?:the |its )?(?:[a-z]+)(?: "
      r"one| colou?r| again)?$", " and then back to normal"),
-    (rf"\b(?P<w>until|till|at|from|after) (?P<d>{DURATION}) in(?:to it)?(?= ?(?:[,.]|and\b|then\b|$))", r"\g<w> \g<d>"),
+    (rf"\b(?P<w>until|till|at|from|after) (?P<d>{DURATION}) in(?:to it)?(?= ?(?:[,.]|and\b|then\b|until\b|till\b|"
+     r"to\b|$))", r"\g<w> \g<d>"),
     (r"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)?)(?: dead)? in (?:mid ?-? ?(?:air|flight|swing|step|fall|turn)|"
      r"its tracks|place)\b", r"\g<v>"),
     (r"(?: ,| and)+(?: it| he| she)? (?:holds?|hangs?|waits?|rests?|stands?)(?: (?:there|still|motionless|frozen|"
