@@ -25,6 +25,7 @@ from ...agent.view.hub import Hub
 from ...agent.view.server import HOST, App
 from ...agent.view.serving import listen, server
 from ...agent.view.slots import slots_of
+from ...gaussians.errors import BackendError
 
 _PATIENCE = 60.0  # seconds for an answer
 
@@ -143,8 +144,17 @@ class Page:
                 return answer
 
     def take(self) -> dict[str, Any]:
-        """The next message; of a binary one its header."""
-        data = self.socket.recv(timeout=_PATIENCE)
+        """The next message; of a binary one its header.
+
+        Raises:
+            BackendError: none comes.
+        """
+        try:
+            data = self.socket.recv(timeout=_PATIENCE)
+        except TimeoutError as error:
+            raise BackendError(
+                f"the server of the page sent nothing for {_PATIENCE:.0f} s; measure again while the machine is idle"
+            ) from error
         if isinstance(data, bytes):
             self.received += len(data)
             return self._write(data)

@@ -10,6 +10,7 @@ from typing import Any
 from ...agent.session.session import Session
 from ...gaussians import files
 from ...gaussians.assets.furnishing.furnish import furnish
+from ...gaussians.errors import BackendError
 from ...gaussians.scene import Scene
 from .._data import folder
 from ..edit import crowded
@@ -45,7 +46,7 @@ def measure(quick: bool) -> list[dict[str, Any]]:
     were drawn meanwhile.
 
     Raises:
-        BackendError: there is no browser, or Playwright is not installed.
+        BackendError: there is no browser, Playwright is not installed, or the page does not show the scene.
     """
     data = folder("scenes")
     real = data is not None and (data / _ROOM).exists() and not quick
@@ -74,7 +75,10 @@ def _visit(browser: Any, server: Server, count: int) -> dict[str, Any]:
         end = time.monotonic() + PATIENCE
         while (found := page.evaluate(_LOOK)) is None:
             if time.monotonic() > end:
-                raise TimeoutError(f"the page did not show {count:,} Gaussians within {PATIENCE:.0f} s")
+                raise BackendError(
+                    f"the page did not show {count:,} Gaussians within {PATIENCE:.0f} s; is the browser able to draw "
+                    "WebGL2? `scenewright doctor` tells what is missing"
+                )
             time.sleep(_POLL)
     finally:
         context.close()
