@@ -76,8 +76,8 @@ def _visit(browser: Any, server: Server, count: int) -> dict[str, Any]:
         while (found := page.evaluate(_LOOK)) is None:
             if time.monotonic() > end:
                 raise BackendError(
-                    f"the page did not show {count:,} Gaussians within {PATIENCE:.0f} s; is the browser able to draw "
-                    "WebGL2? `scenewright doctor` tells what is missing"
+                    f"the page did not show {count:,} Gaussians within {PATIENCE:.0f} s; measure again while the "
+                    "machine is idle, with a browser that draws WebGL2"
                 )
             time.sleep(_POLL)
     finally:

@@ -18,7 +18,7 @@ TIME_WORDS = re.compile(
     r"backwards?|later|"
     r"earlier|"
     r"sooner|slowly|gradually|halfway|way back|(?:half|double) speed|(?:whole|entire|full|complete) (?:time|clip|"
-    r"film|video|scene|shot|movie|thing)|all the time|way through|always|permanently|throughout|"
+    r"film|video|scene|shot|movie|thing)|all the time|way through|pace|tempo|always|permanently|throughout|"
     r"forever|other way|crazy|let|last|beginning|clip|do|does|doing|from \d\S* (?:to|until|till)|between \d|direction|"
     r"speed|moving|moves|that move|not|never|out|back|quick(?:er|ly)?|twice|as fast)\b"
 )
@@ -79,7 +79,7 @@ NOISE = re.compile(
     r"(?:^| )(?:lol|haha|done|pls|plz|please|thanks|thank you|dear|mate|ok|okay|you know|cheers|kindly|if you can|if "
     r"possible|"
     r"can u|could u|would u|u|hmm+|um+|uh|er|btw|"
-    r"would you mind|would you|could you|honey|bro|dude|hey|hi)(?= |$)"
+    r"would you mind|would you|could you|honey|bro|dude|hey|hi|voila|ta da|tada|presto|bam|boom|whoosh)(?= |$)"
 )
 RANGE = re.compile(  # "2s-3s", "from 0-1"
     r"(?:from )?(?P<a>\d+(?:\.\d+)?) ?(?:s|secs?)? ?[-–] ?(?P<b>\d+(?:\.\d+)?) ?(?:s|secs?|seconds)\b|"

@@ -36,7 +36,7 @@ RULES: Rules = (
     (r"(?: ,)? (?:so |and )?(?:please )?(?:correct|adjust|fix|change|amend) (?:that|it|this)?(?: accordingly| "
      r"please)?$|(?: ,)? (?:so |and )?(?:please )?(?:correct|adjust|amend)$", ""),
     (r"^(?:according to (?:the|my|our|a) [a-z]+(?: [a-z]+)?|as far as (?:i|we) (?:know|can tell)|in reality|in fact|"
-     r"(?:the |a |one |my )?(?:witness|witnesses|report|log|script|director|client|boss|police|neighbou?r)s? "
+     r"(?:the |a |one |my |our )?(?:witness|witnesses|report|log|script|director|client|boss|police|neighbou?r)s? "
      r"(?:says?|said|reports?|claims?|states?|tells? (?:me|us)|told (?:me|us)|wants?|shows?)(?: that)?)(?: ,)? "
      r"(?=(?:the|all|my|both) )", "it would be nice if "),
     (r"^(?:nobody|no one|(?:i|we|you|people) (?:do not|should not|must not|cannot|can not)) (?:sees?|should see|can "

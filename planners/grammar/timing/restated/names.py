@@ -11,9 +11,10 @@ RULES: Rules = (
     (rf"\b(?P<v>{PLAIN}|{S}) (?:until|till|up until) (?P<np>(?:the|my) (?!end|start|beginning|finish|middle|final|"
      r"second|moment|time|last|first|very)[a-z]+)(?= (?:in|from|at|over|within|during|between|for|by|,)\b|$| ,)",
      r"\g<v> to \g<np>"),
-    (rf"\b(?P<v>{PLAIN}|{S})(?: (?:across|over|along|up|down|around|through))? and (?:then )?(?:settles?|parks?|"
-     r"lands?|(?:come|comes) to (?:a )?(?:rest|stop|halt)|sits?|stops?|waits?|stands?|rests?|halts?|stays?) "
-     r"(?P<at>next to|beside|by|near|in front of|behind|at|on|under|against)\b", r"\g<v> \g<at>"),
+    (rf"\b(?P<v>(?:{PLAIN}|{S})(?: (?:the|my) [a-z]+(?: [a-z]+)??)?)(?: (?:across|over|along|up|down|around|"
+     r"through))? and (?:then )?(?:settles?|parks?|lands?|(?:come|comes) to (?:a )?(?:rest|stop|halt)|sits?|stops?|"
+     r"waits?|stands?|rests?|halts?|stays?) (?P<at>next to|beside|by|near|in front of|behind|at|on|under|against)\b",
+     r"\g<v> \g<at>"),
     (r"\b(?:straight|right|directly) (?=(?:up|down|into the air)\b)", ""),
     (r"\b(?P<w>stays?|remains?) (?:up|down|over|right|exactly|just) (?=where\b|put\b)", r"\g<w> "),
     (r"\b(?P<v>pushe?s?|moves?|slides?|shoves?|rolls?|drives?|put|bring|pull|drag)(?P<x>(?: .*?)?) (?:right )?up "

@@ -28,7 +28,7 @@ RULES: Rules = (
      r"(?:to|into|against|up to|until) (?:the|its) [a-z]+(?: [a-z]+)?)?(?= ?(?:[,.]|$))", ""),
     (r"\bto (?P<f>half|a third|a quarter|double|twice|triple) (?:of )?(?:its|the|his|her) (?:pace|speed|tempo|rate|"
      r"velocity)\b", r"to \g<f> the speed"),
-    (r"^(?:take|bring|dial|drop|turn|set|cut|put|knock) (?P<x>(?:the |it)(?:[a-z]+(?: [a-z]+)?)?) (?:down |back |up "
+    (r"^(?:take|bring|dial|drop|turn|set|cut|put|knock) (?P<x>it|(?:the |my )?[a-z]+(?: [a-z]+)??) (?:down |back |up "
      r")?(?:to|at) (?P<f>half|a third|a quarter|double|twice|triple) (?:of )?(?:its|the|his|her) speed\b",
      r"play \g<x> at \g<f> speed"),
     (r"\b(?P<n>two|three|four|five|\d+) times (?:as )?slow(?:er|ly)?\b", r"\g<n> times slower"),
