@@ -615,6 +615,13 @@ def test_a_given_name_outweighs_the_encoder() -> None:
     assert found(named("lamp"), VASE, scene=given) and found(named("vase"), LAMP, scene=given)
 
 
+def test_two_words_for_one_kind_name_two_things_where_both_were_given() -> None:
+    both = with_names(SCENE, {SOFA: "sofa", TABLE: "couch"}, "user")
+    assert ask(named("couch"), both).groups == (TABLE,) and ask(named("sofa"), both).groups == (SOFA,)
+    alone = with_names(SCENE, {SOFA: "sofa"}, "user")
+    assert ask(named("couch"), alone).groups == (SOFA,)
+
+
 def test_a_word_that_no_encoder_knows_can_be_given() -> None:
     assert found(named("gizmo"), VASE, scene=with_names(SCENE, {VASE: "purple gizmo"}, "caption"))
 
