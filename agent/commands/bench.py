@@ -47,7 +47,7 @@ def command(
     """Run a benchmark and print its figures as a table (Markdown) or, with --json, as data.
 
     Times do not carry over to other machines; ratios and accuracies do. `bench all` runs every benchmark and writes
-    one page with its charts: 3 to 5 minutes with --quick, else about an hour; --resume goes on with a stopped run.
+    one page with its charts: 3 minutes with --quick, else up to an hour; --resume goes on with a stopped run.
     `bench guard` holds quick accuracies against the committed baseline, exit code 3 if one is worse; with
     --force it takes them as the new baseline. `bench calibrate` measures in a few minutes how fast this machine is,
     for the predictions of --effort; it needs no checkout.
