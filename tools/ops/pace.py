@@ -203,8 +203,8 @@ class Pace(TargetedOp):
         (low, high), whole = span, scene.motion.stop
         if self.change == "repeat" and spans and math.isfinite(spans[0][0]):  # once more, from then on
             first = max(spans[0][0], high + _NO_TIME)
-            new = (low, high, first, first + _NO_TIME, first + _NO_TIME + high - low)
-            return Warp(new, (low, high, high, low, high), 0.0, 0.0), new[-1]
+            end = first + _NO_TIME + high - low
+            return Warp((low, high, first, first + _NO_TIME, end), (low, high, high, low, high), 0.0, 0.0), end
         if self.change == "part":
             until = self._until(scene, own, group, span)
             return Warp((until,), (until,), 1.0, 0.0), until
