@@ -112,12 +112,10 @@ _FOUND_SO = re.compile(  # "my son finds the robot too slow", "I think the door 
     rf"[a-z]+){{0,2}} )?{_DEGREE} [a-z]+(?: [a-z]+)*$"
 )
 _IS_SO = re.compile(  # "the drawer is staying open too much time", "that fan makes me quite dizzy"
-    r"^(?P<np>(?:everything|it all|(?:the|this|that|my|our|these|those) (?:[a-z]+ ){0,2}?[a-z]+) )(?:(?:is|are|"
-    r"keeps?) (?:making|"
-    r"driving|giving|hurting|bothering|annoying) (?:me|us|everyone|my)\b.*$|(?:is|are|looks?|seems?|makes?|gets?|"
-    r"feels?|"
-    rf"keeps?|clash|clashes|comes?|goes?|{any_of((*MOTION, 'stay', 'start', 'stop'), 's', 'plain')})(?: "
-    rf"[a-z]+){{0,4}}? {_DEGREE} [a-z]+(?: [a-z]+)*$)"
+    r"^(?P<np>(?:everything|it all|(?:the|this|that|my|our|these|those) (?:[a-z]+ ){0,2}?[a-z]+) )"
+    r"(?:(?:is|are|keeps?) (?:making|driving|giving|hurting|bothering|annoying) (?:me|us|everyone|my)\b.*$|"
+    r"(?:is|are|looks?|seems?|makes?|gets?|feels?|keeps?|clash|clashes|comes?|goes?|"
+    rf"{any_of((*MOTION, 'stay', 'start', 'stop'), 's', 'plain')})(?: [a-z]+){{0,4}}? {_DEGREE} [a-z]+(?: [a-z]+)*$)"
 )
 _ORDERS = bag(
     "let make should must shall want wants need needs please instead have put turn paint hide remove delete freeze "

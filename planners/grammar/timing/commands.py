@@ -354,8 +354,8 @@ def _begun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
 
 def _opened(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     sense, target = clause.sense, clause.target
-    swung = sense in ("go", "spin", "move") and manner.degrees is not None and "door" in target.text
-    if swung and clause.verb is not None and clause.verb.first in ("swing", "turn", "push", "move", "pivot"):
+    swung = sense in ("go", "spin", "move") and manner.degrees is not None and _is_openable(target, clause)
+    if swung and clause.verb is not None and clause.verb.first in _SWINGS:
         sense = "open"  # "swing the door to 45 degrees"
     change = {"open": "open", "close": "close"}.get(sense) or {"open": "open", "closed": "close"}.get(manner.state)
     stays = sense in ("stay", "be") or (sense == "continue" and clause.verb is not None and clause.verb.first == "keep")
@@ -395,6 +395,9 @@ def _opened(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]
         yield _held_open(target)
     else:
         yield Command(({"op": "articulate", "target": target, "change": change, **amount},), needs=gap)
+
+
+_SWINGS = bag("swing turn push move pivot")
 
 
 def _held_open(target: Query) -> Command:
@@ -444,9 +447,8 @@ def _gone(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
         return
     far = "" if manner.length is None else f" {manner.length.value:g} {manner.length.unit}"
     to = f" {manner.goal}" if manner.goal else f" {way}"
-    if manner.at in _BY and not _SIDE.search(manner.goal):  # over a time it goes up to a thing, to no spot of its own
+    if manner.at in _BY and not far and not _SIDE.search(manner.goal):  # over a time it goes up to it, to no free spot
         to = f" toward{manner.goal.removeprefix(manner.at)}"
-        far = ""
     first = clause.verb.first if clause.verb else ""
     lively = (
         not clause.ordered and sense != "be" and first not in _PLAIN and not (clause.verb and clause.form == "past")

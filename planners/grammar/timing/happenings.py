@@ -52,11 +52,10 @@ _LACKS = _Course("unless", "unless", "until_end", "after")  # "it is closed"
 _COMES = _Course("from", "while", "until", "from")  # "it hits the wall"
 
 _ONCE = (
-    r"(?:(?:right |just )as|(?:on|at|from) the (?:frame|point|instant|moment|time) (?:where|when|that|at which)|the "
-    r"(?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|once|when|as soon as|the moment|the "
-    r"instant|the second|at the moment when|at the moment|immediately when|"
-    r"right "
-    r"when|from when|from the moment|exactly when|directly when|each time|every time|from the time)"
+    r"(?:(?:right |just )as|(?:on|at|from) the (?:frame|point|instant|moment|time) (?:where|when|that|at which)|"
+    r"the (?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|once|when|as soon as|the moment|"
+    r"the instant|the second|at the moment when|at the moment|immediately when|right when|from when|from the moment|"
+    r"exactly when|directly when|each time|every time|from the time)"
 )
 _WHILE = (
     r"(?:while|whilst|as long as|so long as|whenever|during the time|for as long as|the whole time|all the time|as|"

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from operator import itemgetter
 
 from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
@@ -279,22 +280,16 @@ def ordered(said: str, thing: Thing, moment: Moment) -> Iterator[Command]:
 
 
 _RANK = re.compile(
-    rf"^(?:and |then |with |but )*(?P<np>.+?) ?,? ?(?:(?:(?:is|are|be|being|goes?|comes?) )?(?:to "
-    rf")?{_MODAL}(?:{_VERBS} )?)"
-    r"(?:the |as |as the |coming |going )*(?P<rank>first|second|third|fourth|next|last|in the middle|in between|at the "
-    r"end|finally)$"
+    rf"^(?:and |then |with |but )*(?P<np>.+?) ?,? ?(?:(?:is|are|be|being|goes?|comes?) )?(?:to )?{_MODAL}(?:{_VERBS} )?"
+    r"(?:the |as |as the |coming |going )*"
+    r"(?P<rank>first|second|third|fourth|next|last|in the middle|in between|at the end|finally)$"
 )
 _RANKS = {"first": 1, "second": 2, "next": 2, "in the middle": 2, "in between": 2, "third": 3, "fourth": 4, "last": 9,
           "at the end": 9, "finally": 9}  # fmt: skip
 _OF_ORDER = re.compile(
-    r"^(?:flip|reverse|change|swap|switch|turn around|mix up|set|make) the order(?: of (?:the )?[a-z]+| in which "
-    r"[a-z ]+?)? "
-    r"(?=(?:the )?[a-z]+(?: [a-z]+)? first\b)"
+    r"^(?:flip|reverse|change|swap|switch|turn around|mix up|set|make) the order"
+    r"(?: of (?:the )?[a-z]+| in which [a-z ]+?)? (?=(?:the )?[a-z]+(?: [a-z]+)? first\b)"
 )
-
-
-def _first(placed: tuple[int, object]) -> int:
-    return placed[0]
 
 
 def _ranked(said: str, thing: Thing) -> Iterator[Command]:
@@ -306,7 +301,7 @@ def _ranked(said: str, thing: Thing) -> Iterator[Command]:
     if sum(rank is not None for rank, _ in found) < 2:
         return
     places = [_RANKS[rank["rank"]] if rank is not None else i + 1 for i, (rank, _) in enumerate(found)]
-    placed = sorted(zip(places, found, strict=True), key=_first)
+    placed = sorted(zip(places, found, strict=True), key=itemgetter(0))
     ranked = [rank["np"] if rank is not None else p for _, (rank, p) in placed]
     ranked = [re.sub(r"^(?:(?:and|then|next|after that|finally|lastly) )+", "", name) for name in ranked]
     names = [_one(re.sub(r" (?:should|to|must|is|are|will|can)$", "", name)) for name in ranked]

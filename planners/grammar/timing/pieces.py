@@ -21,9 +21,7 @@ _MARK = re.compile(
     rf" (?:,|\.|;|:|–|-|!)(?: (?:and|but|so|because|since|as|for|then))* | (?:because|since|so that|as if|as though) |"
     rf" so (?={_SUBJECT} )| (?<!looks )(?<!look )(?<!be )(?<!would )like (?=(?:a|an|in|on|{_SUBJECT}) )"
 )
-_LEADS = re.compile(
-    r"\b(?:because|since|so|as if|as though|like)\b"
-)  # marks behind which a reason or a likeness stands
+_LEADS = re.compile(r"\b(?:because|since|so|as if|as though|like)\b")  # behind which a reason or a likeness stands
 _AIM = re.compile(r"^(?:in order )?(?:to|for) (?:a |an |the )?[a-z]+ ?(?:[a-z]+ ?)*$")  # "to open up the floor space"
 _PERSON = re.compile(
     r"^(?:(?:and|but|so|then|because|since|as|when|if|whenever|otherwise) )*(?:i|we|you|people|everyone|everybody|"
@@ -37,8 +35,8 @@ _OF_IT = re.compile(
 )
 _ASKS = re.compile(
     r"\b(?:not only|except|without|other|others|rest|until|till|while|once|after|before|during|as soon|should|must|"
-    r"shall|ought|instead|also|too|again|back|both|all|each|every|same|first|last|next|more|less|(?<!'s )(?<!is "
-    r")(?<!are )only|to be)\b"
+    r"shall|ought|instead|also|too|again|back|both|all|each|every|same|first|last|next|more|less|to be|"
+    r"(?<!'s )(?<!is )(?<!are )only)\b"
 )
 _WISH = re.compile(
     r"\b(?:want|need|like|prefer|wish|love)s? (?:it|him|her|them|that|the|all|both|my|our)\b(?! (?:so|like))"
@@ -99,7 +97,7 @@ def _is_idle(piece: str, mark: str, before: str, thing: Thing, reads: Reads) -> 
     if re.search(rf"\d|\b(?:{HUES})\b|{DURATION}", piece) or cut(piece)[0] != piece:
         return False
     if _LEADS.search(mark):
-        return True
+        return not reads(piece)  # "it is stuffy, so open the door" gives an order
     if not before and _AIM.match(piece) and len(words) > 2:
         return True
     if _PERSON.match(piece):
