@@ -245,12 +245,12 @@ def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list
 
 def _closes_at(course: Course, spans: list[Span]) -> float:
     """When something that opened begins to close: it may go straight on from opening."""
-    times = np.arange(0.0, spans[-1][1], 0.02)
-    angles = np.abs(course.angles(times) - course.angles(np.array([0.0])))
-    low, high = float(angles.min(initial=0.0)), float(angles.max(initial=0.0))
-    if not len(times) or high <= low or spans[-1][0] >= times[int(np.argmax(angles))] - NEAR:
+    times = course.grid((0.0, spans[-1][1]))
+    angles = course.angles(times)  # from how it is at the start
+    widest = float(angles.max())
+    if widest == 0 or spans[-1][0] >= times[int(np.argmax(angles))] - NEAR:
         return spans[-1][0]
-    return float(times[np.flatnonzero(angles >= high - 0.02 * (high - low))[-1]])
+    return float(times[np.flatnonzero(angles >= 0.98 * widest)[-1]])
 
 
 def _pacing(expect: dict[str, Any], course: Course, earlier: Course, spans: list[Span], effect: _Effect) -> str:
@@ -323,14 +323,14 @@ def _others(named: Sequence[str], effect: _Effect) -> str:
         if not _count(effect.after, group.id):
             return f"the {group.label} is gone"
         before, after = (course_of(s, group.id).centers(times) for s in (effect.before, effect.after))
-        if float(np.abs(before - after).max()) > _MOVED and not _is_carried(group, after - before, spoken, effect):
+        moved = after - before
+        if float(np.abs(moved).max()) > _MOVED and not _is_carried(group, moved, times, spoken, effect):
             return f"the {group.label} moves, too"
     return ""
 
 
-def _is_carried(group: Group, moved: F64, carriers: set[int], effect: _Effect) -> bool:
+def _is_carried(group: Group, moved: F64, times: F64, carriers: set[int], effect: _Effect) -> bool:
     """Whether a thing stands on one that moves, and moves as that does: the lamp on the desk that is pushed away."""
-    times = np.linspace(0.0, _LAST, 11)
     assert effect.before.language is not None
     for carrier in (effect.before.language.groups[i] for i in carriers):
         off = np.array(group.box.center) - np.array(carrier.box.center)

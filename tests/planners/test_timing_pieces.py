@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from scenewright.planners.grammar.planner import GrammarPlanner
@@ -9,7 +11,7 @@ from scenewright.planners.grammar.planner import GrammarPlanner
 PLANNER = GrammarPlanner()
 
 
-def planned(text: str) -> list[dict[str, object]]:
+def planned(text: str) -> list[dict[str, Any]]:
     return [op.model_dump(exclude_defaults=True, mode="json") | {"op": op.op} for op in PLANNER.plan(text).ops]
 
 
@@ -68,4 +70,4 @@ def test_one_thing_is_said_in_other_words(text: str, plainly: str) -> None:
 def test_an_order_is_told_by_places() -> None:
     (op,) = planned("the blue book should fall first and the red one last, with the green one in the middle")
     assert op["op"] == "order"
-    assert [q["colors"] for q in op["first"]] == [["blue"], ["green"], ["red"]]  # type: ignore[attr-defined]
+    assert [q["colors"] for q in op["first"]] == [["blue"], ["green"], ["red"]]

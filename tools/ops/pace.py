@@ -139,8 +139,7 @@ class Pace(TargetedOp):
             if self.change in ("part", "repeat", "back_and_forth"):
                 warp, end = self._again(scene, own, group, span, spans)
             else:
-                mirrored = self.change == "reverse" and not _is_even(own, span)
-                warp, end = self._warp(motion, span, spans, own_time=mirrored and not self._whole)
+                warp, end = self._warp(motion, own, span, spans)
             for i in held:
                 made[i] = playing(tracks[i], warp)
             stop = end if self._whole else max(stop, end)
@@ -151,13 +150,9 @@ class Pace(TargetedOp):
     def _notes(self, stop: float, motion: Motion) -> tuple[str, ...]:
         return (f"the scene lasts {stop - motion.start:g} s now",) if abs(stop - motion.stop) > _NO_TIME else ()
 
-    def _warp(self, motion: Motion, span: Span, spans: list[Span], own_time: bool) -> tuple[Warp, float]:
-        """Which old time is shown when, and when the scene or the movement then ends.
-
-        Args:
-            own_time: whether what is reversed keeps the time in which it moves.
-        """
-        whole = self._whole or (self.change == "reverse" and not own_time)
+    def _warp(self, motion: Motion, own: list[Track], span: Span, spans: list[Span]) -> tuple[Warp, float]:
+        """Which old time is shown when, and when the scene or the movement then ends."""
+        whole = self._whole or (self.change == "reverse" and _is_even(own, span))
         low, high = (motion.start, motion.stop) if whole else span
         start = spans[0][0] if spans and math.isfinite(spans[0][0]) else None
         stop = spans[0][1] if spans and math.isfinite(spans[0][1]) else None

@@ -194,10 +194,9 @@ class TimeReader:
                 if topic is not None:
                     continue
             found = self._whole(part)
-            if found is None and topic is not None and not ops:
-                found = self._whole(f"make it {part}")  # "that fan is too wild, half as quick would do"
-            if found is None and ops and ops[-1]["op"] in ("recolor", "restyle"):
-                found = self._whole(f"make it {part}")  # "red at 1 s and blue at 3 s"
+            again = ops[-1]["op"] in ("recolor", "restyle") if ops else topic is not None
+            if found is None and again:  # "red at 1 s and blue at 3 s", "that fan is too wild, half as quick would do"
+                found = self._whole(f"make it {part}")
             first = part.split(" ")[0]
             if found is None and ops and has_form(first, tuple(SENSES), "s"):
                 found = self._whole(f"it {part}")  # "it opens at 1 s and closes at 2 s"
@@ -237,7 +236,8 @@ class TimeReader:
         if len(parts) > 1 and (joined := self._joined(parts)) is not None:
             yield joined
         head, mark, rest = said.partition(" , ")
-        if mark and told_of(head) is not None and (joined := self._joined([head, rest])) is not None:
+        topical = mark != "" and [head, rest] != parts and told_of(head) is not None
+        if topical and (joined := self._joined([head, rest])) is not None:
             yield joined
         if (spelled := _spelled(said)) != said and (right := self._whole(spelled)) is not None:
             yield right

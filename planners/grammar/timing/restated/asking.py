@@ -17,7 +17,7 @@ RULES: Rules = (
     (r"\bdouble (?:so|as) (?=fast|quick|slow)", "twice as "),
     (r"\bgimme\b", "give me"),
     (r"\bdiss?app?ear(?P<s>s|ed|ing)?\b", r"disappear\g<s>"),
-    (r"\bmore (?P<w>fast|quick)\b", "faster"),
+    (r"\bmore (?:fast|quick)\b", "faster"),
     (r"\bmore slow\b", "slower"),
     (r"\bhalf (?:of )?(?:a |the )?second\b", "half a second"),
     (r"\b(?:do not need|need not|does not need)(?: to)? (?=(?:move|open|close|fall|turn|spin|go|stop|start)\b)",
@@ -43,10 +43,10 @@ RULES: Rules = (
      r"see|may see|is to see|must see) (?=(?:the|my) )", "hide "),
     (r"^(?P<np>(?:the|my|this|that) [a-z]+(?: [a-z]+)?) (?:was|is|were|are) [^,.]*? , (?:so|therefore|which is why) "
      r"(?:it|he|she|they) (?=(?:has|have|must|should|needs?|ought|shall) )", r"\g<np> "),
-    (r"\b(?P<v>take|takes|get|have|keep|leave|move|put)s? (?P<np>(?:the|all the|my) [a-z ]+?|it|them) out of (?:the "
+    (r"\b(?:take|takes|get|have|keep|leave|move|put)s? (?P<np>(?:the|all the|my) [a-z ]+?|it|them) out of (?:the "
      r")?(?:view|sight|shot|frame|picture|image|way of the camera)\b(?: (?:altogether|completely|entirely))?",
      r"hide \g<np>"),
-    (r"\b(?P<b>in|for|during) this version\b", ""),
+    (r"\b(?:in|for|during) this version\b", ""),
     (r"^(?:(?:oh|ah|well|so|right|hello|hi|okay|ok|now|um|uh|perhaps|maybe|actually|hmm|and then|and|but) (?:[,!.] "
      r")*)+(?=\S)", ""),
     (r"^(?:(?:slower|faster|quicker|softer|earlier|later|sooner|careful|easy|not so fast|stop|wait|no|yes)(?: "
@@ -56,7 +56,7 @@ RULES: Rules = (
      r"\b", r"\g<rest>\g<np>"),
     (r"^only (?=(?:open|close|swing|turn|move|slide|push|pull|let|roll|rotate|lift|raise|crack|drop|spin|play|make) "
      r"(?:the|it|my|all)\b)", ""),
-    (r"^(?P<np>(?:the|my|this|that|those|these|all the) [a-z ]{2,30}?) , (?P<do>can|could|would|should|may|must|will|"
+    (r"^(?P<np>(?:the|my|this|that|those|these|all the) [a-z ]{2,30}?) , (?:can|could|would|should|may|must|will|"
      r"might) (?:it|they|he|she) (?=[a-z])", r"\g<np> should "),
     (r"^(?P<np>(?:the|my|this|that) [a-z]+(?: [a-z]+)?) (?:, )?(?:i|we) (?:would )?(?:rather )?(?:like|prefer|want|"
      rf"need|love|see) (?:it|him|her|them) (?:to be |in |to |as )*(?P<c>{COLOR})\b", r"make \g<np> \g<c>"),
@@ -65,17 +65,17 @@ RULES: Rules = (
      r"all|in|throughout|the whole)\b|$| ,)", r"make the \g<np> \g<c>"),
     (r"^(?P<d>(?:for|during|from|between|until|in) (?:the )?[a-z0-9. ]+?) (?:i|we) (?:would like|want|need|would "
      rf"love) an? (?P<c>{COLOR}) (?P<np>[a-z]+)\b", r"make the \g<np> \g<c> \g<d>"),
-    (r"\b(?P<v>put|paint|make|have|turn|let) (?P<np>(?:the|my) [a-z ]+?) (?:of|in|with) (?:the |a )?(?:colou?r "
-     rf"(?:of )?)?(?P<c>{COLOR})(?: colou?r)?\b(?! [a-z]+ (?:to|from)\b)", r"make \g<np> \g<c>"),
+    (r"\b(?:put|paint|make|have|turn|let) (?P<np>(?:the|my) [a-z ]+?) (?:of|in|with) (?:the |a )?(?:colou?r (?:of "
+     rf")?)?(?P<c>{COLOR})(?: colou?r)?\b(?! [a-z]+ (?:to|from)\b)", r"make \g<np> \g<c>"),
     (r"^(?:(?:i|we) (?:think|feel|believe|guess|say|bet|reckon)(?: that)? )?(?P<np>(?:the|my|this|that) [a-z ]+?) "
      r"(?:would|might|could|will) (?:look|be) (?:(?:so|really|much|very|quite|even|rather|far|a lot|way) "
      r")*(?:[a-z]+er|lovely|nice|good|great|better|best|well|pretty|beautiful|perfect|cool|sweet|fun|smart|super|"
-     rf"gorgeous) (?:in|as) (?:a )?(?P<c>{COLOR}|cream|beige|navy|teal|ivory|black|lilac|mint|maroon|cyan|magenta)\b",
+     rf"gorgeous) (?:in|as) (?:a )?(?P<c>{COLOR}|cream|beige|navy|teal|ivory|lilac|mint|maroon|cyan|magenta)\b",
      r"\g<np> should be \g<c>"),
     (r"^(?:i|we) (?:do not|would not) (?:want|like)(?: to (?:see|have))? (?:any|the|those|these|all the) "
      rf"(?P<np>[a-z]+(?: [a-z]+)?) (?P<v>{ING})(?: (?:on camera|here|at all|around|about|down))*(?= ,|$)",
      lambda m: f"do not let the {m['np']} {plain_of(m['v'])}"),
-    (r"^(?:give|show|let) (?:me|us)(?: (?:have|see))? (?P<np>(?:the|my) [a-z ]+?) in (?P<s>slow ?-? ?mo(?:tion)?)\b",
+    (r"^(?:give|show|let) (?:me|us)(?: (?:have|see))? (?P<np>(?:the|my) [a-z ]+?) in (?:slow ?-? ?mo(?:tion)?)\b",
      r"play \g<np> in slow motion"),
     (rf"^(?P<v>{any_of(tuple(SENSES), 'ing')}|{'|'.join(CAUSING)}) (?=(?:the|all|my|our|it|both|that|this|every) )",
      lambda m: f"{CAUSING.get(m['v']) or plain_of(m['v'])} "),  # "would you mind letting the ball go"

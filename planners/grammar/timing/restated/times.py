@@ -43,13 +43,11 @@ RULES: Rules = (
     (r"\bfor (?:a|one|the first|the) sec(?:ond)? (?:right )?at the (?:very )?(?:start|beginning)\b",
      "for the first second"),
     (r"\b(?P<v>fall|falls|drop|drops|roll|rolls|walk|walks|tumble|tumbles|jump|jumps|hop|hops) (?:a second time|one "
-     r"more time|another time|once again) ", r"\g<v> once more "),
+     r"more time|another time|once again|again(?= (?:at|from|when|once|as soon as|after) )) ", r"\g<v> once more "),
     (rf"\bwhen (?:it|the (?:clock|film|time|video|clip)|time) (?:gets|comes|reaches)(?: to| up to)? (?P<d>{POINT})",
      r"at \g<d>"),
     (rf" , (?:and )?(?:please )?takes? (?:about |maybe |around )?(?P<d>{DURATION})(?: for (?:it|that)| over it| "
      r"maybe| or so)*$", r" in \g<d>"),
-    (r"\b(?P<v>fall|falls|drop|drops|roll|rolls|walk|walks|tumble|tumbles|jump|jumps|hop|hops) again (?=(?:at|from|"
-     r"when|once|as soon as|after) )", r"\g<v> once more "),
     (r"\b(?:right away |immediately |directly |straight away |just )?(?:when|as soon as|once) the (?:film|clip|video|"
      r"movie|scene|shot|animation) (?:begins|starts|opens)\b", "at the start"),
     (r"\bfrom the (?:very )?first (?:moment|second|frame|instant)? ?(?:on )?(?:to|until|till) the (?:very )?last(?: "
