@@ -20,9 +20,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import torch
 from llvmlite import ir
 from numba import extending, njit, types
+from numpy.typing import NDArray
 
 log = logging.getLogger(__name__)
 
@@ -33,6 +35,8 @@ _OPTIONS: dict[str, Any] = {
     "nogil": True, "error_model": "numpy", "boundscheck": False, "_nrt": False,
     "fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"},
 }  # fmt: skip
+LINE = 64  # bytes of a cache line
+KEPT = 1 << 26  # bytes of memory at most that are kept for the next caller
 
 
 @cache
@@ -81,6 +85,41 @@ def intrinsic(function: Callable[..., Any]) -> Any:
 def workers() -> int:
     """Number of threads that kernels run on: torch's, so that one setting controls both."""
     return max(1, torch.get_num_threads())
+
+
+def make_lines(count: int, size: int, kind: Any) -> NDArray[Any]:
+    """Allocate `[count, size or more]`, each row on cache lines of its own.
+
+    A vector that crosses a line takes two reads, and workers that write to one line wait for each other.
+    """
+    item = np.dtype(kind).itemsize
+    wide = -(-size * item // LINE) * LINE
+    return _on_lines(count * wide).view(kind).reshape(count, wide // item)
+
+
+def _on_lines(size: int) -> NDArray[np.uint8]:
+    """Allocate bytes from the beginning of a cache line on: numpy aligns arrays to 16 bytes."""
+    room = np.empty(size + LINE, np.uint8)
+    start = -room.ctypes.data % LINE
+    return room[start : start + size]
+
+
+_kept: list[NDArray[np.uint8]] = []
+
+
+def take_room(size: int) -> NDArray[np.uint8]:
+    """At least `size` bytes, on cache lines, with anything in them: what was given back last if that is large enough.
+
+    Memory that is freed with every frame goes back to the system, which clears it before it lends it again.
+    """
+    room = _kept.pop() if _kept else _on_lines(0)
+    return room if len(room) >= size else _on_lines(size)
+
+
+def give_room(room: NDArray[np.uint8]) -> None:
+    """Keep memory from `take_room`, which nothing reads or writes any more, for the next caller."""
+    if not _kept and len(room) <= KEPT:
+        _kept.append(room)
 
 
 def run(kernel: Any, count: int, *arguments: Any) -> None:

@@ -39,9 +39,10 @@ def near_plane(means: NDArray[np.float32] | Tensor) -> float:
     0.01 units are a metre. The extent is that of an even sample of the finite centres; a scene without one has `NEAR`.
     """
     part = means[:: sample_step(len(means))]
-    found = np.asarray(part.detach().cpu() if isinstance(part, Tensor) else part, np.float64)
-    found = found[np.isfinite(found).all(axis=1)]
-    if len(found) < 2:
+    found = np.ascontiguousarray((part.detach().cpu().numpy() if isinstance(part, Tensor) else part).T)
+    if not np.isfinite(found).all():
+        found = found[:, np.isfinite(found).all(axis=0)]
+    if found.shape[1] < 2:
         return NEAR
-    extent = float(np.linalg.norm(found.max(axis=0) - found.min(axis=0)))
+    extent = float(np.linalg.norm(found.max(axis=1).astype(np.float64) - found.min(axis=1)))
     return min(NEAR, max(NEAR_SHARE * extent, NEAREST)) if extent > 0 else NEAR

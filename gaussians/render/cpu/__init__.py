@@ -37,9 +37,14 @@ class Bins:
     """
 
     view: layout.View
-    records: Array
+    projected: project.Projected
     first: Array
     entries: Array
+
+    @property
+    def records(self) -> Array:
+        """The footprints, by the rows of the cloud."""
+        return self.projected.records
 
 
 def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
@@ -156,13 +161,11 @@ def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, botto
     """Project and sort for the image rows `top` to `bottom`; None if they need more than `MAX_ENTRIES` entries and can
     be divided."""
     size = camera.width, bottom - top
-    view = layout.make_view(camera, convention.near_plane(columns[0]), top, bottom)
-    found = project.run(columns, view, count)
-    records, spots, n = found.records, found.spots, len(found.records)
-    buffer, rows = np.empty(n, np.uint64), np.empty(n, np.int32)
-    tally = np.zeros((order.DIGITS, order.BUCKETS), np.int64)
-    packed = found.visible, found.found, project.CHUNK
-    rows = rows[: compiled.run_alone(order.depth_order, *packed, buffer, rows, tally)]
+    sample = np.ascontiguousarray(columns[0][:: convention.sample_step(len(columns[0]))])
+    view = layout.make_view(camera, convention.near_plane(sample), top, bottom)
+    found = project.run(columns, view, count, order.divide(sample, view, count, len(columns[0])))
+    records, spots = found.records, found.spots
+    rows = order.by_depth(found.visible, found.found)
     wide, high = (-(-side // layout.TILE) for side in size)
     places = np.zeros((count, wide * high + wide + 2), np.int64)
     compiled.run(order.count_tiles, count, rows, records, spots, view, wide, places)
@@ -172,7 +175,7 @@ def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, botto
         return None
     entries = np.empty(total, np.int32)
     compiled.run(order.fill_tiles, count, rows, records, spots, view, wide, places, entries)
-    return Bins(view, records, first, entries)
+    return Bins(view, found, first, entries)
 
 
 def _counter() -> Array:

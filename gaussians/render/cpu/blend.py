@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import fetch_add, helper, kernel
+from ...compiled import fetch_add, helper, kernel, make_lines
 from .lanes import LANES, lane_sum
 from .layout import RECORD, TILE, Array
 from .simd import REST, STATE, WINNER, blend_block, blend_block_alone, store_block, weigh_block
@@ -24,11 +24,11 @@ ZERO, ONE = f4(0), f4(1)
 
 def make_scratch(workers: int) -> tuple[Array, ...]:
     """Allocate each worker's scratch memory: chunk, touched, state, alive, weights, one row a worker."""
-    return (
-        np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.uint16),
-        np.empty((workers, BLOCKS * STATE), np.float32), np.empty((workers, BLOCKS), np.bool_),
-        np.empty((workers, CHUNK * LANES), np.float32),
+    sizes = (
+        (CHUNK * RECORD, np.float32), (CHUNK, np.uint16), (BLOCKS * STATE, np.float32), (BLOCKS, np.bool_),
+        (CHUNK * LANES, np.float32),
     )  # fmt: skip
+    return tuple(make_lines(workers, size, kind) for size, kind in sizes)
 
 
 def only_group(groups: Array) -> tuple[bool, np.int32]:
@@ -52,8 +52,11 @@ def draw(worker, workers, first, entries, records, size, limits, background, onl
         if tile >= first.shape[0] - 1:
             break
         x, y = tile % tiles_wide * TILE, tile // tiles_wide * TILE
-        _begin(state, alive, STATE, size[0] - x, size[1] - y)
         start, stop = first[tile], first[tile + 1]
+        if start == stop:
+            _clear(x, y, size, background, out)
+            continue
+        _begin(state, alive, STATE, size[0] - x, size[1] - y)
         while start < stop:
             count = min(CHUNK, stop - start)
             _gather(entries, start, count, records, chunk, touched, f4(x), f4(y))
@@ -85,6 +88,20 @@ def _begin(state, alive, stride, width, height):  # type: ignore[no-untyped-def]
             for lane in range(LANES):
                 state[base + REST + lane] = ONE
                 bits[base + WINNER + lane] = -1
+
+
+@helper
+def _clear(x, y, size, background, out):  # type: ignore[no-untyped-def]
+    """Write the pixels of a tile that nothing touches."""
+    rgb, alpha, depth, group = out
+    right = min(x + TILE, size[0])
+    for row in range(y, min(y + TILE, size[1])):
+        for column in range(x, right):
+            for channel in range(3):
+                rgb[row, column, channel] = background[channel]
+        alpha[row, x:right] = ZERO
+        depth[row, x:right] = ZERO
+        group[row, x:right] = -1
 
 
 @helper

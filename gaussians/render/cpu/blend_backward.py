@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import fetch_add, helper, kernel
+from ...compiled import fetch_add, helper, kernel, make_lines
 from .blend import _gather
 from .lanes import LANES
 from .layout import HALF, L1, L2, L3, ONE, RECORD, TILE, ZERO, Array, X, Y, f4
@@ -35,10 +35,8 @@ D_X, D_Y, D_L1, D_L2, D_L3, D_SHIFT, D_RED, D_GREEN, D_BLUE = range(GRADIENT)
 
 def make_scratch(workers: int) -> tuple[Array, ...]:
     """Allocate each worker's scratch memory: chunk, touched, state, sums, one row a worker."""
-    return (
-        np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.uint16),
-        np.empty((workers, BLOCKS * STATE), np.float32), np.empty((workers, LANES), np.float32),
-    )  # fmt: skip
+    sizes = (CHUNK * RECORD, np.float32), (CHUNK, np.uint16), (BLOCKS * STATE, np.float32), (LANES, np.float32)
+    return tuple(make_lines(workers, size, kind) for size, kind in sizes)
 
 
 @kernel

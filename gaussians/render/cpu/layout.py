@@ -103,14 +103,6 @@ def make_view(camera: Camera, near: float, top: int, bottom: int) -> View:
     return View(*(np.float32(number) for number in numbers))
 
 
-def make_records(count: int) -> Array:
-    """Allocate records `[count, 16]` float32, each on one cache line: numpy aligns large arrays to 16 bytes."""
-    line = RECORD * np.dtype(np.float32).itemsize
-    room = np.empty(count * RECORD + RECORD, np.float32)
-    start = -room.ctypes.data % line // room.itemsize
-    return room[start : start + count * RECORD].reshape(count, RECORD)
-
-
 @helper
 def span(e, low, high):  # type: ignore[no-untyped-def]
     """Interval of x (px) that ellipse `e` covers over the pixel-centre rows `low` to `high`; empty: first > second."""

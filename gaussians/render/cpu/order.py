@@ -1,4 +1,4 @@
-"""Sort footprints by depth, then into tiles: two stable counting sorts.
+"""Sort footprints by depth, then into tiles: stable counting sorts.
 
 Equal depths keep row order, and the result does not depend on the number of workers.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ... import compiled
 from ...compiled import helper, kernel
 from .layout import (
     CORNER_Y,
@@ -18,7 +19,9 @@ from .layout import (
     REACH_Y,
     SLOPE,
     WIDTH,
+    Array,
     Ellipse,
+    View,
     X,
     Y,
     tile_rows,
@@ -26,67 +29,135 @@ from .layout import (
 )
 from .touch import lowest_bit, prefetch
 
-DIGIT = 11  # bits of a radix-sort digit: 2048 counters stay in the first-level cache
+DIGIT = 12  # bits of a radix-sort digit: 4096 counters of 32 bits stay in the first-level cache
 BUCKETS = 1 << DIGIT
+DIGIT_BITS = np.uint64(DIGIT)
+PARTS = 4  # at most: each may need a list of all rows
+ALONE = 1 << 15  # Gaussians up to which a second thread costs more than it saves
+FARTHEST = np.uint64((1 << 64) - 1)  # beyond every depth
 AHEAD = 32  # rows between the prefetch of a footprint's tiles and their use
-DIGITS = 3  # 3 x 11 bits hold the 31 of a positive float
 # Masks of at most 2x2 tiles are counted without a branch on each tile: processors cannot predict it.
 SQUARE = np.uint64(0b11 | 0b11 << MASK_SIDE)
 
 
-@kernel
-def depth_order(visible, found, chunk, buffer, rows, tally):  # type: ignore[no-untyped-def]
-    """Sort the visible rows by depth into `rows` (LSD radix sort); returns how many there are.
+def divide(means: Array, view: View, workers: int, count: int) -> Array:
+    """Depths that divide the `count` rows of a cloud into parts of about one size, each of which a worker sorts.
 
-    `visible` `[N]` holds depth and row, packed to the front of chunks of `chunk`, `found[c]` of them in chunk c; it is
-    overwritten. `buffer` is `[N]` uint64, `rows` `[N]` int32, `tally` `[DIGITS, BUCKETS]` int64 holding zeros.
+    Args:
+        means: `[M, 3]`, an even sample of the centres.
+
+    Returns:
+        `[parts - 1]` uint64, bits of depths above the bits of a row. They do not change the order.
     """
-    count = 0
+    parts = min(workers, PARTS) if count > ALONE else 1
+    offset = means - np.array([view.ex, view.ey, view.ez])
+    with np.errstate(invalid="ignore", over="ignore"):
+        u, v, depth = np.array([view[:3], view[3:6], view[6:9]]) @ offset.T
+        inside = (depth > view.near) & (u > view.u0 * depth) & (u < view.u1 * depth)
+        inside &= (v > view.v0 * depth) & (v < view.v1 * depth) & (depth < view.far)
+    depth = np.sort(depth[inside])
+    if not len(depth):
+        return np.full(parts - 1, FARTHEST)
+    levels = depth[len(depth) * np.arange(1, parts) // parts]
+    return np.asarray(levels.view(np.uint32).astype(np.uint64) << KEY)
+
+
+def by_depth(visible: Array, found: Array) -> Array:
+    """Sort rows by depth, the nearest first, one worker for each part.
+
+    Args:
+        visible: `[parts, chunks, chunk]` uint64, the rows below the bits of their depths. The depths of a part are less
+            than those of the next.
+        found: `[chunks, parts]` int32, how many values each chunk begins with.
+
+    Returns:
+        The rows, int32.
+    """
+    count = int(found.sum())
+    buffers, rows = np.empty((2, count), np.uint64), np.empty(count, np.int32)
+    parts = len(visible)
+    compiled.run(depth_order, parts, visible, found, buffers, rows, np.empty((parts, BUCKETS), np.int32))
+    return rows
+
+
+@kernel
+def depth_order(part, parts, visible, found, buffers, rows, tally):  # type: ignore[no-untyped-def]
+    """Sort one part into its places in `rows` (see `by_depth`): an LSD radix sort by as many digits as its depths
+    differ in, at least two.
+
+    `buffers` is `[2, len(rows)]` uint64, `tally` `[parts, BUCKETS]` int32.
+    """
+    start = 0
     for c in range(found.shape[0]):
-        for i in range(c * chunk, c * chunk + found[c]):
-            value = visible[i]
-            buffer[count] = value
-            count += 1
-            for digit in range(DIGITS):
-                tally[digit, _digit(value, digit)] += 1
-    source, target = buffer, visible
-    for digit in range(DIGITS):
-        if _offsets(tally[digit], count):
-            _scatter(tally[digit], digit, count, source, target)
-            source, target = target, source
-    for i in range(count):
-        rows[i] = np.int32(source[i])
-    return count
+        for before in range(part):
+            start += found[c, before]
+    lists, places = visible[part], tally[part]
+    count, nearest, farthest = _extent(lists, found, part)
+    source, target = buffers[0, start : start + count], buffers[1, start : start + count]
+    shift = KEY
+    places[:] = 0
+    for c in range(found.shape[0]):
+        for value in lists[c, : found[c, part]]:
+            places[_digit(value, nearest, shift)] += 1
+    _add_up(places)
+    for c in range(found.shape[0]):
+        for value in lists[c, : found[c, part]]:
+            source[_place(value, nearest, shift, places)] = value
+    shift += DIGIT_BITS
+    while farthest - nearest >> shift >> DIGIT_BITS != 0:
+        _offsets(source, nearest, shift, places)
+        for value in source:
+            target[_place(value, nearest, shift, places)] = value
+        source, target = target, source
+        shift += DIGIT_BITS
+    _offsets(source, nearest, shift, places)
+    for value in source:
+        rows[start + _place(value, nearest, shift, places)] = np.int32(value)
 
 
 @helper
-def _digit(value, digit):  # type: ignore[no-untyped-def]
-    """A digit of the depth, the lowest first."""
-    return np.int64(value >> (KEY + np.uint64(DIGIT * digit))) & (BUCKETS - 1)
+def _extent(lists, found, part):  # type: ignore[no-untyped-def]
+    """How many values a part has, and its least and largest depth (as values without a row)."""
+    count, nearest, farthest = 0, FARTHEST, np.uint64(0)
+    for c in range(found.shape[0]):
+        count += found[c, part]
+        for value in lists[c, : found[c, part]]:
+            nearest, farthest = min(nearest, value), max(farthest, value)
+    return count, nearest >> KEY << KEY, farthest >> KEY << KEY
 
 
 @helper
-def _offsets(tally, count):  # type: ignore[no-untyped-def]
-    """Turn the counts of a digit into where each bucket begins; False if all of `count` values share that digit."""
+def _digit(value, nearest, shift):  # type: ignore[no-untyped-def]
+    """The digit of the depth behind `nearest` that begins at bit `shift`."""
+    return np.int64((value - nearest) >> shift) & (BUCKETS - 1)
+
+
+@helper
+def _offsets(source, nearest, shift, places):  # type: ignore[no-untyped-def]
+    """Fill `places` with where each bucket of a digit begins."""
+    places[:] = 0
+    for value in source:
+        places[_digit(value, nearest, shift)] += 1
+    _add_up(places)
+
+
+@helper
+def _add_up(places):  # type: ignore[no-untyped-def]
+    """Turn the sizes of buckets into where they begin."""
     total = 0
     for bucket in range(BUCKETS):
-        size = tally[bucket]
-        if size == count:
-            return False
-        tally[bucket] = total
+        size = places[bucket]
+        places[bucket] = total
         total += size
-    return True
 
 
 @helper
-def _scatter(places, digit, count, source, target):  # type: ignore[no-untyped-def]
-    """One stable pass from `source` to `target` by a digit whose buckets begin at `places`."""
-    for i in range(count):
-        value = source[i]
-        bucket = _digit(value, digit)
-        place = places[bucket]
-        places[bucket] = place + 1
-        target[place] = value
+def _place(value, nearest, shift, places):  # type: ignore[no-untyped-def]
+    """Where a value belongs by a digit; the next one of its bucket belongs behind it."""
+    bucket = _digit(value, nearest, shift)
+    place = places[bucket]
+    places[bucket] = place + 1
+    return place
 
 
 @helper

@@ -7,12 +7,14 @@ Output is written at the row's own index, so the result does not depend on which
 from __future__ import annotations
 
 import math
+import weakref
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ... import compiled
-from ...compiled import exact, fetch_add, helper
+from ...compiled import exact, fetch_add, give_room, helper, make_lines, take_room
 from .footprint import LEVEL, PLACES, approach, footprints
 from .lanes import LANES
 from .layout import (
@@ -42,19 +44,21 @@ from .touch import lowest_bit
 
 CHUNK = 2048  # rows a worker takes at a time
 WHOLE = np.int64((1 << LANES) - 1)
+WHOLE_DEPTH = np.empty(0, np.uint64)  # bounds of one part
 
 
 @dataclass(frozen=True)
 class Projected:
-    """The footprints of a cloud of N Gaussians.
+    """The footprints of a cloud of N Gaussians. Refer to it as long as its arrays are read: their memory is used again
+    when nothing does.
 
     Attributes:
         records: `[N, 16]` float32 (`layout`); of rows that are not visible, anything.
         spots: `[N, 2]` uint64, the tiles touched as a mask from the corner on (0 if they are too many) and the corner,
             the first tile (x | y << 16).
-        visible: `[N]` uint64, the visible rows below the bits of their depths (a positive float), packed to the front
-            of each chunk of `CHUNK` rows.
-        found: `[chunks]` int32, how many these are.
+        visible: `[parts, chunks, CHUNK]` uint64, the visible rows below the bits of their depths (a positive float),
+            listed by the part of the depths that they belong to and the chunk of `CHUNK` rows.
+        found: `[chunks, parts]` int32, the lengths of these lists.
     """
 
     records: Array
@@ -63,38 +67,48 @@ class Projected:
     found: Array
 
 
-def make_records(count: int) -> Array:
-    """Allocate records `[count, 16]` float32, each on one cache line: numpy aligns large arrays to 16 bytes."""
-    line = RECORD * np.dtype(np.float32).itemsize
-    room = np.empty(count * RECORD + RECORD, np.float32)
-    start = -room.ctypes.data % line // room.itemsize
-    return room[start : start + count * RECORD].reshape(count, RECORD)
-
-
-def run(columns: tuple[Array, ...], view: View, workers: int) -> Projected:
+def run(columns: tuple[Array, ...], view: View, workers: int, bounds: Array = WHOLE_DEPTH) -> Projected:
     """Project every row of means, quats, scales, opacities, sh and group (int32).
 
-    Fewer rows than the kernel takes at once are followed by invisible ones.
+    `bounds` `[parts - 1]` are the depths between parts (`order.divide`). Fewer rows than the kernel takes at once are
+    followed by invisible ones.
     """
     short = max(0, LANES - len(columns[0]))
     columns = tuple(np.ascontiguousarray(column) for column in columns)
     if short:
         columns = tuple(np.concatenate([c, np.zeros((short, *c.shape[1:]), c.dtype)]) for c in columns)
     n = len(columns[0])
-    out = make_records(n), np.empty((n, 2), np.uint64), np.empty(n, np.uint64), np.empty(-(-n // CHUNK), np.int32)
+    chunks, parts = -(-n // CHUNK), len(bounds) + 1
+    shapes = (n, RECORD), (n, 2), (parts, chunks, CHUNK)
+    room = take_room(4 * n * RECORD + 8 * (2 * n + parts * chunks * CHUNK))
+    out = *_divided(room, shapes, (np.float32, np.uint64, np.uint64)), np.zeros((chunks, parts), np.int32)
     scratch = (
-        np.empty((workers, PLACES * LANES), np.float32), np.empty((workers, LANES, RECORD), np.float32),
-        np.empty((workers, 3, LANES), np.uint64), np.empty((workers, TERMS * LANES), np.float32),
+        make_lines(workers, PLACES * LANES, np.float32),
+        make_lines(workers, LANES * RECORD, np.float32).reshape(workers, LANES, RECORD),
+        make_lines(workers, 3 * LANES, np.uint64).reshape(workers, 3, LANES),
+        make_lines(workers, TERMS * LANES, np.float32), make_lines(workers, parts, np.int64),
     )  # fmt: skip
-    compiled.run(project, workers, *columns, view, out, scratch, np.zeros(1, np.int64))
-    return Projected(*out)
+    compiled.run(project, workers, *columns, view, bounds, out, scratch, np.zeros(1, np.int64))
+    found = Projected(*out)
+    weakref.finalize(found, give_room, room).atexit = False
+    return found
+
+
+def _divided(room: Array, shapes: tuple[tuple[int, ...], ...], kinds: tuple[type, ...]) -> Iterator[Array]:
+    """Arrays one after another in some bytes."""
+    start = 0
+    for shape, kind in zip(shapes, kinds, strict=True):
+        stop = start + math.prod(shape) * np.dtype(kind).itemsize
+        yield room[start:stop].view(kind).reshape(shape)
+        start = stop
 
 
 @exact
-def project(worker, workers, means, quats, scales, opacities, sh, group, view, out, scratch, counter):  # type: ignore[no-untyped-def]
+def project(worker, workers, means, quats, scales, opacities, sh, group, view, bounds, out, scratch, counter):  # type: ignore[no-untyped-def]
     """Project every row of at least 16; `out` is what `Projected` holds, `counter` `[1]` int64 holding 0."""
     records, spots, visible, found = out
     places, table, tiles, terms = scratch[0][worker], scratch[1][worker], scratch[2][worker], scratch[3][worker]
+    ends = scratch[4][worker]  # of the lists of a chunk: `found` lies on cache lines that workers share
     depth_bits, bands = table.view(np.uint32), sh.shape[1]
     per_alpha = ONE / view.alpha_min
     rows = means.shape[0]
@@ -103,7 +117,7 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
         start = chunk * CHUNK
         if start >= rows:
             break
-        fill = start
+        ends[:] = 0
         for group_start in range(start, min(start + CHUNK, rows), LANES):
             first = min(group_start, rows - LANES)  # rows below `group_start` belong to the group before
             seen = approach(means, scales, opacities, first, view, places) & (WHOLE << (group_start - first))
@@ -141,9 +155,14 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
                     continue
                 spots[n, 0] = touched
                 spots[n, 1] = corner
-                visible[fill] = (np.uint64(depth_bits[lane, DEPTH]) << KEY) | np.uint64(n)
-                fill += 1
-        found[chunk] = fill - start
+                value = (np.uint64(depth_bits[lane, DEPTH]) << KEY) | np.uint64(n)
+                part = 0
+                for k in range(bounds.shape[0]):
+                    part += bounds[k] <= value
+                visible[part, chunk, ends[part]] = value
+                ends[part] += 1
+        for part in range(bounds.shape[0] + 1):
+            found[chunk, part] = ends[part]
 
 
 @helper

@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 
 from ... import compiled
 from ...camera import Camera, Vec3
-from ...compiled import fetch_add, kernel
+from ...compiled import fetch_add, kernel, make_lines
 from . import LIMITS, MAX_ENTRIES, make_image
 from . import order as sorting
 from . import project as projecting
 from .blend import _begin, _draw_chunk, _finish, _gather, make_scratch
 from .layout import DEPTH, RECORD, TILE, make_view
-from .project import CHUNK
 from .simd import STATE
 from .touch import BLOCKS
 from .touch import CHUNK as SLOTS
@@ -61,7 +60,7 @@ class Canvas:
         self._state = np.empty((tiles, BLOCKS * STATE), np.float32)
         self._alive = np.empty((tiles, BLOCKS), np.bool_)
         compiled.run_alone(start, self._state, self._alive, self._size)
-        self._records, self._spots = projecting.make_records(room), np.empty((room, 2), np.uint64)
+        self._records, self._spots = make_lines(room, RECORD, np.float32), np.empty((room, 2), np.uint64)
         self._ids, self._count = np.empty(room, np.int64), 0
         self.begins, self.ends = (0.0, -1), NOWHERE
         self.drawn = self.slabs = 0
@@ -81,8 +80,7 @@ class Canvas:
         found = projecting.run(columns, self._view, compiled.workers())
         records, spots = found.records, found.spots
         rows = np.concatenate([np.zeros(0, np.int64), *(
-            (found.visible[c * CHUNK : c * CHUNK + k] & np.uint64(0xFFFFFFFF)).astype(np.int64)
-            for c, k in enumerate(found.found)
+            (found.visible[0, c, :k] & np.uint64(0xFFFFFFFF)).astype(np.int64) for c, k in enumerate(found.found[:, 0])
         )])  # fmt: skip
         rows = rows[~_before(self.begins, records[rows, DEPTH], ids[rows])]
         rows = rows[_before(self.ends, records[rows, DEPTH], ids[rows])]
@@ -130,9 +128,7 @@ class Canvas:
             return True
         slots = np.argsort(self._ids[:n], kind="stable").astype(np.uint64)
         bits = self._records[:n, DEPTH].view(np.int32)[slots].astype(np.uint64)
-        keys, found = (bits << np.uint64(32)) | slots, np.array([n], np.int32)
-        rows, tally = np.empty(n, np.int32), np.zeros((sorting.DIGITS, sorting.BUCKETS), np.int64)
-        compiled.run_alone(sorting.depth_order, keys, found, n, np.empty(n, np.uint64), rows, tally)
+        rows = sorting.by_depth(((bits << np.uint64(32)) | slots).reshape(1, 1, n), np.array([[n]], np.int32))
         sorted_ = rows, self._records, self._spots, self._view, self._tiles_wide
         tiles = len(self._alive)
         places = np.zeros((workers, tiles + self._tiles_wide + 2), np.int64)

@@ -159,6 +159,19 @@ def test_the_same_input_gives_the_same_bytes_on_any_number_of_threads() -> None:
     assert len(seen) == 1
 
 
+def test_pictures_drawn_before_the_backward_pass_change_no_gradient() -> None:
+    made, camera = columns(300, 2, 8), view()
+    leaves = {k: c.clone().requires_grad_() for k, c in made.items()}
+    rgb, alpha = differentiable.draw(*leaves.values(), camera, BACKGROUND, torch.zeros(300, 2, requires_grad=True))
+    for seed in (9, 10):  # as many Gaussians as fit into the same memory
+        render(as_cloud(columns(300, 2, seed)), camera)
+    on_rgb, on_alpha = weights(camera)
+    ((rgb * on_rgb).sum() + (alpha * on_alpha).sum()).backward()  # type: ignore[no-untyped-call]
+    alone = fast(made, camera)
+    assert all(torch.equal(alone[k], leaf.grad) for k, leaf in leaves.items() if leaf.grad is not None)
+    assert leaves["means"].grad is not None
+
+
 def test_a_picture_drawn_in_strips_has_the_same_gradient(monkeypatch: pytest.MonkeyPatch) -> None:
     made, camera = columns(500, 1, seed=6), view(96, 128)
     whole = fast(made, camera)

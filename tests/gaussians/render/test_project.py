@@ -9,7 +9,7 @@ import torch
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.render import convention, cpu, reference
-from scenewright.gaussians.render.cpu import layout, project
+from scenewright.gaussians.render.cpu import layout, order, project
 
 CAMERA = Camera.look_at([0, -3, 0.5], [0, 0, 0], [0, 0, 1], 150, 130)
 COLORS = slice(layout.RED, layout.BLUE + 1)
@@ -27,7 +27,7 @@ def random_cloud(count: int, coefficients: int, spread: float = 1.0) -> Gaussian
 def projected(cloud: GaussianCloud, view: layout.View) -> tuple[project.Projected, np.ndarray]:
     """The footprints of a cloud, and its visible rows in order."""
     found = project.run(cpu._columns(cloud), view, 1)
-    chunks = [found.visible[c * project.CHUNK :][:count] for c, count in enumerate(found.found)]
+    chunks = [found.visible[0, c, :count] for c, count in enumerate(found.found[:, 0])]
     return found, (np.concatenate(chunks) & np.uint64(0xFFFFFFFF)).astype(np.int64)
 
 
@@ -95,3 +95,35 @@ def test_masks_of_tiles_hold_every_pixel_of_the_ellipse() -> None:
         assert needed <= {base + bit // layout.MASK_SIDE * tiles_wide + bit % layout.MASK_SIDE for bit in bits}
         some += len(bits) > 6
     assert some > 5 and many > 0
+
+
+@pytest.mark.parametrize("parts", [1, 2, order.PARTS])
+@pytest.mark.parametrize("depths", ["near each other", "over all sizes", "equal", "few", "none"])
+def test_rows_are_sorted_by_depth_and_equal_ones_by_row(depths: str, parts: int) -> None:
+    rng = np.random.default_rng(parts)
+    depth = {
+        "near each other": rng.uniform(1, 1.001, 9_000), "over all sizes": 10 ** rng.uniform(-30, 30, 9_000),
+        "equal": np.full(9_000, 2.5), "few": rng.integers(1, 6, 9_000) / 3, "none": np.empty(0),
+    }[depths].astype(np.float32)  # fmt: skip
+    bits = depth.view(np.uint32).astype(np.uint64)
+    values = bits << layout.KEY | np.arange(len(depth), dtype=np.uint64)
+    levels = np.sort(bits)[len(bits) * np.arange(1, parts) // parts] if len(bits) else np.zeros(parts - 1, np.uint64)
+    part = np.searchsorted(levels, bits, side="right")
+    chunks = -(-len(depth) // 1_000)
+    visible, found = np.zeros((parts, chunks, 1_000), np.uint64), np.zeros((chunks, parts), np.int32)
+    for row, value in enumerate(values):
+        place = row // 1_000, part[row]
+        visible[place[1], place[0], found[place]] = value
+        found[place] += 1
+    np.testing.assert_array_equal(order.by_depth(visible, found), np.argsort(depth, kind="stable"))
+
+
+def test_a_cloud_is_divided_into_parts_of_like_size() -> None:
+    cloud = random_cloud(2 * order.ALONE, 1)
+    view = view_of(cloud)
+    bounds = order.divide(cloud.means[::16].numpy(), view, 64, len(cloud))
+    found = project.run(cpu._columns(cloud), view, 2, bounds).found.sum(axis=0)
+    assert len(found) == order.PARTS
+    assert found.max() < 1.5 * found.mean()  # a sample of 4,096, of which some are outside the image
+    behind = layout.make_view(Camera.look_at([0, -3, 0], [0, -6, 0], [0, 0, 1], 64, 64), 0.1, 0, 64)
+    np.testing.assert_array_equal(order.divide(np.full((9, 3), np.nan), behind, 2, len(cloud)), [order.FARTHEST])

@@ -193,7 +193,7 @@ def test_exponential_is_accurate_to_three_millionths() -> None:
 
 @pytest.mark.parametrize("count", [0, 1, 7, 5000])
 def test_each_record_lies_on_one_cache_line(count: int) -> None:
-    records = project.make_records(count)
+    records = compiled.make_lines(count, layout.RECORD, np.float32)
     assert records.shape == (count, layout.RECORD) and records.flags.c_contiguous
     assert records.ctypes.data % 64 == 0 or count == 0
 
