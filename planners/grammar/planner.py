@@ -159,11 +159,19 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):
         return _timeless(cleaned, previous)
-    if (timed := TimeReader(_operations, _thing).read(cleaned)) is not None:
-        return _of_time(timed)
-    outcome = _timeless(cleaned, previous)
-    if is_misread([op for op in outcome.ops if op["op"] != "select"]):
-        raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
+    reader = TimeReader(_operations, _thing)
+    try:
+        if (timed := reader.read(cleaned)) is not None:
+            return _of_time(timed)
+        outcome = _timeless(cleaned, previous)
+        if is_misread([op for op in outcome.ops if op["op"] != "select"]):
+            raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
+    except Refusal as refusal:
+        if refusal.firm or refusal.verdict not in ("not_understood", "not_an_edit"):
+            raise
+        if (supposed := reader.supposed(cleaned)) is None:
+            raise
+        return _of_time(supposed)
     return outcome
 
 

@@ -39,6 +39,8 @@ from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
 from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
+from .supposed.kinds import likely
+from .supposed.wishes import said_of, wishes
 from .verbs import SENSES, any_of, forms, has_form
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
@@ -71,10 +73,7 @@ class TimeReader:
         Raises:
             Refusal: it names a time, and the rest is not understood.
         """
-        said = " ".join(
-            w.text
-            for w in split(phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", cleaned))
-        )
+        said = _in_words(cleaned)
         if phrases.ASKS.match(said) and cleaned.rstrip().endswith("?"):
             return None
         said = _tidy(said)
@@ -103,6 +102,19 @@ class TimeReader:
         clause = next(iter(happenings.cut(said, self.thing)), None)
         if clause is not None and clause[1].said.split()[0] not in ("as", "after", "before"):
             raise Refusal(f"what is to happen “{clause[1].said}” is not understood", clause[1].said)
+        return None
+
+    def supposed(self, cleaned: str) -> tuple[Fields, ...] | None:
+        """The operations that an instruction most likely asks for, by the kind of its wish; None if that is not likely
+        enough, or if they would leave out anything that it names."""
+        said = _tidy(_in_words(cleaned))
+        for kind in likely(cleaned):
+            for rest, moment, happening in self._readings(said):
+                told = moment.told or happening is not None
+                for wish in wishes(kind, said_of(rest, self.thing, moment, told)):
+                    found = self._command(wish.command, "", wish.moment, happening, told)
+                    if found:
+                        return found
         return None
 
     def _without_remarks(self, said: str, cleaned: str) -> tuple[Fields, ...] | None:
@@ -437,6 +449,12 @@ class TimeReader:
             )
             return made if hit else None
         return None
+
+
+def _in_words(cleaned: str) -> str:
+    """The words and marks of an instruction, with spaces between."""
+    ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", cleaned)
+    return " ".join(w.text for w in split(ranged))
 
 
 _FRONTED = re.compile(

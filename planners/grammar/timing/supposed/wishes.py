@@ -1,0 +1,371 @@
+"""Plain commands of a kind of wish: the thing, the colour, the amounts of an instruction put into words that are read.
+
+All that an instruction names must stand in the command: a number, a colour, a thing or a time that is left over makes
+it none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from .....gaussians import color
+from .....gaussians import late_re as re
+from ...tagging.words import bag
+from ...vocabulary.nouns import EVERYWHERE, is_known
+from ...vocabulary.quantities import NUMBERS
+from ..manner import Thing
+from ..moments import DURATION, Moment, seconds_of
+
+_NO_THINGS = EVERYWHERE | bag(
+    "second seconds time moment start end beginning film clip video shot movie animation way bit speed motion movement "
+    "turn turns circle frame place spot direction half rest minute mood eyes eye sec point stop pace work job whole "
+    "look view scene thing things please once opening walk fall roll ride trip go times sequence effect slow fast "
+    "red blue green yellow white black purple pink orange brown gray grey silver gold"
+)
+_ALL = re.compile(
+    r"\b(?:everything|all|whatever|anything)(?: (?:that|which))?(?: (?:is|are))? (?:moves?|moving)\b"
+    r"(?: (?:in|on) (?:the|this) (?:shot|scene|film|clip|video|picture))?|\beverything\b(?! else)"
+)
+_LONGEST_NAME = 6
+_CONJUNCTION = re.compile(
+    r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
+    r"except|unless|if)\b"
+)
+_EVENTS = re.compile(r"\b(?:once|after|before|as)\b (?=(?:the|a|my|it|he|she|they|that|this)\b)")
+
+
+@dataclass(frozen=True)
+class Said:
+    """What an instruction says beside its time.
+
+    Attributes:
+        text: its words.
+        things: the names in it, as they stand.
+        moment: its time in numbers.
+        told: whether any time is told, in numbers or by what happens.
+    """
+
+    text: str
+    things: tuple[str, ...]
+    moment: Moment
+    told: bool
+
+    @property
+    def beside(self) -> str:
+        """The words that name no thing."""
+        text = self.text
+        for name in self.things:
+            text = re.sub(rf"(?<!\S){re.escape(name)}(?!\S)", "|", text)
+        return text
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A plain command, the number of things in it, the words of the instruction that it holds otherwise, and its
+    time."""
+
+    command: str
+    moment: Moment
+    things: int = 1
+    holds: str = ""
+
+
+def named(text: str, thing: Thing) -> tuple[str, ...]:
+    """The names of things in a text, in their order."""
+    text, words, at = _ALL.sub("everything that moves", text), [], 0
+    found = list[str]()
+    words = text.split()
+    while at < len(words):
+        for end in range(min(len(words), at + _LONGEST_NAME), at, -1):
+            phrase = " ".join(words[at:end])
+            if _is_name(words[at:end]) and thing(phrase) is not None:
+                found.append(phrase)
+                at = end
+                break
+        else:
+            at += 1
+    return tuple(dict.fromkeys(found))
+
+
+def _is_name(words: Sequence[str]) -> bool:
+    if list(words) == ["everything", "that", "moves"]:
+        return True
+    last = words[-1]
+    return last not in _NO_THINGS and last not in NUMBERS and (is_known(last) or (len(words) > 1 and words[0] == "the" and len(words) < 4))
+
+
+def said_of(text: str, thing: Thing, moment: Moment, told: bool) -> Said:
+    """What words say beside their time."""
+    text = _ALL.sub("everything that moves", text)
+    return Said(text, named(text, thing), moment, told)
+
+
+def wishes(kind: str, said: Said) -> Iterator[Wish]:
+    """The plain commands of a kind that an instruction may stand for, the likeliest first."""
+    made = _KINDS.get(kind)
+    if made is None or not said.things:
+        return
+    for wish in made(said):
+        if _is_whole(wish, said):
+            yield wish
+
+
+def _is_whole(wish: Wish, said: Said) -> bool:
+    """Whether nothing that the instruction names is left out."""
+    left = said.beside
+    for held in wish.holds.split("|"):
+        if held:
+            left = left.replace(held, " ", 1)
+    if len(said.things) > wish.things or _CONJUNCTION.search(left) or _EVENTS.search(left):
+        return False
+    words = left.split()
+    if any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in _hues() for w in words):
+        return False
+    return re.search(DURATION, left) is None
+
+
+def _hues() -> frozenset[str]:
+    return frozenset(name for name in color.names() if " " not in name)
+
+
+# -- kinds -----------------------------------------------------------------------------------------------------------
+
+
+def _recolor(said: Said) -> Iterator[Wish]:
+    hues = [w for w in said.beside.split() if w in _hues()]
+    if hues:
+        before = re.search(rf"\b(?P<how>very dark|very light|dark|deep|light|pale|bright|vivid) {hues[0]}\b", said.text)
+        hue = f"{before['how']} {hues[0]}" if before is not None else hues[0]
+        yield Wish(f"make {said.things[0]} {hue}", said.moment, holds="|".join(hues[:1]))
+
+
+_APPEARS = re.compile(r"\b(?:appears?|shows?|shown|visible|pops? (?:up|in)|comes? in(?:to)?|reveal|reveals?|there only|turns? up)\b")
+_NOT = re.compile(r"\b(?:not|no|never|without|invisible|nobody|nothing)\b")
+
+
+def _hide(said: Said) -> Iterator[Wish]:
+    seen = _APPEARS.search(said.text) is not None and _NOT.search(said.text) is None
+    yield Wish(f"{'show' if seen else 'hide'} {said.things[0]}", said.moment)
+
+
+def _remove(said: Said) -> Iterator[Wish]:
+    if not said.told:
+        yield Wish(f"remove {said.things[0]}", said.moment)
+
+
+_GOAL = re.compile(r"\b(?P<how>to|next to|beside|towards?|by|near|up to|over to|across to|against|alongside)(?: the side of)? $")
+_WAYS = {"up": "up", "upwards": "up", "left": "to the left", "right": "to the right", "down": "down"}
+_LENGTH = re.compile(r"(?:\d+(?:\.\d+)?|half a|a|one|two|three|fifty|thirty|twenty|ten|forty) ?(?:m|cm|met(?:re|er)s?|centimet(?:re|er)s?)\b")
+
+
+def _move(said: Said) -> Iterator[Wish]:
+    if len(said.things) == 2:
+        first, goal = said.things
+        if said.text.find(goal) > said.text.find(first):
+            yield Wish(f"move {first} to {goal}", said.moment, things=2)
+    length = _LENGTH.search(said.text)
+    way = next((_WAYS[w] for w in said.beside.split() if w in _WAYS), None)
+    if way is not None and length is not None:
+        yield Wish(f"move {said.things[0]} {way} by {length[0]}", said.moment, holds=length[0])
+
+
+_TIMES = {"once": 1, "twice": 2, "two times": 2, "three times": 3, "thrice": 3, "four times": 4, "one time": 1}
+
+
+def _times(text: str) -> tuple[str, int] | None:
+    return next(((words, n) for words, n in _TIMES.items() if re.search(rf"\b{words}\b", text)), None)
+
+
+def _spin(said: Said) -> Iterator[Wish]:
+    times = _times(said.beside)
+    full = re.search(r"\b(?:one|a) (?:full |whole |complete |single )?(?:turn|circle|spin|rotation|twirl|pirouette|round)\b|\ball the way round\b", said.beside)
+    if times is not None:
+        yield Wish(f"spin {said.things[0]} {times[0] if times[1] > 1 else 'once'}", said.moment, holds=times[0])
+    elif full is not None:
+        yield Wish(f"spin {said.things[0]} once", said.moment, holds=full[0])
+    else:
+        yield Wish(f"spin {said.things[0]}", said.moment)
+
+
+_LATER = re.compile(r"\b(?:later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
+_EARLIER = re.compile(r"\b(?:earlier|sooner|early|ahead)\b")
+
+
+def _begin(said: Said) -> Iterator[Wish]:
+    thing, moment = said.things[0], said.moment
+    later, earlier = _LATER.search(said.text), _EARLIER.search(said.text)
+    for span in re.finditer(DURATION, said.text):
+        seconds = seconds_of(span[0])
+        if seconds is not None and (later is None) != (earlier is None):
+            way = "later" if later is not None else "earlier"
+            yield Wish(f"let {thing} start {seconds:g} s {way}", Moment(), holds=span[0])
+    if moment.lasting is not None and moment.start is None and moment.stop is None and (later is None) != (earlier is None):
+        way = "later" if later is not None else "earlier"
+        yield Wish(f"let {thing} start {moment.lasting:g} s {way}", Moment())
+    if said.told and moment.lasting is None:
+        yield Wish(f"let {thing} start", moment)
+
+
+_FACTORS = (
+    (re.compile(r"\b(?:twice|double[ds]?|two times)\b"), 2.0),
+    (re.compile(r"\b(?:three times|triple|thrice)\b"), 3.0),
+    (re.compile(r"\bfour times\b"), 4.0),
+    (re.compile(r"\b(?:a )?third\b"), 1 / 3),
+    (re.compile(r"\b(?:a )?quarter\b"), 0.25),
+    (re.compile(r"\bhalf\b|\bhalve\b"), 0.5),
+)
+_SLOWER = re.compile(
+    r"\b(?:too|so|far too|way too|much too) (?:\w+ )?(?:fast|quick|quickly|hasty|rushed|wild)|"
+    r"\b(?:less|not so|not as|not that) (?:fast|quick|quickly|hasty|wild|rushed|speedy|speed)|\bcalm\b|"
+    r"\bslow(?!ly does)|\bslower\b|\bslowly\b|\bslow motion\b|\bhalf\b|\bgentler?\b|\blazy\b|\bleisurely\b"
+)
+_FASTER = re.compile(
+    r"\b(?:too|so|far too|way too|much too|painfully) (?:\w+ )?(?:slow|slowly|sluggish|lazy)|\bnot (?:so|as|that) slow|"
+    r"\bless slow|\bfast(?:er)?\b|\bquick(?:er|ly)?\b|\bhurry\b|\bspeed (?:it |this |that |the .+ )?up\b|\brush\b|"
+    r"\bsnappier\b|\bbrisk(?:er)?\b|\bzip\b|\btwice\b|\bdouble\b"
+)
+_COMPLAINT = re.compile(r"\b(?:too|so|painfully)(?: \w+)? (?:fast|quick|quickly|hasty|wild|slow|slowly|sluggish|lazy)\b")
+
+
+def _speed(said: Said) -> Iterator[Wish]:
+    thing, text = said.things[0], said.beside
+    plain = _COMPLAINT.sub(lambda m: "faster" if re.search(r"slow|slug|lazy", m[0]) else "slower", text)
+    slower, faster = _SLOWER.search(plain) is not None, _FASTER.search(plain) is not None
+    for pattern, factor in _FACTORS:
+        if (found := pattern.search(text)) is not None:
+            slowly = re.search(r"\bslow", plain) is not None and factor > 1
+            yield Wish(f"play {thing} {1 / factor if slowly else factor:.4g} times as fast", _kept(said), holds=found[0])
+            return
+    if slower != faster:
+        yield Wish(f"slow down {thing}" if slower else f"speed up {thing}", _kept(said))
+
+
+def _kept(said: Said) -> Moment:
+    """The time without words that only say how slow something is."""
+    return replace(said.moment, slowly=False, quickly=False)
+
+
+def _duration(said: Said) -> Iterator[Wish]:
+    thing, moment = said.things[0], said.moment
+    if moment.lasting is not None and moment.stop is None:
+        yield Wish(f"let {thing} move in {moment.lasting:g} s", replace(moment, lasting=None, taken=False, slowly=False))
+    if moment.lasting is None and moment.start is None and moment.stop is None:
+        for span in re.finditer(DURATION, said.text):
+            if (seconds := seconds_of(span[0])) is not None:
+                yield Wish(f"let {thing} move in {seconds:g} s", Moment(), holds=span[0])
+
+
+def _pause(said: Said) -> Iterator[Wish]:
+    moment, thing = said.moment, said.things[0]
+    if moment.lasting is not None or moment.stop is not None:
+        if moment.start is not None or moment.stop is not None or said.told:
+            yield Wish(f"pause {thing}", replace(moment, taken=False, slowly=False))
+        return
+    for span in re.finditer(DURATION, said.text):
+        seconds = seconds_of(span[0])
+        if seconds is not None and said.told:
+            yield Wish(f"pause {thing}", replace(moment, lasting=seconds), holds=span[0])
+
+
+def _halt(said: Said) -> Iterator[Wish]:
+    if said.told and said.moment.lasting is None and said.moment.stop is None:
+        yield Wish(f"stop {said.things[0]}", said.moment)
+
+
+def _still(said: Said) -> Iterator[Wish]:
+    moment = said.moment
+    if moment.start is None and moment.stop is None and moment.lasting is None and not said.told:
+        yield Wish(f"keep {said.things[0]} still", moment)
+
+
+def _reverse(said: Said) -> Iterator[Wish]:
+    if not said.told:
+        if re.search(r"\b(?:way|direction|clockwise|anti|counter)\b", said.text):
+            yield Wish(f"let {said.things[0]} turn the other way round", said.moment)
+        else:
+            yield Wish(f"play {said.things[0]} backwards", said.moment)
+
+
+def _stay(said: Said) -> Iterator[Wish]:
+    yield Wish(f"leave {said.things[0]} open", Moment())
+
+
+_SHARES = (
+    (re.compile(r"\b(?:half ?way|half (?:as|the|that|of)|only half|half open|half)\b"), "halfway", "half the way"),
+    (re.compile(r"\b(?:a|one) third\b"), "a third of the way", "a third of the way"),
+    (re.compile(r"\b(?:a|one) quarter\b"), "a quarter of the way", "a quarter of the way"),
+)
+_DEGREES = re.compile(r"(?P<n>\d+|[a-z]+) (?:degrees?|deg|°)")
+_OPENS = re.compile(r"\b(?:doors?|drawers?|gates?|lids?|windows?|hatch|flaps?|curtains?|cupboards?)$")
+
+
+def _amount(said: Said) -> Iterator[Wish]:
+    thing = said.things[0]
+    opens = _OPENS.search(thing) is not None
+    if (found := _DEGREES.search(said.text)) is not None:
+        yield Wish(f"open {thing} by {found[0]}", said.moment, holds=found[0])
+    elif (found := _LENGTH.search(said.text)) is not None:
+        yield Wish(f"open {thing} by {found[0]}" if opens else f"let {thing} only move {found[0]}", said.moment, holds=found[0])
+    for pattern, opened, way in _SHARES:
+        if (found := pattern.search(said.beside)) is not None:
+            yield Wish(f"open {thing} only {opened}" if opens else f"let {thing} go {way}", said.moment, holds=found[0])
+
+
+def _open(said: Said) -> Iterator[Wish]:
+    yield Wish(f"open {said.things[0]}", said.moment)
+
+
+def _close(said: Said) -> Iterator[Wish]:
+    yield Wish(f"close {said.things[0]}", said.moment)
+
+
+def _order(said: Said) -> Iterator[Wish]:
+    text = said.text
+    if len(said.things) == 1 and not said.told:
+        for word in ("first", "last"):
+            if re.search(rf"\b{word}\b", said.beside):
+                yield Wish(f"let {said.things[0]} start {word}", Moment())
+    if len(said.things) == 2:
+        first, second = said.things
+        between = text[text.find(first) + len(first) : text.find(second)]
+        if re.search(r"\bafter\b", between) and text.find(first) < text.find(second):
+            yield Wish(f"let {first} start after {second} has stopped", Moment(), things=2, holds="after")
+        if re.search(r"\b(?:before|ahead of)\b", between) and text.find(first) < text.find(second):
+            yield Wish(f"let {second} start after {first} has stopped", Moment(), things=2, holds="before")
+
+
+def _together(said: Said) -> Iterator[Wish]:
+    if len(said.things) > 1:
+        yield Wish(f"let {' and '.join(said.things)} start at the same time", Moment(), things=len(said.things))
+    else:
+        yield Wish(f"let {said.things[0]} start at the same time", said.moment)
+
+
+def _repeat(said: Said) -> Iterator[Wish]:
+    times = _times(said.beside)
+    if times is None or times[0] == "once":
+        yield Wish(f"repeat the movement of {said.things[0]}", said.moment, holds="once")
+    elif times[1] == 2:
+        yield Wish(f"let {said.things[0]} move twice", said.moment, holds=times[0])
+    else:
+        yield Wish(f"let {said.things[0]} move {times[1]} times", said.moment, holds=times[0])
+
+
+def _return(said: Said) -> Iterator[Wish]:
+    yield Wish(f"let {said.things[0]} come back", said.moment)
+
+
+def _longer(said: Said) -> Iterator[Wish]:
+    if said.moment.lasting is None and said.moment.start is None:
+        until = "" if said.moment.stop is not None else " until the end"
+        yield Wish(f"let {said.things[0]} turn{until}", said.moment)
+        yield Wish(f"let {said.things[0]} keep moving{until}", said.moment)
+
+
+_KINDS: dict[str, Callable[[Said], Iterator[Wish]]] = {
+    "recolor": _recolor, "hide": _hide, "remove": _remove, "move": _move, "spin": _spin, "begin": _begin,
+    "speed": _speed, "duration": _duration, "pause": _pause, "halt": _halt, "still": _still, "reverse": _reverse,
+    "stay": _stay, "amount": _amount, "open": _open, "close": _close, "order": _order, "together": _together,
+    "repeat": _repeat, "return": _return, "longer": _longer,
+}  # fmt: skip
