@@ -17,18 +17,22 @@ STATES = (
     "falling",
     "turning",
     "open",
+    "opening",
+    "closing",
     "fully_open",
     "touches",
     "closest",
     *(n for n in names("query") if named(n).score is not None),
 )
-_ALONE = ("moving", "still", "falling", "turning", "open", "fully_open")  # states that say nothing of another thing
+_ALONE = ("moving", "still", "falling", "turning", "open", "opening", "closing", "fully_open")  # states that say nothing of another thing
 _STATED = {
     "moving": "moves",
     "still": "stands still",
     "falling": "falls",
     "turning": "turns",
     "open": "is open",
+    "opening": "opens",
+    "closing": "closes",
     "fully_open": "is open all the way",
     "touches": "touches",
     "closest": "is closest to",
@@ -43,10 +47,11 @@ Seconds = Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)]
 
 class During(BaseModel):
     """A time told by what happens: "while it is on the rug". `state` is moving, still, falling, turning, open,
-    fully_open, touches, closest, or a name of Relation.
+    opening, closing, fully_open, touches, closest, or a name of Relation.
 
     `part`: while or unless it is so, from when it first is on, until then, after it was, or until it no longer is.
-    "open" is not being where it is at the start, "fully_open" as far from there as it comes;
+    "open" is not being where it is at the start, "opening" and "closing" going away from there and back, "fully_open"
+    as far from there as it comes;
     "closest" the moment of being nearest to the middle of another thing.
     """
 

@@ -161,18 +161,29 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         return _timeless(cleaned, previous)
     reader = TimeReader(_operations, _thing)
     try:
-        if (timed := reader.read(cleaned)) is not None:
-            return _of_time(timed)
-        outcome = _timeless(cleaned, previous)
-        if is_misread([op for op in outcome.ops if op["op"] != "select"]):
-            raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
+        outcome = _timed(reader, cleaned, previous)
     except Refusal as refusal:
-        if refusal.firm or refusal.verdict not in ("not_understood", "not_an_edit"):
-            raise
-        if (supposed := reader.supposed(cleaned)) is None:
+        if refusal.firm or refusal.verdict == "unsafe" or (supposed := reader.supposed(cleaned)) is None:
             raise
         return _of_time(supposed)
+    if not _has_known_names(outcome.ops) and (supposed := reader.supposed(cleaned)) and _has_known_names(supposed):
+        return _of_time(supposed)  # "stop the ball dead at 2 s" is not about a dead ball
     return outcome
+
+
+def _timed(reader: TimeReader, cleaned: str, previous: str | None) -> _Outcome:
+    """As `_understand`, of an instruction that may be about time or motion, by the words that are known. Raises Refusal."""
+    if (timed := reader.read(cleaned)) is not None:
+        return _of_time(timed)
+    outcome = _timeless(cleaned, previous)
+    if is_misread([op for op in outcome.ops if op["op"] != "select"]):
+        raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
+    return outcome
+
+
+def _has_known_names(ops: Sequence[Fields]) -> bool:
+    """Whether every name in operations is made of known nouns."""
+    return all(_is_known_name(query.text) for op in ops for query in _targets(op))
 
 
 def _operations(cleaned: str) -> Sequence[Fields]:

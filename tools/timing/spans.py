@@ -158,7 +158,7 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
     found: list[Span] = []
     unit = 1.0 / (scene.frame.metres_per_unit or 1.0)
     for group in groups:
-        if during.state in ("falling", "turning", "open", "fully_open"):
+        if during.state in ("falling", "turning", "open", "opening", "closing", "fully_open"):
             course = course_of(scene, group)
             found += falls(course, unit) if during.state == "falling" else _own(course, during.state, unit)
         elif during.state == "touches":  # "the wall" may be several
@@ -167,13 +167,15 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
             found += [s for anchor in anchors[0] for s in intervals(scene, group, during.state, (anchor,), stand)]
         else:
             found += intervals(scene, group, during.state, [a[0] for a in anchors], stand)
-    exact = _edges(scene, groups) if during.state in ("moving", "still", "falling", "open", "fully_open") else []
+    exact = _edges(scene, groups) if during.state in _KEYED else []
     return joined(sorted((_snapped(a, exact), _snapped(b, exact)) for a, b in found), _APART)
 
 
+_KEYED = ("moving", "still", "falling", "open", "opening", "closing", "fully_open")  # which begin and end with a track
 _ROUGH = 0.1  # seconds: an edge that was measured is the key of a track that is nearer
 _TURNS = 0.2  # radians a second about the vertical from which a thing turns
-_AWAY = 0.02  # metres, or radians, from where it is at the start: then it is open
+_AWAY = 0.02  # metres from where it is at the start: then it is open; a second: then it is opening
+_SOON = 0.02  # seconds: a speed is measured over twice as much
 _PASSED = 0.5  # metres between what stops beside a thing and that thing at most
 _WIDE = 0.99  # of as far as it opens: then it is open all the way
 _REACHED = 0.35  # metres: what comes this near and no nearer has reached it
@@ -200,6 +202,14 @@ def _own(course: Course, state: str, unit: float) -> list[Span]:
     if state == "turning":
         return spans(lambda t: np.abs(course.turns(t) @ course.up), times, _TURNS)
     first = course.centers(np.array([course.start]))
+    if state in ("opening", "closing"):
+        sign = 1.0 if state == "opening" else -1.0
+
+        def going(t: NDArray[np.float64]) -> NDArray[np.float64]:
+            before, after = (np.linalg.norm(course.centers(t + d) - first, axis=1) for d in (-_SOON, _SOON))
+            return sign * (after - before) / (2 * _SOON)
+
+        return spans(going, times, _AWAY * unit)
     if state == "fully_open":
         far = np.linalg.norm(course.centers(times) - first, axis=1)
         if float(far.max()) < _AWAY * unit:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
 
 from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
@@ -108,7 +107,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     return _touching(word, said, who) or _noun_event(word, said, who)
 
 
-_OWN = ("moving", "still", "falling", "turning", "open", "fully_open")
+_OWN = ("moving", "still", "falling", "turning", "open", "opening", "closing", "fully_open")
 
 
 def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
@@ -120,10 +119,15 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     ended = clause.form == "past" and bool({"has", "have", "is", "are", "was", "were", "had"} & set(clause.aux))
     place = _RELATED.get(manner.at) if manner.whom is not None else None
     only_place = manner.only("goal", "at", "whom")
+    if sense == "start" and manner.doing in ("open", "close") and manner.only("doing"):
+        return ("opening" if manner.doing == "open" else "closing"), _BEGINS
+    if sense == "start" and manner.doing == "move" and manner.state in ("open", "closed"):
+        if manner.only("doing", "state", "back"):  # "it starts sliding back in"
+            return ("opening" if manner.state == "open" else "closing"), _BEGINS
     if sense == "start" and manner.only("doing"):
         return ("falling" if manner.doing == "fall" else "moving"), _BEGINS
     if sense in ("stop", "arrive", "close") and manner.only("doing", "state") and (sense != "close" or ended):
-        return "moving", _ENDED
+        return ("closing" if sense == "close" else "moving"), _ENDED
     if sense in ("be", "stay", "look", "stop") and fields == {"state"}:
         if manner.state == "open":
             fully = _FULLY.search(" ".join(clause.tail)) is not None or "out" in clause.tail
@@ -157,7 +161,7 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
         and manner.only("way", "back", "goal", "at", "whom", "origin", "endless", "state", "degrees")
         and not place
     ):
-        own: Literal["falling", "moving", "turning"] = "falling" if sense == "fall" and not ended else "moving"
+        own = "falling" if sense == "fall" and not ended else _GOINGS.get(sense, "moving")
         if clause.verb is not None and clause.verb.first == "turn":
             own = "turning"
         full = _FULLY.search(" ".join(clause.tail)) is not None and sense == "open"
@@ -165,6 +169,7 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     return None
 
 
+_GOINGS = {"open": "opening", "close": "closing"}
 _WITH_OBJECT: dict[str, tuple[str, _Course]] = {
     "leave": ("on", _ENDED), "enter": ("on", _COMES), "cross": ("on", _LASTS), "reach": ("touches", _COMES),
 }  # fmt: skip

@@ -87,7 +87,8 @@ _POINT = rf"(?:{_NUMERIC}|{_NAME})"
 _BARE = rf"(?:{_POINT}|{_DIGITS}|(?:{_ONES}))"
 _TO = r"(?:to|until|till|til|and|up to|through|thru|-|through to|untill)"
 _ALWAYS = (
-    rf"(?:(?:(?:for|during|over|through|in|,) (?:the )?(?:whole|entire|full|complete) (?:scene|thing|{_CLIP})|"
+    rf"(?:(?:(?:for|during|over|through|in|,) (?:(?:the )?(?:whole|entire|full|complete)|all (?:of )?the) (?:scene|"
+    rf"thing|{_CLIP})|"
     r"(?:for |during |over |through )?(?:the )?(?:whole|entire|full) time)|"
     rf"all the time|all through|throughout(?: the (?:whole |entire )?(?:scene|{_CLIP}))?|always|permanently|"
     r"forever|for ever|constantly|"
@@ -190,7 +191,7 @@ def _first(moment: Moment, found: re.Match[str]) -> Moment | None:
 
 def _last(moment: Moment, found: re.Match[str]) -> Moment | None:
     value = _value(found["a"])
-    return None if not value else replace(moment, start=-value)
+    return None if not value else replace(moment, start=-value, stop="end")
 
 
 _PHRASES: tuple[tuple[str, Made], ...] = (

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from ....gaussians import late_re as re
 from ..restating.speech.remarks import is_remark
 from ..vocabulary.nouns import is_known
+from ..vocabulary.quantities import NUMBERS
 from .asides import HUES, told_of
 from .manner import MOTION, Thing, starts
 from .moments import DURATION, cut
@@ -45,6 +46,7 @@ _BUT_SEEING = re.compile(
     r"\b(?:want|need|like|prefer|wish|love)s? (?:that|it|this)$|\bto (?:see|look|watch|show|have a)\b"
 )
 _APPEARS = re.compile(r"^(?:that |it )?(?:looks?|seems?|feels?|sounds?) (?!like)[a-z]+(?: (?!until|from|at)[a-z]+)*$")
+_AMOUNT = re.compile(rf"\d|\b(?:{HUES})\b|{DURATION}|\bby (?:{'|'.join(NUMBERS)})\b")
 _SHORT = 5  # words of a piece without a verb
 
 Reads = Callable[[str], bool]
@@ -94,7 +96,9 @@ def _is_idle(piece: str, mark: str, before: str, thing: Thing, reads: Reads) -> 
     words = piece.split()
     if _APPEARS.match(piece) or (before and _is_hue_again(piece, before)):
         return True
-    if re.search(rf"\d|\b(?:{HUES})\b|{DURATION}", piece) or cut(piece)[0] != piece:
+    if re.match(r"(?:when|whenever) (?!i |we |you |people |one )", piece):
+        return False
+    if _AMOUNT.search(piece) or cut(piece)[0] != piece:
         return False
     if _LEADS.search(mark):
         return not reads(piece)  # "it is stuffy, so open the door" gives an order

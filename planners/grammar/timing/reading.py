@@ -40,7 +40,7 @@ from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
 from .supposed.kinds import likely
-from .supposed.wishes import said_of, wishes
+from .supposed.wishes import said_of, wishes, with_nouns
 from .verbs import SENSES, any_of, forms, has_form
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
@@ -107,14 +107,19 @@ class TimeReader:
     def supposed(self, cleaned: str) -> tuple[Fields, ...] | None:
         """The operations that an instruction most likely asks for, by the kind of its wish; None if that is not likely
         enough, or if they would leave out anything that it names."""
-        said = _tidy(_in_words(cleaned))
+        said = with_nouns(_spelled(_tidy(_in_words(cleaned))))
+        readings = [reading for reading in self._readings(said) if not _FRAGMENT.match(reading[0])][:2]
         for kind in likely(cleaned):
-            for rest, moment, happening in self._readings(said):
+            for rest, moment, happening in readings:
                 told = moment.told or happening is not None
-                for wish in wishes(kind, said_of(rest, self.thing, moment, told)):
-                    found = self._command(wish.command, "", wish.moment, happening, told)
-                    if found:
-                        return found
+                for wish in wishes(kind, said_of(rest, self.thing, moment, happening is not None)):
+                    with suppress(Refusal, UserError, ValidationError):
+                        if isinstance(wish.command, Command):
+                            found = self._made(wish.command, wish.moment, happening)
+                        else:
+                            found = self._command(wish.command, "", wish.moment, happening, told)
+                        if found:
+                            return found
         return None
 
     def _without_remarks(self, said: str, cleaned: str) -> tuple[Fields, ...] | None:
@@ -275,6 +280,8 @@ class TimeReader:
 
     def _loosely(self, said: str) -> tuple[Fields, ...] | None:
         """One command about motion in any order of its words; None if its readings differ in what is to be done."""
+        if _COMPLAINT.search(said):
+            return None  # "too slow" asks for the contrary
         for rest, moment, happening in self._readings(said):
             told, found = moment.told or happening is not None, list[tuple[Fields, ...]]()
             if happening is not None and happening.said.startswith("before ") and phrases.RIDDING.match(rest):
@@ -309,7 +316,7 @@ class TimeReader:
     def _command(
         self, said: str, remark: str, moment: Moment, happening: Happening | None, told: bool
     ) -> tuple[Fields, ...] | None:
-        if not said:
+        if not said or (happening is None and _TIME_FIRST.match(said)):
             return None
         if happening is not None and not moment.empty and moment.lasting is None and moment.stop is not None:
             return None
@@ -451,6 +458,11 @@ class TimeReader:
         return None
 
 
+_TIME_FIRST = re.compile(r"(?:when|whenever|once|while|as soon as) (?:the|my|our|this|that|it|he|she|they) .* , ")
+_COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b")
+_FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
+
+
 def _in_words(cleaned: str) -> str:
     """The words and marks of an instruction, with spaces between."""
     ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", cleaned)
@@ -489,6 +501,8 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
     Args:
         ends: whether the time of the command has an end.
     """
+    if re.search(rf"\d|\b(?:{'|'.join(NUMBERS)})\b", remark):
+        return False  # "starting at one second, done by three"
     if _COMES_BACK.search(remark):
         return command.kind == "look" and not command.inverse
     if re.search(rf"\b(?:keep|let|have) (?:it|him|her|them) {any_of(MOTION, 'ing')}", remark):
@@ -502,7 +516,9 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
 
 
 def _about(part: str) -> str | None:
-    """The name of what a part tells of that asks for nothing; None if it asks."""
+    """The name of what a part tells of that asks for nothing; None if it asks, or tells a time."""
+    if re.match(r"(?:when|whenever|once|as soon as|after|while|until|till|before|by the time) ", part):
+        return None
     topic = told_of(part)
     if topic is None and (found := phrases.REMARK.match(part)) is not None:
         topic = found["np"] or found["kept"]
@@ -524,7 +540,7 @@ def _timely_words() -> frozenset[str]:
 
 
 _SPELLED_WORDS = bag(
-    "the and should must while until after before between during when once then than second seconds twice times half "
+    "completely fully entirely the and should must while until after before between during when once then than second seconds twice times half "
     "speed faster slower later earlier backwards slowly quickly everything whole again only from with into"
 )
 
@@ -545,6 +561,8 @@ def _resting(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
         and then["target"] in (IT, last["target"])
     ):
         return list(ops)  # "keep it closed until 3 s, then let it open"
+    if last.get("change") == then.get("change") == "stop" and then.get("when") is None and _is_from(last):
+        return list(ops)  # "freeze it at 2 s and do not let it move again"
     stop, start = last.get("when"), then.get("when")
     if (last.get("change"), then.get("change")) != ("stop", "begin") or then["target"] not in (IT, last["target"]):
         return [*ops, *more]
@@ -557,6 +575,12 @@ def _waits_until(op: Fields) -> bool:
     """Whether an operation holds a thing still until a time, so that it moves afterwards."""
     when = op.get("when")
     return op.get("change") == "stop" and isinstance(when, When) and when.start is None and when.stop is not None
+
+
+def _is_from(op: Fields) -> bool:
+    """Whether an operation holds from a time on to the end."""
+    when = op.get("when")
+    return isinstance(when, When) and when.stop is None and when.lasting is None and when != When()
 
 
 def _says_again(ops: Sequence[Fields], more: Sequence[Fields]) -> bool:

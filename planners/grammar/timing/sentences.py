@@ -97,6 +97,7 @@ _NOT_WANTED = re.compile(
 )
 _HOW_IT_IS = re.compile(r"^(?:it|he|she|they|the [a-z]+(?: [a-z]+)?) (?:is|are|stands?|stays?) ")
 _LAST_JOINTS = (" , and then ", " , but ", " , and ", " , then ", " and then ", " but ", " while ", " , ")
+_LED = re.compile(r"^(?:when|whenever|once|as soon as|after|while|until|till|before|by the time|the moment)\b")  # a time
 _OPENS = bag("when how what at with to in let keep")  # which begin a time or an order, and no remark
 _ITS_TIME = re.compile(rf"\bits (?:full|whole|usual|normal|entire) {DURATION}")
 _JOINT = re.compile(r" ,(?: (?:and|but))? | (?:and|but) ")
@@ -133,6 +134,7 @@ def _without_end(part: str) -> str:
         if (
             mark
             and len(head.split()) > 2
+            and not (_LED.match(head) and " , " not in head)
             and not (joint == " while " and _HOW_IT_IS.match(tail))
             and (_goes_without_saying(head, tail) or _says_no_more(tail) or changes_nothing(tail))
         ):

@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from .....gaussians import color
 from ...tagging.words import split
+from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS
 
 FOLDER = Path(__file__).parent
 _SECONDS = frozenset(("s", "sec", "secs", "second", "seconds"))
 _MARKS = frozenset('.;!,:"')
-LEAST = 0.2  # probability of a kind that is tried
+LEAST = 0.3  # probability of a kind that is tried
 MOST = 2  # kinds that are tried
 _STEM = 5  # letters of a word by which its forms are alike
 _LONGEST = 3  # words in a row
@@ -28,7 +29,9 @@ _LONGEST = 3  # words in a row
 def features(said: str) -> frozenset[str]:
     """What the classifier sees of an instruction: words and their beginnings, alone and in a row. Numbers, seconds and
     colours are each one word."""
-    words = ["^", *(_as_seen(word.text) for word in split(said) if word.text not in _MARKS), "$"]
+    given = [word.text for word in split(said) if word.text not in _MARKS]
+    behind = [*given[1:], ""]
+    words = ["^", *(_as_seen(w) for w, then in zip(given, behind, strict=True) if not _is_part_of_name(w, then)), "$"]
     rows = {" ".join(words[i : i + n]) for n in range(1, _LONGEST + 1) for i in range(len(words) - n + 1)}
     stems = [word[:_STEM] for word in words]
     return frozenset(rows | {f"{a}~{b}" for a, b in zip(stems, stems[1:], strict=False)} | {f"{s}~" for s in stems})
@@ -40,6 +43,11 @@ def _as_seen(word: str) -> str:
     if word in NUMBERS or word[0].isdigit():
         return "#"
     return "#color" if word in _colors() else word
+
+
+def _is_part_of_name(word: str, then: str) -> bool:
+    """Whether a colour tells which thing is meant: "the red book"."""
+    return word in _colors() and is_known(then)
 
 
 @cache

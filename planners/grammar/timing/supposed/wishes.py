@@ -11,9 +11,12 @@ from dataclasses import dataclass, replace
 
 from .....gaussians import color
 from .....gaussians import late_re as re
+from .....gaussians.language.query.query import Query
 from ...tagging.words import bag
 from ...vocabulary.nouns import EVERYWHERE, is_known
 from ...vocabulary.quantities import NUMBERS
+from ..asides import HUES
+from ..command import Command, pace
 from ..manner import Thing
 from ..moments import DURATION, Moment, seconds_of
 
@@ -21,13 +24,14 @@ _NO_THINGS = EVERYWHERE | bag(
     "second seconds time moment start end beginning film clip video shot movie animation way bit speed motion movement "
     "turn turns circle frame place spot direction half rest minute mood eyes eye sec point stop pace work job whole "
     "look view scene thing things please once opening walk fall roll ride trip go times sequence effect slow fast "
-    "red blue green yellow white black purple pink orange brown gray grey silver gold"
+    "light dark red blue green yellow white black purple pink orange brown gray grey silver gold"
 )
 _ALL = re.compile(
     r"\b(?:everything|all|whatever|anything)(?: (?:that|which))?(?: (?:is|are))? (?:moves?|moving)\b"
     r"(?: (?:in|on) (?:the|this) (?:shot|scene|film|clip|video|picture))?|\beverything\b(?! else)"
 )
-_LONGEST_NAME = 6
+_BETWEEN = bag("to at on in into onto by of for with from and or but then so as until while when once after before")
+_LONGEST_NAME = 5
 _CONJUNCTION = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
     r"except|unless|if)\b"
@@ -43,13 +47,25 @@ class Said:
         text: its words.
         things: the names in it, as they stand.
         moment: its time in numbers.
-        told: whether any time is told, in numbers or by what happens.
+        event: whether a time is told by what happens.
+        thing: reads a name.
     """
 
     text: str
     things: tuple[str, ...]
     moment: Moment
-    told: bool
+    event: bool
+    thing: Thing
+
+    @property
+    def told(self) -> bool:
+        """Whether any time is told."""
+        return self.event or self.moment.told
+
+    @property
+    def whose(self) -> Query:
+        """What the first name means."""
+        return self.thing(self.things[0]) or Query(last=True)
 
     @property
     def beside(self) -> str:
@@ -62,10 +78,10 @@ class Said:
 
 @dataclass(frozen=True)
 class Wish:
-    """A plain command, the number of things in it, the words of the instruction that it holds otherwise, and its
-    time."""
+    """A command, in words or as it is; its time; the number of things in it, and the words of the instruction that it
+    holds otherwise."""
 
-    command: str
+    command: str | Command
     moment: Moment
     things: int = 1
     holds: str = ""
@@ -91,20 +107,44 @@ def named(text: str, thing: Thing) -> tuple[str, ...]:
 def _is_name(words: Sequence[str]) -> bool:
     if list(words) == ["everything", "that", "moves"]:
         return True
+    if not all(word.isalpha() or word == "'s" for word in words) or set(words) & _BETWEEN:
+        return False
     last = words[-1]
-    return last not in _NO_THINGS and last not in NUMBERS and (is_known(last) or (len(words) > 1 and words[0] == "the" and len(words) < 4))
+    return last not in _NO_THINGS and last not in NUMBERS and (is_known(last) or (words[0] == "the" and 1 < len(words) < 4))
 
 
-def said_of(text: str, thing: Thing, moment: Moment, told: bool) -> Said:
+_AS_BEFORE = re.compile(
+    r"(?: ,)? (?:and |then |but )*(?:(?:it |make it |let it |turn it |go |goes |back |should |is |to )*)(?:[a-z]+ )?"
+    r"(?:again|back|afterwards?|after that|as before|like before|as it was|normal(?: again)?)(?: (?:afterwards?|then))?$"
+)
+_ONE = re.compile(r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b")
+
+
+def with_nouns(text: str) -> str:
+    """A text with the noun that "one" stands for: "the middle drawer ... the top one" names the top drawer."""
+
+    def noun(found: re.Match[str]) -> str:
+        before = [w for w in text[: found.start()].split() if is_known(w) and w not in _NO_THINGS]
+        after = [w for w in text[found.end() :].split() if is_known(w) and w not in _NO_THINGS]
+        return f"{found['how']} {(before[-1:] or after[:1] or ['one'])[0]}"
+
+    return _ONE.sub(noun, text)
+
+
+def said_of(text: str, thing: Thing, moment: Moment, event: bool) -> Said:
     """What words say beside their time."""
     text = _ALL.sub("everything that moves", text)
-    return Said(text, named(text, thing), moment, told)
+    if event or moment.told:
+        text = _AS_BEFORE.sub("", text)
+    return Said(text, named(text, thing), moment, event, thing)
 
 
 def wishes(kind: str, said: Said) -> Iterator[Wish]:
     """The plain commands of a kind that an instruction may stand for, the likeliest first."""
     made = _KINDS.get(kind)
-    if made is None or not said.things:
+    if made is None or not said.things or (kind in _STATIC and not said.told and not said.moment.always):
+        return
+    if (_PROHIBITED if kind in _STATIC else _OTHER_EDITS).search(said.text):
         return
     for wish in made(said):
         if _is_whole(wish, said):
@@ -116,13 +156,17 @@ def _is_whole(wish: Wish, said: Said) -> bool:
     left = said.beside
     for held in wish.holds.split("|"):
         if held:
-            left = left.replace(held, " ", 1)
+            left = left.replace(held, " ")
+    left = _COMPLAINED.sub(" ", left)
     if len(said.things) > wish.things or _CONJUNCTION.search(left) or _EVENTS.search(left):
         return False
     words = left.split()
     if any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in _hues() for w in words):
         return False
     return re.search(DURATION, left) is None
+
+
+_COMPLAINED = re.compile(rf"\btoo (?:{HUES})\b")
 
 
 def _hues() -> frozenset[str]:
@@ -137,7 +181,7 @@ def _recolor(said: Said) -> Iterator[Wish]:
     if hues:
         before = re.search(rf"\b(?P<how>very dark|very light|dark|deep|light|pale|bright|vivid) {hues[0]}\b", said.text)
         hue = f"{before['how']} {hues[0]}" if before is not None else hues[0]
-        yield Wish(f"make {said.things[0]} {hue}", said.moment, holds="|".join(hues[:1]))
+        yield Wish(Command(kind="look", text=f"make {said.things[0]} {hue}"), said.moment, holds=hues[0])
 
 
 _APPEARS = re.compile(r"\b(?:appears?|shows?|shown|visible|pops? (?:up|in)|comes? in(?:to)?|reveal|reveals?|there only|turns? up)\b")
@@ -150,8 +194,8 @@ def _hide(said: Said) -> Iterator[Wish]:
 
 
 def _remove(said: Said) -> Iterator[Wish]:
-    if not said.told:
-        yield Wish(f"remove {said.things[0]}", said.moment)
+    if not said.told and said.moment.always:
+        yield Wish(Command(kind="look", text=f"remove {said.things[0]}"), said.moment)
 
 
 _GOAL = re.compile(r"\b(?P<how>to|next to|beside|towards?|by|near|up to|over to|across to|against|alongside)(?: the side of)? $")
@@ -179,7 +223,7 @@ def _times(text: str) -> tuple[str, int] | None:
 
 def _spin(said: Said) -> Iterator[Wish]:
     times = _times(said.beside)
-    full = re.search(r"\b(?:one|a) (?:full |whole |complete |single )?(?:turn|circle|spin|rotation|twirl|pirouette|round)\b|\ball the way round\b", said.beside)
+    full = re.search(r"\b(?:one|a) (?:[a-z]+ ){0,2}(?:turn|circle|spin|rotation|twirl|pirouette|round)\b|\ball the way round\b", said.beside)
     if times is not None:
         yield Wish(f"spin {said.things[0]} {times[0] if times[1] > 1 else 'once'}", said.moment, holds=times[0])
     elif full is not None:
@@ -188,23 +232,28 @@ def _spin(said: Said) -> Iterator[Wish]:
         yield Wish(f"spin {said.things[0]}", said.moment)
 
 
+_A_PART = re.compile(r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back|returns?|again|in again)\b")  # of a movement that has two
 _LATER = re.compile(r"\b(?:later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
 _EARLIER = re.compile(r"\b(?:earlier|sooner|early|ahead)\b")
 
 
 def _begin(said: Said) -> Iterator[Wish]:
+    if _A_PART.search(said.text):
+        return
     thing, moment = said.things[0], said.moment
     later, earlier = _LATER.search(said.text), _EARLIER.search(said.text)
     for span in re.finditer(DURATION, said.text):
         seconds = seconds_of(span[0])
         if seconds is not None and (later is None) != (earlier is None):
             way = "later" if later is not None else "earlier"
-            yield Wish(f"let {thing} start {seconds:g} s {way}", Moment(), holds=span[0])
+            yield Wish(pace(said.whose, "later", seconds=seconds if way == "later" else -seconds), Moment(), holds=span[0])
     if moment.lasting is not None and moment.start is None and moment.stop is None and (later is None) != (earlier is None):
         way = "later" if later is not None else "earlier"
-        yield Wish(f"let {thing} start {moment.lasting:g} s {way}", Moment())
+        yield Wish(pace(said.whose, "later", seconds=moment.lasting if way == "later" else -moment.lasting), Moment())
     if said.told and moment.lasting is None:
-        yield Wish(f"let {thing} start", moment)
+        if moment.stop is not None and moment.start is None and not said.event:  # "it waits until 2 s"
+            moment = replace(moment, start=moment.stop, stop=None)
+        yield Wish(pace(said.whose, "begin"), moment)
 
 
 _FACTORS = (
@@ -229,16 +278,18 @@ _COMPLAINT = re.compile(r"\b(?:too|so|painfully)(?: \w+)? (?:fast|quick|quickly|
 
 
 def _speed(said: Said) -> Iterator[Wish]:
+    if _A_PART.search(said.text):
+        return
     thing, text = said.things[0], said.beside
     plain = _COMPLAINT.sub(lambda m: "faster" if re.search(r"slow|slug|lazy", m[0]) else "slower", text)
     slower, faster = _SLOWER.search(plain) is not None, _FASTER.search(plain) is not None
     for pattern, factor in _FACTORS:
         if (found := pattern.search(text)) is not None:
             slowly = re.search(r"\bslow", plain) is not None and factor > 1
-            yield Wish(f"play {thing} {1 / factor if slowly else factor:.4g} times as fast", _kept(said), holds=found[0])
+            yield Wish(pace(said.whose, "speed", factor=round(1 / factor if slowly else factor, 4)), _kept(said), holds=found[0])
             return
     if slower != faster:
-        yield Wish(f"slow down {thing}" if slower else f"speed up {thing}", _kept(said))
+        yield Wish(pace(said.whose, "speed", factor=0.5 if slower else 2.0), _kept(said))
 
 
 def _kept(said: Said) -> Moment:
@@ -247,36 +298,39 @@ def _kept(said: Said) -> Moment:
 
 
 def _duration(said: Said) -> Iterator[Wish]:
+    if _A_PART.search(said.text):
+        return
     thing, moment = said.things[0], said.moment
     if moment.lasting is not None and moment.stop is None:
-        yield Wish(f"let {thing} move in {moment.lasting:g} s", replace(moment, lasting=None, taken=False, slowly=False))
+        yield Wish(pace(said.whose, "begin"), replace(moment, taken=True, slowly=False, quickly=False))
     if moment.lasting is None and moment.start is None and moment.stop is None:
         for span in re.finditer(DURATION, said.text):
             if (seconds := seconds_of(span[0])) is not None:
-                yield Wish(f"let {thing} move in {seconds:g} s", Moment(), holds=span[0])
+                yield Wish(pace(said.whose, "begin"), Moment(lasting=seconds, taken=True), holds=span[0])
 
 
 def _pause(said: Said) -> Iterator[Wish]:
     moment, thing = said.moment, said.things[0]
     if moment.lasting is not None or moment.stop is not None:
-        if moment.start is not None or moment.stop is not None or said.told:
-            yield Wish(f"pause {thing}", replace(moment, taken=False, slowly=False))
+        if moment.start is not None or moment.stop is not None or said.event:
+            yield Wish(pace(said.whose, "stop"), replace(moment, taken=False, slowly=False))
         return
     for span in re.finditer(DURATION, said.text):
         seconds = seconds_of(span[0])
-        if seconds is not None and said.told:
-            yield Wish(f"pause {thing}", replace(moment, lasting=seconds), holds=span[0])
+        if seconds is not None and (said.event or moment.start is not None):
+            yield Wish(pace(said.whose, "stop"), replace(moment, lasting=seconds), holds=span[0])
 
 
 def _halt(said: Said) -> Iterator[Wish]:
     if said.told and said.moment.lasting is None and said.moment.stop is None:
-        yield Wish(f"stop {said.things[0]}", said.moment)
+        yield Wish(pace(said.whose, "stop"), _kept(said))
 
 
 def _still(said: Said) -> Iterator[Wish]:
     moment = said.moment
     if moment.start is None and moment.stop is None and moment.lasting is None and not said.told:
-        yield Wish(f"keep {said.things[0]} still", moment)
+        stays = re.search(r"\b(?:stay|remain|keep|leave|sit|stand|rest)(?:s|ing)?\b.* (?:on|in|at|by|where|put)\b", said.text) is not None
+        yield Wish(pace(said.whose, "stop"), Moment(), things=2 if stays else 1)
 
 
 def _reverse(said: Said) -> Iterator[Wish]:
@@ -284,11 +338,12 @@ def _reverse(said: Said) -> Iterator[Wish]:
         if re.search(r"\b(?:way|direction|clockwise|anti|counter)\b", said.text):
             yield Wish(f"let {said.things[0]} turn the other way round", said.moment)
         else:
-            yield Wish(f"play {said.things[0]} backwards", said.moment)
+            yield Wish(pace(said.whose, "reverse"), said.moment)
 
 
 def _stay(said: Said) -> Iterator[Wish]:
-    yield Wish(f"leave {said.things[0]} open", Moment())
+    if not said.told:
+        yield Wish(f"keep {said.things[0]} open", Moment())
 
 
 _SHARES = (
@@ -313,6 +368,9 @@ def _amount(said: Said) -> Iterator[Wish]:
 
 
 def _open(said: Said) -> Iterator[Wish]:
+    if _LATER.search(said.text) or _EARLIER.search(said.text):
+        yield from _begin(said)
+        return
     yield Wish(f"open {said.things[0]}", said.moment)
 
 
@@ -322,10 +380,12 @@ def _close(said: Said) -> Iterator[Wish]:
 
 def _order(said: Said) -> Iterator[Wish]:
     text = said.text
+    if said.told and said.moment.empty and len(said.things) == 1:
+        yield Wish(pace(said.whose, "begin"), said.moment)
     if len(said.things) == 1 and not said.told:
         for word in ("first", "last"):
             if re.search(rf"\b{word}\b", said.beside):
-                yield Wish(f"let {said.things[0]} start {word}", Moment())
+                yield Wish(f"let {said.things[0]} start {word}", Moment(), holds=word)
     if len(said.things) == 2:
         first, second = said.things
         between = text[text.find(first) + len(first) : text.find(second)]
@@ -353,16 +413,17 @@ def _repeat(said: Said) -> Iterator[Wish]:
 
 
 def _return(said: Said) -> Iterator[Wish]:
-    yield Wish(f"let {said.things[0]} come back", said.moment)
+    yield Wish(pace(said.whose, "return"), said.moment)
 
 
 def _longer(said: Said) -> Iterator[Wish]:
     if said.moment.lasting is None and said.moment.start is None:
-        until = "" if said.moment.stop is not None else " until the end"
-        yield Wish(f"let {said.things[0]} turn{until}", said.moment)
-        yield Wish(f"let {said.things[0]} keep moving{until}", said.moment)
+        yield Wish(pace(said.whose, "go_on"), said.moment)
 
 
+_STATIC = ("recolor", "hide", "remove", "move")  # which the rest of the grammar reads where no time is told
+_PROHIBITED = re.compile(r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b")
+_OTHER_EDITS = re.compile(r"\b(?:delete|remove|erase|add|insert|duplicate|copy|replace|get rid)\b")
 _KINDS: dict[str, Callable[[Said], Iterator[Wish]]] = {
     "recolor": _recolor, "hide": _hide, "remove": _remove, "move": _move, "spin": _spin, "begin": _begin,
     "speed": _speed, "duration": _duration, "pause": _pause, "halt": _halt, "still": _still, "reverse": _reverse,
