@@ -221,7 +221,8 @@ def _moves(expect: dict[str, Any], name: str, effect: _Effect) -> str:
 def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list[Span], effect: _Effect) -> str:
     closes = expect["kind"] == "articulate" and expect.get("angle_deg") == 0
     start = _closes_at(course, spans) if closes else spans[0][0]
-    if expect["kind"] == "spin" and expect.get("start"):
+    moved = expect["kind"] == "path" and bool(_spans(earlier))  # by itself, before it is sent
+    if (expect["kind"] == "spin" or moved) and expect.get("start"):
         start = next((a for a, _ in spans if abs(a - expect["start"]) <= _near(expect)), spans[-1][0])
         if any(a - NEAR <= expect["start"] <= b for a, b in spans):
             start = expect["start"]  # it goes on from another movement

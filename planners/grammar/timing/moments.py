@@ -195,8 +195,10 @@ def _last(moment: Moment, found: re.Match[str]) -> Moment | None:
 
 
 _PHRASES: tuple[tuple[str, Made], ...] = (
-    (rf"(?:for |during |in |over |within )?(?:the )?first (?P<a>{_DURATION}|second)(?! later)", _first),
-    (rf"(?:for |during |in |over |within )?(?:the )?(?:last|final) (?P<a>{_DURATION}|second)", _last),
+    (rf"(?:for |during |in |over |within )?(?:the )?first (?P<a>{_DURATION}|second)(?! later)(?: of (?:the |this )?{_CLIP})?",
+     _first),
+    (rf"(?:for |during |in |over |within )?(?:the )?(?:last|final) (?P<a>{_DURATION}|second)(?: of (?:the |this )?{_CLIP})?",
+     _last),
     (rf"(?:from|starting (?:at|from)) (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
     (rf"(?:in )?between (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
     (rf"(?!an? )(?P<a>{_NUMERIC}|{_DIGITS}) ?{_TO} (?P<b>{_POINT})", _range),

@@ -107,12 +107,13 @@ class TimeReader:
     def supposed(self, cleaned: str) -> tuple[Fields, ...] | None:
         """The operations that an instruction most likely asks for, by the kind of its wish; None if that is not likely
         enough, or if they would leave out anything that it names."""
-        said = with_nouns(_spelled(_tidy(_in_words(cleaned))))
-        readings = [reading for reading in self._readings(said) if not _FRAGMENT.match(reading[0])][:2]
-        for kind in likely(cleaned):
+        said = with_nouns(_spelled(_tidy(_spelt_out(_in_words(cleaned))), _LONG_WORDS))
+        readings = [_with_delay(*reading) for reading in self._readings(said) if not _FRAGMENT.match(reading[0])][:2]
+        for kind, chance in likely(cleaned):
             for rest, moment, happening in readings:
                 told = moment.told or happening is not None
-                for wish in wishes(kind, said_of(rest, self.thing, moment, happening is not None)):
+                text = said_of(rest, self.thing, moment, "" if happening is None else happening.said)
+                for wish in wishes(kind, text, chance):
                     with suppress(Refusal, UserError, ValidationError):
                         if isinstance(wish.command, Command):
                             found = self._made(wish.command, wish.moment, happening)
@@ -256,7 +257,7 @@ class TimeReader:
         topical = mark != "" and [head, rest] != parts and told_of(head) is not None
         if topical and (joined := self._joined([head, rest])) is not None:
             yield joined
-        if (spelled := _spelled(said)) != said and (right := self._whole(spelled)) is not None:
+        if (spelled := _spelled(said, _timely_words())) != said and (right := self._whole(spelled)) is not None:
             yield right
         if (loose := self._loosely(said)) is not None:
             yield loose
@@ -380,6 +381,8 @@ class TimeReader:
             and all(op.get("change") in ("stop", "begin") for op in ops)
         ):  # "stop when it is turning" begins then
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
+        if moment.stop == "end" and all(op.get("change") == "stop" for op in ops):
+            moment = replace(moment, stop=None)
         waits = moment.lasting is not None and all(op.get("change") == "stop" for op in ops)
         if happening is not None and waits and happening.during.part == "until":  # "pause for 1 s before it turns"
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
@@ -463,6 +466,33 @@ _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b"
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
 
 
+def _with_delay(rest: str, moment: Moment, happening: Happening | None) -> tuple[str, Moment, Happening | None]:
+    """A reading with the seconds before what happens as its delay: "close it a second" after it has opened."""
+    if happening is None or not moment.empty or not happening.said.startswith(("after ", "once ")):
+        return rest, moment, happening
+    words = rest.split(" ")
+    for at in range(max(0, len(words) - 4), len(words)):
+        if (delay := moments.seconds_of(" ".join(words[at:]))) is not None:
+            return " ".join(words[:at]), replace(moment, start=delay), happening
+    return rest, moment, happening
+
+
+def _spelt_out(said: str) -> str:
+    """Words with "is" and "has" in full behind names: "the ball 's stopped" has stopped, "the door 's open" is open."""
+
+    def verb(found: re.Match[str]) -> str:
+        return "has" if has_form(found["then"], tuple(SENSES), "past") and found["then"] != "open" else "is"
+
+    return _SHORT_VERB.sub(lambda m: f" {verb(m)} {m['then']}", _FILLER.sub(" ", said))
+
+
+_FILLER = re.compile(r"(?: ,)? (?:uh|um|uhm|er|erm|hmm|well)(?: ,)?(?= )")
+_SHORT_VERB = re.compile(
+    r" 's (?P<then>[a-z]+(?:ing|ed)|fully|completely|all|just|already|been|done|open|closed|shut|out|in|gone|hit|left|"
+    r"fallen|come|begun|slid|stopped|reached|way|too|so|not)\b"
+)
+
+
 def _in_words(cleaned: str) -> str:
     """The words and marks of an instruction, with spaces between."""
     ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", cleaned)
@@ -525,9 +555,8 @@ def _about(part: str) -> str | None:
     return None if topic is None else re.sub(r"^(?:this|that|these|those) ", "the ", topic)
 
 
-def _spelled(said: str) -> str:
-    """The words with those that are none as the word of time or motion from which they differ by a slip."""
-    known = _timely_words()
+def _spelled(said: str, known: frozenset[str]) -> str:
+    """The words with those that are none as the known word from which they differ by a slip."""
     return " ".join(w if w in known or len(w) < 3 or not w.isalpha() or is_word(w) else best_slip(w, known) or w
                     for w in said.split(" "))  # fmt: skip
 
@@ -543,6 +572,9 @@ _SPELLED_WORDS = bag(
     "completely fully entirely the and should must while until after before between during when once then than second seconds twice times half "
     "speed faster slower later earlier backwards slowly quickly everything whole again only from with into"
 )
+
+
+_LONG_WORDS = frozenset(word for word in _SPELLED_WORDS if len(word) > 4)
 
 
 def _is_verb(word: str) -> bool:

@@ -76,7 +76,7 @@ RULES: Rules = (
     (rf"\b(?P<v>keep|keeps|go on|goes on|continue|carry on|stay) (?P<x>.*?{ING}) to the (?:very )?end\b",
      r"\g<v> \g<x> until the end"),
     (r"\b(?:spread|stretched|drawn|spread out|drawn out|stretched out) over (?=[a-z0-9])", "over "),
-    (r"\b(?:at|in) (?:the|his|her|its) (?:corner|turning point|turning|turn|bend|curve)\b", "when it turns"),
+    (r"\b(?:at (?:the|his|her|its) corner|(?:at|in) (?:the|his|her|its) (?:turning point|turning|turn|bend|curve))\b", "when it turns"),
     (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:goes|carries|moves|walks|rolls|continues|proceeds|heads|"
      r"drives) ?(?:on|onwards?|off)?(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
     (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:(?:must|should|has to|shall|can) )?(?:stays?|remains?|keeps?|is "
@@ -134,7 +134,7 @@ RULES: Rules = (
      r"(?: mark)?$", r"start the \g<x> at \g<d>"),
     (rf"^start of (?P<x>[a-z ]+?)(?: :)?(?: to| at)? (?P<d>{DURATION})$", r"start the \g<x> at \g<d>"),
     (r"^start the the ", "start the "),
-    (rf"\blasts? (?:only |just |for )*(?P<d>{DURATION})$", r"take \g<d>"),
+    (rf"\b(?<!the )(?<!final )lasts? (?:only |just |for )*(?P<d>{DURATION})$", r"take \g<d>"),
     (rf"^(?P<x>.+?) (?:be|being|to be) the (?P<r>last|first)(?: one| thing| of them)? to (?P<v>{PLAIN})\b(?P<y>.*)$",
      lambda m: f"let {unwished(m['x'])} {m['v']} {m['r']}{m['y']}"),
     (r"^(?P<before>.+?)(?: (?P<how>more (?:gently|slowly)|slower|faster))?(?: ,)? (?:beginning|starting|setting off)"

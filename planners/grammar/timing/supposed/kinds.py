@@ -65,14 +65,14 @@ def kinds_of(said: str) -> list[tuple[str, float]]:
     return [(labels[i], float(chances[i])) for i in np.argsort(-chances, kind="stable")]
 
 
-def likely(said: str) -> list[str]:
-    """The kinds of wish that an instruction may be of; none if it is likelier none of them."""
-    found = list[str]()
+def likely(said: str) -> list[tuple[str, float]]:
+    """The kinds of wish that an instruction may be of, with their probabilities; none if it is likelier none of them."""
+    found = list[tuple[str, float]]()
     for kind, chance in kinds_of(said)[:MOST]:
         if kind == "none":
             break
         if chance >= LEAST:
-            found.append(kind)
+            found.append((kind, chance))
     return found
 
 

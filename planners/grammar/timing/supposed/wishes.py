@@ -23,7 +23,7 @@ from ..moments import DURATION, Moment, seconds_of
 _NO_THINGS = EVERYWHERE | bag(
     "second seconds time moment start end beginning film clip video shot movie animation way bit speed motion movement "
     "turn turns circle frame place spot direction half rest minute mood eyes eye sec point stop pace work job whole "
-    "look view scene thing things please once opening walk fall roll ride trip go times sequence effect slow fast "
+    "look view scene thing things same part middle air sky children kids guests audience viewers boss client baby boy girl son daughter camera screen please once opening walk fall roll ride trip go times sequence effect slow fast "
     "light dark red blue green yellow white black purple pink orange brown gray grey silver gold"
 )
 _ALL = re.compile(
@@ -32,6 +32,7 @@ _ALL = re.compile(
 )
 _BETWEEN = bag("to at on in into onto by of for with from and or but then so as until while when once after before")
 _LONGEST_NAME = 5
+SURE = 0.85  # probability from which a change without a time is supposed: others read these
 _CONJUNCTION = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
     r"except|unless|if)\b"
@@ -113,9 +114,16 @@ def _is_name(words: Sequence[str]) -> bool:
     return last not in _NO_THINGS and last not in NUMBERS and (is_known(last) or (words[0] == "the" and 1 < len(words) < 4))
 
 
+_PRONOUN = re.compile(r"\b(?:it|he|she|him|her|they|them)\b")
 _AS_BEFORE = re.compile(
     r"(?: ,)? (?:and |then |but )*(?:(?:it |make it |let it |turn it |go |goes |back |should |is |to )*)(?:[a-z]+ )?"
     r"(?:again|back|afterwards?|after that|as before|like before|as it was|normal(?: again)?)(?: (?:afterwards?|then))?$"
+)
+_IDLE = (
+    re.compile(r" , (?:and |but )?(?:not|instead of|rather than) (?:at |to |by )?(?:the )?[a-z0-9.]+(?: [a-z]+)?$"),
+    re.compile(r" , (?:and |with )?(?:no|not|without) [a-z]+ing\b(?: (?:at|after|in|it|down|up|again) ?[a-z0-9.]*)*$"),
+    re.compile(r" , (?:so )?(?:i|we) (?:just )?(?:want|like|love|need|would like|would love) to (?:see|watch|look|have)\b.*$"),
+    re.compile(r"(?<= )(?:say|uh|um|er|erm|well|like) ,|(?: ,)? (?:say|uh|um|er|erm) (?=(?:from|at|for|until|between)\b)"),
 )
 _ONE = re.compile(r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b")
 
@@ -131,18 +139,24 @@ def with_nouns(text: str) -> str:
     return _ONE.sub(noun, text)
 
 
-def said_of(text: str, thing: Thing, moment: Moment, event: bool) -> Said:
-    """What words say beside their time."""
+def said_of(text: str, thing: Thing, moment: Moment, clause: str) -> Said:
+    """What words say beside their time, with the clause of that time if there is one: "once the fan stops, hide it"."""
     text = _ALL.sub("everything that moves", text)
-    if event or moment.told:
+    for idle in _IDLE:
+        text = " ".join(idle.sub(" ", text).split())
+    if clause or moment.told:
         text = _AS_BEFORE.sub("", text)
-    return Said(text, named(text, thing), moment, event, thing)
+    things = named(text, thing)
+    if not things and _PRONOUN.search(text):
+        things = named(clause, thing)[:1]
+    return Said(text, things, moment, clause != "", thing)
 
 
-def wishes(kind: str, said: Said) -> Iterator[Wish]:
+def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
     """The plain commands of a kind that an instruction may stand for, the likeliest first."""
     made = _KINDS.get(kind)
-    if made is None or not said.things or (kind in _STATIC and not said.told and not said.moment.always):
+    timeless = not said.told and not said.moment.always
+    if made is None or not said.things or (kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text))):
         return
     if (_PROHIBITED if kind in _STATIC else _OTHER_EDITS).search(said.text):
         return
@@ -194,7 +208,7 @@ def _hide(said: Said) -> Iterator[Wish]:
 
 
 def _remove(said: Said) -> Iterator[Wish]:
-    if not said.told and said.moment.always:
+    if not said.told:
         yield Wish(Command(kind="look", text=f"remove {said.things[0]}"), said.moment)
 
 
@@ -257,6 +271,8 @@ def _begin(said: Said) -> Iterator[Wish]:
 
 
 _FACTORS = (
+    (re.compile(r"\bhalf (?:of )?(?:the|its|that) time\b"), 2.0),
+    (re.compile(r"\b(?:twice|double) (?:of )?(?:the|its|that) time\b|\btwice as long\b"), 0.5),
     (re.compile(r"\b(?:twice|double[ds]?|two times)\b"), 2.0),
     (re.compile(r"\b(?:three times|triple|thrice)\b"), 3.0),
     (re.compile(r"\bfour times\b"), 4.0),
@@ -322,7 +338,9 @@ def _pause(said: Said) -> Iterator[Wish]:
 
 
 def _halt(said: Said) -> Iterator[Wish]:
-    if said.told and said.moment.lasting is None and said.moment.stop is None:
+    moment = said.moment
+    waits = moment.start is None and moment.stop is not None  # it moves afterwards
+    if said.told and moment.lasting is None and (moment.stop in (None, "end") or waits):
         yield Wish(pace(said.whose, "stop"), _kept(said))
 
 
@@ -342,10 +360,16 @@ def _reverse(said: Said) -> Iterator[Wish]:
 
 
 def _stay(said: Said) -> Iterator[Wish]:
-    if not said.told:
+    if not said.told and _RESTS.search(said.text):
+        yield from _still(said)
+    elif not said.told:
         yield Wish(f"keep {said.things[0]} open", Moment())
 
 
+_RESTS = re.compile(
+    r"\b(?:not|never|no) (?:ever )?(?:to )?(?:fall|move|drop|roll|walk|turn|go|budge|spin)|\bstays? (?:put|where)\b|"
+    r"\bsits? still\b"
+)
 _SHARES = (
     (re.compile(r"\b(?:half ?way|half (?:as|the|that|of)|only half|half open|half)\b"), "halfway", "half the way"),
     (re.compile(r"\b(?:a|one) third\b"), "a third of the way", "a third of the way"),
@@ -398,8 +422,11 @@ def _order(said: Said) -> Iterator[Wish]:
 def _together(said: Said) -> Iterator[Wish]:
     if len(said.things) > 1:
         yield Wish(f"let {' and '.join(said.things)} start at the same time", Moment(), things=len(said.things))
-    else:
+    elif _SEVERAL.search(said.things[0]):
         yield Wish(f"let {said.things[0]} start at the same time", said.moment)
+
+
+_SEVERAL = re.compile(r"^(?:all|both|everything|these|those|the (?:two|three|four))\b|[^s]s$")
 
 
 def _repeat(said: Said) -> Iterator[Wish]:
@@ -422,6 +449,7 @@ def _longer(said: Said) -> Iterator[Wish]:
 
 
 _STATIC = ("recolor", "hide", "remove", "move")  # which the rest of the grammar reads where no time is told
+_ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # which others read
 _PROHIBITED = re.compile(r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b")
 _OTHER_EDITS = re.compile(r"\b(?:delete|remove|erase|add|insert|duplicate|copy|replace|get rid)\b")
 _KINDS: dict[str, Callable[[Said], Iterator[Wish]]] = {
