@@ -24,7 +24,16 @@ STATES = (
     "closest",
     *(n for n in names("query") if named(n).score is not None),
 )
-_ALONE = ("moving", "still", "falling", "turning", "open", "opening", "closing", "fully_open")  # states that say nothing of another thing
+_ALONE = (
+    "moving",
+    "still",
+    "falling",
+    "turning",
+    "open",
+    "opening",
+    "closing",
+    "fully_open",
+)  # states that say nothing of another thing
 _STATED = {
     "moving": "moves",
     "still": "stands still",

@@ -172,7 +172,11 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
 
 
 def _timed(reader: TimeReader, cleaned: str, previous: str | None) -> _Outcome:
-    """As `_understand`, of an instruction that may be about time or motion, by the words that are known. Raises Refusal."""
+    """As `_understand`, of an instruction that may be about time or motion, by rules.
+
+    Raises:
+        Refusal: as `_understand`.
+    """
     if (timed := reader.read(cleaned)) is not None:
         return _of_time(timed)
     outcome = _timeless(cleaned, previous)

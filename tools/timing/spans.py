@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.query.query import Query

@@ -121,9 +121,9 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     only_place = manner.only("goal", "at", "whom")
     if sense == "start" and manner.doing in ("open", "close") and manner.only("doing"):
         return ("opening" if manner.doing == "open" else "closing"), _BEGINS
-    if sense == "start" and manner.doing == "move" and manner.state in ("open", "closed"):
-        if manner.only("doing", "state", "back"):  # "it starts sliding back in"
-            return ("opening" if manner.state == "open" else "closing"), _BEGINS
+    slides = manner.doing == "move" and manner.state in ("open", "closed") and manner.only("doing", "state", "back")
+    if sense == "start" and slides:  # "it starts sliding back in"
+        return ("opening" if manner.state == "open" else "closing"), _BEGINS
     if sense == "start" and manner.only("doing"):
         return ("falling" if manner.doing == "fall" else "moving"), _BEGINS
     if sense in ("stop", "arrive", "close") and manner.only("doing", "state") and (sense != "close" or ended):

@@ -194,11 +194,10 @@ def _last(moment: Moment, found: re.Match[str]) -> Moment | None:
     return None if not value else replace(moment, start=-value, stop="end")
 
 
+_OVER, _OF_CLIP = r"(?:for |during |in |over |within )?(?:the )?", rf"(?: of (?:the |this )?{_CLIP})?"
 _PHRASES: tuple[tuple[str, Made], ...] = (
-    (rf"(?:for |during |in |over |within )?(?:the )?first (?P<a>{_DURATION}|second)(?! later)(?: of (?:the |this )?{_CLIP})?",
-     _first),
-    (rf"(?:for |during |in |over |within )?(?:the )?(?:last|final) (?P<a>{_DURATION}|second)(?: of (?:the |this )?{_CLIP})?",
-     _last),
+    (rf"{_OVER}first (?P<a>{_DURATION}|second)(?! later){_OF_CLIP}", _first),
+    (rf"{_OVER}(?:last|final) (?P<a>{_DURATION}|second){_OF_CLIP}", _last),
     (rf"(?:from|starting (?:at|from)) (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
     (rf"(?:in )?between (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
     (rf"(?!an? )(?P<a>{_NUMERIC}|{_DIGITS}) ?{_TO} (?P<b>{_POINT})", _range),

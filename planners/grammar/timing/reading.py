@@ -40,7 +40,9 @@ from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
 from .supposed.kinds import likely
-from .supposed.wishes import said_of, wishes, with_nouns
+from .supposed.names import with_nouns
+from .supposed.said import said_of
+from .supposed.wishes import wishes
 from .verbs import SENSES, any_of, forms, has_form
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
@@ -569,11 +571,10 @@ def _timely_words() -> frozenset[str]:
 
 
 _SPELLED_WORDS = bag(
-    "completely fully entirely the and should must while until after before between during when once then than second seconds twice times half "
-    "speed faster slower later earlier backwards slowly quickly everything whole again only from with into"
+    "the and should must while until after before between during when once then than second seconds twice times half "
+    "speed faster slower later earlier backwards slowly quickly everything whole again only from with into "
+    "completely fully entirely"
 )
-
-
 _LONG_WORDS = frozenset(word for word in _SPELLED_WORDS if len(word) > 4)
 
 

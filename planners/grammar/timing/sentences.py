@@ -97,7 +97,9 @@ _NOT_WANTED = re.compile(
 )
 _HOW_IT_IS = re.compile(r"^(?:it|he|she|they|the [a-z]+(?: [a-z]+)?) (?:is|are|stands?|stays?) ")
 _LAST_JOINTS = (" , and then ", " , but ", " , and ", " , then ", " and then ", " but ", " while ", " , ")
-_LED = re.compile(r"^(?:when|whenever|once|as soon as|after|while|until|till|before|by the time|the moment)\b")  # a time
+_LED = re.compile(
+    r"^(?:when|whenever|once|as soon as|after|while|until|till|before|by the time|the moment)\b"
+)  # a time
 _OPENS = bag("when how what at with to in let keep")  # which begin a time or an order, and no remark
 _ITS_TIME = re.compile(rf"\bits (?:full|whole|usual|normal|entire) {DURATION}")
 _JOINT = re.compile(r" ,(?: (?:and|but))? | (?:and|but) ")

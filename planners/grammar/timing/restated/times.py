@@ -76,7 +76,8 @@ RULES: Rules = (
     (rf"\b(?P<v>keep|keeps|go on|goes on|continue|carry on|stay) (?P<x>.*?{ING}) to the (?:very )?end\b",
      r"\g<v> \g<x> until the end"),
     (r"\b(?:spread|stretched|drawn|spread out|drawn out|stretched out) over (?=[a-z0-9])", "over "),
-    (r"\b(?:at (?:the|his|her|its) corner|(?:at|in) (?:the|his|her|its) (?:turning point|turning|turn|bend|curve))\b", "when it turns"),
+    (r"\b(?:at (?:the|his|her|its) corner|(?:at|in) (?:the|his|her|its) (?:turning point|turning|turn|bend|curve))\b",
+     "when it turns"),
     (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:goes|carries|moves|walks|rolls|continues|proceeds|heads|"
      r"drives) ?(?:on|onwards?|off)?(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
     (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:(?:must|should|has to|shall|can) )?(?:stays?|remains?|keeps?|is "

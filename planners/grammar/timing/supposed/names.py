@@ -1,0 +1,82 @@
+"""Names of things, and colours, in the words of an instruction that no rule has divided."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+
+from .....gaussians import color
+from .....gaussians import late_re as re
+from ...tagging.words import bag
+from ...vocabulary.nouns import EVERYWHERE, is_known
+from ...vocabulary.quantities import NUMBERS
+from ..manner import Thing
+
+MOVING = "everything that moves"
+_MOVING = re.compile(
+    r"\b(?:everything|all|whatever|anything)(?: (?:that|which))?(?: (?:is|are))? (?:moves?|moving)\b"
+    r"(?: (?:in|on) (?:the|this) (?:shot|scene|film|clip|video|picture))?|\beverything\b(?! else)"
+)
+# Times, people, and words that stand behind "the" and name nothing that can be edited.
+_NO_THINGS = EVERYWHERE | bag(
+    "second seconds sec time times moment minute start beginning end film clip video shot movie animation sequence "
+    "way bit speed motion movement turn turns circle frame place spot direction half rest mood eyes eye point stop "
+    "pace work job whole look view scene thing things same part middle air sky effect go walk fall roll ride trip "
+    "opening once please children kids guests audience viewers boss client baby boy girl son daughter camera screen "
+    "slow fast light dark red blue green yellow white black purple pink orange brown gray grey silver gold"
+)
+_BETWEEN = bag("to at on in into onto by of for with from and or but then so as until while when once after before")
+_LONGEST = 5  # words of a name
+_UNKNOWN = 3  # words of a name with "the" whose noun is not known
+_ONE = re.compile(r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b")
+
+
+@cache
+def hues() -> frozenset[str]:
+    """Colours of one word."""
+    return frozenset(name for name in color.names() if " " not in name)
+
+
+def with_moving(text: str) -> str:
+    """A text with one name for all that moves: "whatever moves in this shot"."""
+    return _MOVING.sub(MOVING, text)
+
+
+def with_nouns(text: str) -> str:
+    """A text with the noun that "one" stands for: "the middle drawer ... the top one" names the top drawer."""
+
+    def noun(found: re.Match[str]) -> str:
+        before, after = (
+            [word for word in part.split() if is_known(word) and word not in _NO_THINGS]
+            for part in (text[: found.start()], text[found.end() :])
+        )
+        return f"{found['how']} {(before[-1:] or after[:1] or ['one'])[0]}"
+
+    return _ONE.sub(noun, text)
+
+
+def named(text: str, thing: Thing) -> tuple[str, ...]:
+    """The names of things in a text, in their order, each once."""
+    words, found, at = text.split(), list[str](), 0
+    while at < len(words):
+        for end in range(min(len(words), at + _LONGEST), at, -1):
+            phrase = " ".join(words[at:end])
+            if _is_name(words[at:end]) and thing(phrase) is not None:
+                found.append(phrase)
+                at = end
+                break
+        else:
+            at += 1
+    return tuple(dict.fromkeys(found))
+
+
+def _is_name(words: Sequence[str]) -> bool:
+    """Whether words may be the name of a thing: a noun that is known at their end, or "the" before a few."""
+    last = words[-1]
+    if " ".join(words) == MOVING:
+        return True
+    if not all(word.isalpha() or word == "'s" for word in words) or set(words) & _BETWEEN:
+        return False
+    if last in _NO_THINGS or last in NUMBERS:
+        return False
+    return is_known(last) or (words[0] == "the" and 1 < len(words) <= _UNKNOWN)

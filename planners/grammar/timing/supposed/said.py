@@ -1,0 +1,83 @@
+"""What an instruction says beside its time, without what asks for nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .....gaussians import late_re as re
+from .....gaussians.language.query.query import Query
+from ..manner import Thing
+from ..moments import Moment
+from .names import named, with_moving
+
+_PRONOUN = re.compile(r"\b(?:it|he|she|him|her|they|them)\b")
+_AS_BEFORE = re.compile(  # ", then red again afterwards"
+    r"(?: ,)? (?:and |then |but )*(?:(?:it |make it |let it |turn it |go |goes |back |should |is |to )*)(?:[a-z]+ )?"
+    r"(?:again|back|afterwards?|after that|as before|like before|as it was|normal(?: again)?)"
+    r"(?: (?:afterwards?|then))?$"
+)
+_IDLE = tuple(
+    re.compile(pattern)
+    for pattern in (
+        r" , (?:and |but )?(?:not|instead of|rather than) (?:at |to |by )?(?:the )?[a-z0-9.]+(?: [a-z]+)?$",
+        r" , (?:and |with )?(?:no|not|without) [a-z]+ing\b(?: (?:at|after|in|it|down|up|again) ?[a-z0-9.]*)*$",
+        r" , (?:so )?(?:i|we) (?:just )?(?:want|like|love|need|would like|would love) to (?:see|watch|look|have)\b.*$",
+        r"(?<= )(?:say|well|like) ,|(?: ,)? say (?=(?:from|at|for|until|between)\b)",
+    )
+)
+
+
+@dataclass(frozen=True)
+class Said:
+    """What an instruction says beside its time.
+
+    Attributes:
+        text: its words.
+        things: the names in it, as they stand.
+        moment: its time in numbers.
+        event: whether a time is told by what happens.
+        thing: reads a name.
+    """
+
+    text: str
+    things: tuple[str, ...]
+    moment: Moment
+    event: bool
+    thing: Thing
+
+    @property
+    def told(self) -> bool:
+        """Whether any time is told."""
+        return self.event or self.moment.told
+
+    @property
+    def whose(self) -> Query:
+        """What the first name means."""
+        return self.thing(self.things[0]) or Query(last=True)
+
+    @property
+    def beside(self) -> str:
+        """The words, with a bar for each name."""
+        text = self.text
+        for name in self.things:
+            text = re.sub(rf"(?<!\S){re.escape(name)}(?!\S)", "|", text)
+        return text
+
+
+def said_of(text: str, thing: Thing, moment: Moment, clause: str) -> Said:
+    """What words say beside their time.
+
+    Args:
+        thing: reads a name.
+        moment: the time in numbers.
+        clause: the words that tell what happens then, if there are any; "it" may be what they are about.
+    """
+    text = with_moving(text)
+    for idle in _IDLE:
+        text = " ".join(idle.sub(" ", text).split())
+    if clause or moment.told:
+        text = _AS_BEFORE.sub("", text)
+    things = named(text, thing)
+    if not things and _PRONOUN.search(text):
+        things = named(clause, thing)[:1]
+    return Said(text, things, moment, clause != "", thing)
