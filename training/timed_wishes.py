@@ -62,7 +62,7 @@ def learned(known: Sequence[Sentence]) -> Model:
         value.backward()  # type: ignore[no-untyped-call]
         return value
 
-    optimizer.step(loss)  # type: ignore[arg-type]
+    optimizer.step(loss)  # type: ignore[no-untyped-call]
     return Model(labels, names, weights.detach().numpy().astype(np.float32))
 
 
@@ -82,12 +82,9 @@ def main() -> None:
     print(f"{len(known)} sentences; of a writer who was left out {right_of_unseen(known):.3f} are told right")
     model = learned(known)
     step = float(np.abs(model.weights).max()) / LEVELS
-    texts = {
-        key: np.frombuffer("\n".join(said).encode(), np.uint8)
-        for key, said in (("names", model.names), ("labels", model.labels))
-    }
+    names, labels = (np.frombuffer("\n".join(said).encode(), np.uint8) for said in (model.names, model.labels))
     whole = np.round(model.weights / step).astype(np.int8)
-    np.savez_compressed(FOLDER / "weights.npz", weights=whole, step=np.float32(step), **texts)
+    np.savez_compressed(FOLDER / "weights.npz", weights=whole, step=np.float32(step), names=names, labels=labels)
 
 
 if __name__ == "__main__":

@@ -166,8 +166,8 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         if refusal.firm or refusal.verdict == "unsafe" or (supposed := reader.supposed(cleaned)) is None:
             raise
         return _of_time(supposed)
-    if not _has_known_names(outcome.ops) and (supposed := reader.supposed(cleaned)) and _has_known_names(supposed):
-        return _of_time(supposed)  # "stop the ball dead at 2 s" is not about a dead ball
+    if not _names_things(outcome.ops, previous) and (supposed := reader.supposed(cleaned)):
+        return _of_time(supposed) if _names_things(supposed, previous) else outcome
     return outcome
 
 
@@ -185,9 +185,11 @@ def _timed(reader: TimeReader, cleaned: str, previous: str | None) -> _Outcome:
     return outcome
 
 
-def _has_known_names(ops: Sequence[Fields]) -> bool:
-    """Whether every name in operations is made of known nouns."""
-    return all(_is_known_name(query.text) for op in ops for query in _targets(op))
+def _names_things(ops: Sequence[Fields], previous: str | None) -> bool:
+    """Whether every name in operations is made of known nouns, and "it" can mean something: "stop the ball dead at 2 s"
+    is not about a dead ball."""
+    before = previous is not None or (bool(ops) and not any(query.last for query in _targets(ops[0])))
+    return before and all(_is_known_name(query.text) for op in ops for query in _targets(op))
 
 
 def _operations(cleaned: str) -> Sequence[Fields]:

@@ -196,7 +196,8 @@ def _snapped(time: float, edges: list[float]) -> float:
 
 
 def _own(course: Course, state: str, unit: float) -> list[Span]:
-    """When a thing turns about the vertical, or is away from where it is at the start."""
+    """When a thing turns about the vertical, or is away from where it is at the start, or goes away or comes back."""
+    from ...gaussians.motion.events import movements
     from ...gaussians.motion.holding import spans
 
     times = course.grid()
@@ -208,9 +209,9 @@ def _own(course: Course, state: str, unit: float) -> list[Span]:
 
         def going(t: NDArray[np.float64]) -> NDArray[np.float64]:
             before, after = (np.linalg.norm(course.centers(t + d) - first, axis=1) for d in (-_SOON, _SOON))
-            return sign * (after - before) / (2 * _SOON)
+            return np.asarray(sign * (after - before) / (2 * _SOON))
 
-        return spans(going, times, _AWAY * unit)
+        return spans(going, times, _AWAY * unit) or movements(course, unit)  # what begins open closes as it moves
     if state == "fully_open":
         far = np.linalg.norm(course.centers(times) - first, axis=1)
         if float(far.max()) < _AWAY * unit:

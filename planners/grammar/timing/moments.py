@@ -191,7 +191,7 @@ def _first(moment: Moment, found: re.Match[str]) -> Moment | None:
 
 def _last(moment: Moment, found: re.Match[str]) -> Moment | None:
     value = _value(found["a"])
-    return None if not value else replace(moment, start=-value, stop="end")
+    return None if not value else replace(moment, start=-value)
 
 
 _OVER, _OF_CLIP = r"(?:for |during |in |over |within )?(?:the )?", rf"(?: of (?:the |this )?{_CLIP})?"

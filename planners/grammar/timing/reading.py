@@ -383,8 +383,6 @@ class TimeReader:
             and all(op.get("change") in ("stop", "begin") for op in ops)
         ):  # "stop when it is turning" begins then
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
-        if moment.stop == "end" and all(op.get("change") == "stop" for op in ops):
-            moment = replace(moment, stop=None)
         waits = moment.lasting is not None and all(op.get("change") == "stop" for op in ops)
         if happening is not None and waits and happening.during.part == "until":  # "pause for 1 s before it turns"
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
@@ -787,6 +785,8 @@ def _when(moment: Moment, during: During | None, kind: str, op: Fields) -> When 
     elif lasting is None and moment.stop is None:
         lasting = SLOW if moment.slowly else BRIEF if moment.quickly and kind == "path" else None
     stop: End | None = None if lasting is not None else moment.stop
+    if kind == "path" and isinstance(start, float) and start < 0 and lasting is None and stop is None:
+        stop = "end"  # "in the last two seconds" is there at the end
     if kind == "path" and start is None and stop is None and lasting is None and during is None:
         return When(stop="end" if moment.always else None)
     if start is None and stop is None and lasting is None and during is None:

@@ -377,3 +377,28 @@ def test_a_warp_is_undone_by_its_inverse() -> None:
     warp = Warp((0.0, 1.0, 3.0), (0.0, 2.0, 3.0), 1.0, 0.5)
     for old in (-1.0, 0.5, 2.5, 4.0):
         assert warp(warp.when(np.array([old]))) == pytest.approx(old)
+
+
+@pytest.mark.parametrize(
+    ("state", "start", "stop"), [("opening", 0.5, 1.0), ("closing", 2.0, 3.0), ("moving", 0.5, 3.0)]
+)
+def test_what_goes_away_opens_and_what_comes_back_closes(
+    corner: Scene, context: Context, state: str, start: float, stop: float
+) -> None:
+    """The chair slides away from .5 to 1 s and back from 2 to 3 s, as a drawer does."""
+    ids = corner.cloud.ids[corner.cloud.group == CHAIR].numpy()
+    track = Track.slide(ids, (0.5, 1.0, 2.0, 3.0), (0.0, 0.4, 0.4, 0.0), (1.0, 0.0, 0.0))
+    scene = corner.replace(motion=Motion((track,), (), (), 0.0, 4.0))
+    during = {"state": state, "of": A_CHAIR}
+    data = {"op": "recolor", "target": {"groups": [VASE]}, "color": "red", "when": {"during": during}}
+    made = done(scene, data, context).scene
+    red = {t: bool(len(differs(scene, made, t))) for t in (0.4, 0.6, 0.9, 1.5, 2.1, 2.9, 3.1)}
+    assert all(red[t] == (start < t < stop) for t in red if state != "moving" or t != 1.5)
+
+
+def test_what_begins_open_closes_as_it_moves(moving: Scene, context: Context) -> None:
+    """A chair that only moves away may be a gate that stood open: then it closes while it moves."""
+    during = {"state": "closing", "of": A_CHAIR, "part": "after"}
+    data = {"op": "recolor", "target": {"groups": [VASE]}, "color": "red", "when": {"during": during}}
+    made = done(moving, data, context).scene
+    assert not len(differs(moving, made, 2.9)) and differs(moving, made, 3.1).tolist() == [VASE]

@@ -53,7 +53,7 @@ class Model:
 def likely(said: str) -> list[tuple[str, float]]:
     """The kinds of wish that an instruction may be of, with probabilities; none if it is likelier no such wish."""
     found = list[tuple[str, float]]()
-    for kind, chance in _model().kinds_of(said)[:MOST]:
+    for kind, chance in stored().kinds_of(said)[:MOST]:
         if kind == NO_WISH:
             break
         if chance >= LEAST:
@@ -86,7 +86,7 @@ def _is_part_of_name(word: str, then: str) -> bool:
 
 
 @cache
-def _model() -> Model:
+def stored() -> Model:
     """The model in use."""
     with np.load(FOLDER / "weights.npz", allow_pickle=False) as file:
         names, labels = (bytes(file[key]).decode().split("\n") for key in ("names", "labels"))

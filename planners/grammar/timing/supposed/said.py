@@ -36,6 +36,7 @@ class Said:
         things: the names in it, as they stand.
         moment: its time in numbers.
         event: whether a time is told by what happens.
+        as_before: whether it told, too, that things are then as before.
         thing: reads a name.
     """
 
@@ -43,6 +44,7 @@ class Said:
     things: tuple[str, ...]
     moment: Moment
     event: bool
+    as_before: bool
     thing: Thing
 
     @property
@@ -75,9 +77,10 @@ def said_of(text: str, thing: Thing, moment: Moment, clause: str) -> Said:
     text = with_moving(text)
     for idle in _IDLE:
         text = " ".join(idle.sub(" ", text).split())
+    whole = text
     if clause or moment.told:
         text = _AS_BEFORE.sub("", text)
     things = named(text, thing)
     if not things and _PRONOUN.search(text):
         things = named(clause, thing)[:1]
-    return Said(text, things, moment, clause != "", thing)
+    return Said(text, things, moment, clause != "", text != whole, thing)

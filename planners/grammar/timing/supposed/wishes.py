@@ -11,10 +11,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from .....gaussians import late_re as re
+from ...tagging.spelling import is_word
 from ...vocabulary.quantities import NUMBERS
 from ..asides import HUES
 from ..command import Command, pace
 from ..moments import DURATION, Moment, seconds_of
+from ..verbs import SENSES, has_form
 from .names import hues
 from .said import Said
 
@@ -24,10 +26,12 @@ _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|rec
 _PROHIBITED = re.compile(
     r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b"
 )
-_OTHER_EDITS = re.compile(r"\b(?:delete|remove|erase|add|insert|duplicate|copy|replace|get rid)\b")
+_OTHER_EDITS = re.compile(r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade)\b")
+_REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _TIMES_LEFT = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
-    rf"except|unless|if)\b|\b(?:once|after|before|as)\b (?=(?:the|a|my|it|he|she|they|that|this)\b)|{DURATION}"
+    rf"except|unless|if)\b|\bat the (?:very )?(?:end|start|beginning)\b|\b(?:once|after|before|as)\b "
+    rf"(?=(?:the|a|my|it|he|she|they|that|this)\b)|{DURATION}"
 )
 _COMPLAINED = re.compile(rf"\btoo (?:{HUES})\b")
 
@@ -55,24 +59,56 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
         chance: the probability of the kind.
     """
     made = _KINDS.get(kind)
-    if made is None or not said.things:
-        return
+    if made is None or not said.things or not is_word(said.text.split(" ")[0]):
+        return  # a verb that is no word may ask for anything
     timeless = not said.told and not said.moment.always
     if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
         return
-    if (_PROHIBITED if kind in _STATIC else _OTHER_EDITS).search(said.text):
+    if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text) or _OTHER_EDITS.search(said.text):
         return
     for wish in made(said):
-        if _is_whole(wish, said):
+        if _is_whole(wish, said) and _says_no_more(kind, wish, said):
             yield wish
 
 
 def _is_whole(wish: Wish, said: Said) -> bool:
     """Whether nothing that the instruction names is left out."""
-    left = _COMPLAINED.sub(" ", said.beside.replace(wish.holds, " ") if wish.holds else said.beside)
+    left = _left(wish, said)
     if len(said.things) > wish.things or _TIMES_LEFT.search(left):
         return False
     return not any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in hues() for w in left.split())
+
+
+def _left(wish: Wish, said: Said) -> str:
+    """The words that do not stand in a command."""
+    return _COMPLAINED.sub(" ", said.beside.replace(wish.holds, " ") if wish.holds else said.beside)
+
+
+_TELLING = {  # words that say something by themselves, and the kinds of wishes that say it
+    r"slow|slower|slowly|fast|faster|quick|quicker|quickly|twice|double|half|speed": "speed duration spin repeat "
+    "amount",
+    r"far|farther|further|wide|wider": "amount",
+    r"earlier|sooner|later": "begin open order",
+    r"backwards?|reverse|reversed": "reverse return",
+    r"back": "return reverse close stay still hide order repeat",
+    r"again": "repeat return close open stay still halt hide recolor reverse",
+    r"invisible|hidden|disappears?|vanish|vanishes|gone": "hide remove",
+    r"shows?|shown|reveals?|visible": "hide",
+    r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
+    r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order",
+}
+_SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
+_WISHED = re.compile(r" , (?:and |but )?(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b")
+_MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
+
+
+def _says_no_more(kind: str, wish: Wish, said: Said) -> bool:
+    """Whether no word that a command leaves out tells of another wish: "one second earlier, and slower"."""
+    left = _left(wish, said)
+    if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY) or _WISHED.search(said.text):
+        return False
+    manner = _MANNER.search(left)
+    return manner is None or has_form(manner["verb"], tuple(SENSES), "plain", "s")
 
 
 def _durations(text: str) -> Iterator[tuple[float, str]]:
@@ -111,7 +147,8 @@ def _recolor(said: Said) -> Iterator[Wish]:
 
 def _hide(said: Said) -> Iterator[Wish]:
     seen = _APPEARS.search(said.text) is not None and _NOT.search(said.text) is None
-    yield Wish(f"{'show' if seen else 'hide'} {said.things[0]}", said.moment)
+    if not (seen and said.as_before):  # "show it for a second, then bring it back" contradicts itself
+        yield Wish(f"{'show' if seen else 'hide'} {said.things[0]}", said.moment)
 
 
 def _remove(said: Said) -> Iterator[Wish]:
@@ -198,6 +235,12 @@ _SLOWER = re.compile(r"\b(?:slow|slower|slowly|half|calm|calmer|gentle|gentler|l
 _FASTER = re.compile(r"\b(?:fast|faster|quick|quicker|quickly|hurry|speed .*up|rush|snappier|brisk|brisker|zip)\b")
 
 
+_TAKES = re.compile(
+    r"\b(?:takes?|taking|lasts?|needs?|stretch(?:ed)?|spread|drag(?:ged)?|spends?|within|over|to|whole|full|in) "
+    rf"(?:just |only |about |a |the )*{DURATION}"
+)
+
+
 def _begin(said: Said) -> Iterator[Wish]:
     if _A_PART.search(said.text):
         return
@@ -235,11 +278,12 @@ def _speed(said: Said) -> Iterator[Wish]:
 
 def _duration(said: Said) -> Iterator[Wish]:
     moment = said.moment
-    if _A_PART.search(said.text) or moment.stop is not None:
+    if _A_PART.search(said.text) or moment.stop is not None or (moment.lasting is not None and not moment.taken):
         return
     if moment.lasting is not None:
-        yield Wish(pace(said.whose, "begin"), replace(_plainly(said), taken=True))
-    elif moment.start is None:
+        if not any(words.startswith("by ") for words in moment.said):  # that is a time, and no duration
+            yield Wish(pace(said.whose, "begin"), replace(_plainly(said), taken=True))
+    elif moment.start is None and _TAKES.search(said.text):
         for seconds, words in _durations(said.text):
             yield Wish(pace(said.whose, "begin"), Moment(lasting=seconds, taken=True), holds=words)
 
@@ -318,7 +362,7 @@ def _amount(said: Said) -> Iterator[Wish]:
 def _opening(said: Said, verb: str) -> Iterator[Wish]:
     if verb == "open" and (_LATER.search(said.text) or _EARLIER.search(said.text)):
         yield from _begin(said)
-    else:
+    elif said.moment.start != "end":
         yield Wish(f"{verb} {said.things[0]}", said.moment)
 
 
