@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from ..plan import Observation
 
 NAME = "grammar"
+SUPPOSED = "no rule reads these words; this is what such a wish most likely asks for"
 _COPIES = frozenset({"copy", "duplicate", "clone", "new one", "second one", "second copy"})
 _ORIGINALS = frozenset({"original", "original one", "first one", "old one"})
 _FITTED = frozenset({"insert", "replace"})  # operations whose new things are fitted to the light of the scene
@@ -59,7 +60,7 @@ class _Outcome:
         ops: the operations, as fields.
         antecedent: the last head noun.
         again: the operations of the last clause.
-        remarks: spelling corrections.
+        remarks: spelling corrections, and whether it was told by the kind of its wish.
         plainly: whether every sentence was read in its own words.
         colors: colours of the last head noun.
     """
@@ -165,9 +166,9 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     except Refusal as refusal:
         if refusal.firm or refusal.verdict == "unsafe" or (supposed := reader.supposed(cleaned)) is None:
             raise
-        return _of_time(supposed)
+        return _guessed(supposed)
     if not _names_things(outcome.ops, previous) and (supposed := reader.supposed(cleaned)):
-        return _of_time(supposed) if _names_things(supposed, previous) else outcome
+        return _guessed(supposed) if _names_things(supposed, previous) else outcome
     return outcome
 
 
@@ -208,6 +209,11 @@ def _of_time(ops: Sequence[Fields]) -> _Outcome:
         (),
         last.colors if named and last is not None else (),
     )
+
+
+def _guessed(ops: Sequence[Fields]) -> _Outcome:
+    """The outcome of an instruction about time or motion that was told by the kind of its wish."""
+    return replace(_of_time(ops), remarks=(SUPPOSED,), plainly=False)
 
 
 def _timeless(cleaned: str, previous: str | None) -> _Outcome:

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from scenewright.planners.grammar.planner import GrammarPlanner
+from scenewright.planners.grammar.planner import SUPPOSED, GrammarPlanner
 from scenewright.planners.grammar.timing.supposed.kinds import likely, stored
 from scenewright.training import timed_wishes
 
@@ -77,6 +77,12 @@ def test_a_wish_is_planned_as_a_plain_command_of_its_kind(text: str, plainly: st
 )
 def test_nothing_that_is_named_is_left_out(text: str) -> None:
     assert PLANNER.plan(text).ops == ()
+
+
+def test_a_plan_says_that_it_was_supposed_and_is_not_sure() -> None:
+    text = "It makes me dizzy, that fan, let it turn half as fast."
+    assert PLANNER.plan(text).reason == SUPPOSED
+    assert not PLANNER.is_sure(text) and PLANNER.is_sure("play the fan at half speed")
 
 
 @pytest.mark.slow

@@ -109,6 +109,8 @@ class TimeReader:
     def supposed(self, cleaned: str) -> tuple[Fields, ...] | None:
         """The operations that an instruction most likely asks for, by the kind of its wish; None if that is not likely
         enough, or if they would leave out anything that it names."""
+        if cleaned.count(" ") > _LONGEST:
+            return None
         said = with_nouns(_spelled(_tidy(_spelt_out(_in_words(cleaned))), _LONG_WORDS))
         readings = [_with_delay(*reading) for reading in self._readings(said) if not _FRAGMENT.match(reading[0])][:2]
         for kind, chance in likely(cleaned):
@@ -462,6 +464,7 @@ class TimeReader:
 
 
 _TIME_FIRST = re.compile(r"(?:when|whenever|once|while|as soon as) (?:the|my|our|this|that|it|he|she|they) .* , ")
+_LONGEST = 45  # words of an instruction with one wish
 _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b")
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
 
