@@ -12,7 +12,7 @@ import logging
 import os
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -112,14 +112,18 @@ def take_room(size: int) -> NDArray[np.uint8]:
 
     Memory that is freed with every frame goes back to the system, which clears it before it lends it again.
     """
-    room = _kept.pop() if _kept else _on_lines(0)
+    try:
+        room = _kept.pop()
+    except IndexError:  # none is kept, or another thread took it
+        room = _on_lines(0)
     return room if len(room) >= size else _on_lines(size)
 
 
 def give_room(room: NDArray[np.uint8]) -> None:
     """Keep memory from `take_room`, which nothing reads or writes any more, for the next caller."""
-    if not _kept and len(room) <= KEPT:
+    if len(room) <= KEPT:
         _kept.append(room)
+        del _kept[1:]
 
 
 def run(kernel: Any, count: int, *arguments: Any) -> None:
@@ -129,7 +133,10 @@ def run(kernel: Any, count: int, *arguments: Any) -> None:
     if new:
         _announce(kernel)
     others = [_pool(os.getpid(), count).submit(kernel, worker, count, *arguments) for worker in range(1, count)]
-    kernel(0, count, *arguments)
+    try:
+        kernel(0, count, *arguments)
+    finally:
+        wait(others)  # whatever happens here: what they write to may be lent to the next caller
     for other in others:
         other.result()
     if new:

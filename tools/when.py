@@ -24,7 +24,7 @@ STATES = (
     "closest",
     *(n for n in names("query") if named(n).score is not None),
 )
-_ALONE = (
+ALONE = (
     "moving",
     "still",
     "falling",
@@ -69,8 +69,8 @@ class During(BaseModel):
         extra="forbid",
         defer_build=True,
         json_schema_extra=either(
-            {"state": given(enum=list(_ALONE)), "anchors": {"maxItems": 0}},
-            {"state": given(enum=[s for s in STATES if s not in _ALONE]), "anchors": given(minItems=1)},
+            {"state": given(enum=list(ALONE)), "anchors": {"maxItems": 0}},
+            {"state": given(enum=[s for s in STATES if s not in ALONE]), "anchors": given(minItems=1)},
         ),
     )
 
@@ -83,7 +83,7 @@ class During(BaseModel):
     def _anchored(self) -> Self:
         if self.state not in STATES:
             raise ValueError(f"there is no state {self.state!r}; states are {', '.join(STATES)}")
-        wanted = 0 if self.state in _ALONE else 1
+        wanted = 0 if self.state in ALONE else 1
         if len(self.anchors) < wanted or (self.anchors and not wanted):
             raise ValueError(f'"{self.state}" takes {"what it is about" if wanted else "no anchor"}')
         return self

@@ -164,7 +164,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     try:
         outcome = _timed(reader, cleaned, previous)
     except Refusal as refusal:
-        if refusal.firm or refusal.verdict == "unsafe" or (supposed := reader.supposed(cleaned)) is None:
+        if refusal.firm or (supposed := reader.supposed(cleaned)) is None:
             raise
         return _guessed(supposed)
     if not _names_things(outcome.ops, previous) and (supposed := reader.supposed(cleaned)):

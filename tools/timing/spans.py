@@ -141,7 +141,7 @@ def _open(time: float, end: float, without: float) -> float:
 def _happening(during: During, scene: Scene, target: Selection, context: Context) -> list[Span]:
     """When it is so, for any of the things that it is about."""
     from ...gaussians.motion.courses import course_of
-    from ...gaussians.motion.events import falls, intervals, nearest_time
+    from ...gaussians.motion.events import falls, intervals, movements, nearest_time
     from ...gaussians.motion.holding import joined
 
     groups = _groups(target if during.of is None else _meant(scene, during.of, context), scene)
@@ -168,6 +168,8 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
             found += [s for anchor in anchors[0] for s in intervals(scene, group, during.state, (anchor,), stand)]
         else:
             found += intervals(scene, group, during.state, [a[0] for a in anchors], stand)
+    if during.state == "closing" and not found:  # what began open closes as it moves
+        found = [s for group in groups for s in movements(course_of(scene, group), unit)]
     exact = _edges(scene, groups) if during.state in _KEYED else []
     return joined(sorted((_snapped(a, exact), _snapped(b, exact)) for a, b in found), _APART)
 
@@ -175,7 +177,8 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
 _KEYED = ("moving", "still", "falling", "open", "opening", "closing", "fully_open")  # which begin and end with a track
 _ROUGH = 0.1  # seconds: an edge that was measured is the key of a track that is nearer
 _TURNS = 0.2  # radians a second about the vertical from which a thing turns
-_AWAY = 0.02  # metres from where it is at the start: then it is open; a second: then it is opening
+_AWAY = 0.02  # metres from where it is at the start: then it is open
+_SLOW = 0.05  # of the greatest speed away or back: from there on it opens or closes
 _SOON = 0.02  # seconds: a speed is measured over twice as much
 _PASSED = 0.5  # metres between what stops beside a thing and that thing at most
 _WIDE = 0.99  # of as far as it opens: then it is open all the way
@@ -197,7 +200,6 @@ def _snapped(time: float, edges: list[float]) -> float:
 
 def _own(course: Course, state: str, unit: float) -> list[Span]:
     """When a thing turns about the vertical, or is away from where it is at the start, or goes away or comes back."""
-    from ...gaussians.motion.events import movements
     from ...gaussians.motion.holding import spans
 
     times = course.grid()
@@ -205,19 +207,29 @@ def _own(course: Course, state: str, unit: float) -> list[Span]:
         return spans(lambda t: np.abs(course.turns(t) @ course.up), times, _TURNS)
     first = course.centers(np.array([course.start]))
     if state in ("opening", "closing"):
-        sign = 1.0 if state == "opening" else -1.0
-
-        def going(t: NDArray[np.float64]) -> NDArray[np.float64]:
-            before, after = (np.linalg.norm(course.centers(t + d) - first, axis=1) for d in (-_SOON, _SOON))
-            return np.asarray(sign * (after - before) / (2 * _SOON))
-
-        return spans(going, times, _AWAY * unit) or movements(course, unit)  # what begins open closes as it moves
+        return _going(course, first, 1.0 if state == "opening" else -1.0, unit)
     if state == "fully_open":
         far = np.linalg.norm(course.centers(times) - first, axis=1)
         if float(far.max()) < _AWAY * unit:
             return []
         return spans(lambda t: np.linalg.norm(course.centers(t) - first, axis=1), times, _WIDE * float(far.max()))
     return spans(lambda t: np.linalg.norm(course.centers(t) - first, axis=1), times, _AWAY * unit)
+
+
+def _going(course: Course, first: NDArray[np.float64], sign: float, unit: float) -> list[Span]:
+    """When a thing goes away from `first` (sign 1), or comes nearer to it (sign -1), by more than a trifle."""
+    from ...gaussians.motion.holding import joined, spans
+
+    def away(t: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(np.linalg.norm(course.centers(t) - first, axis=1))
+
+    def speed(t: NDArray[np.float64]) -> NDArray[np.float64]:
+        return sign * (away(t + _SOON) - away(t - _SOON)) / (2 * _SOON)
+
+    times = course.grid()
+    fastest = float(np.abs(speed(times)).max(initial=0.0))
+    found = joined(spans(speed, times, _SLOW * fastest), _APART) if fastest > 0 else []
+    return [s for s in found if sign * float(np.diff(away(np.array(s)))[0]) > _AWAY * unit]
 
 
 def _touching(scene: Scene, group: int, anchor: int, unit: float) -> list[Span]:

@@ -50,8 +50,8 @@ def divide(means: Array, view: View, workers: int, count: int) -> Array:
         `[parts - 1]` uint64, bits of depths above the bits of a row. They do not change the order.
     """
     parts = min(workers, PARTS) if count > ALONE else 1
-    offset = means - np.array([view.ex, view.ey, view.ez])
     with np.errstate(invalid="ignore", over="ignore"):
+        offset = means - np.array([view.ex, view.ey, view.ez])
         u, v, depth = np.array([view[:3], view[3:6], view[6:9]]) @ offset.T
         inside = (depth > view.near) & (u > view.u0 * depth) & (u < view.u1 * depth)
         inside &= (v > view.v0 * depth) & (v < view.v1 * depth) & (depth < view.far)

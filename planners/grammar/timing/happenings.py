@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....gaussians.world.words import plural
-from ....tools.when import During, Part
+from ....tools.when import ALONE, During, Part
 from . import manner as manners
 from .clauses import Clause, owner, told
 from .manner import MOTION, Manner, Thing
@@ -99,15 +99,12 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
             if found is None:
                 continue
             state, course = found
-            anchors = (manner.whom,) if manner.whom is not None and state not in _OWN else ()
+            anchors = (manner.whom,) if manner.whom is not None and state not in ALONE else ()
             part = _part(word, course)
             if clause.negated:
                 part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: ignore[assignment]
             return During(state=state, anchors=anchors, of=clause.target, part=part)
     return _touching(word, said, who) or _noun_event(word, said, who)
-
-
-_OWN = ("moving", "still", "falling", "turning", "open", "opening", "closing", "fully_open")
 
 
 def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:

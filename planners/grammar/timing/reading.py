@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache, partial
+from itertools import islice
 
 from pydantic import BaseModel, ValidationError
 
@@ -109,20 +110,24 @@ class TimeReader:
     def supposed(self, cleaned: str) -> tuple[Fields, ...] | None:
         """The operations that an instruction most likely asks for, by the kind of its wish; None if that is not likely
         enough, or if they would leave out anything that it names."""
-        if cleaned.count(" ") > _LONGEST:
+        words = _in_words(cleaned)
+        kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
+        if not kinds:
             return None
-        said = with_nouns(_spelled(_tidy(_spelt_out(_in_words(cleaned))), _LONG_WORDS))
-        readings = [_with_delay(*reading) for reading in self._readings(said) if not _FRAGMENT.match(reading[0])][:2]
-        for kind, chance in likely(cleaned):
-            for rest, moment, happening in readings:
-                told = moment.told or happening is not None
-                text = said_of(rest, self.thing, moment, "" if happening is None else happening.said)
+        said = with_nouns(_spelled(_tidy(_spelt_out(words)), _LONG_WORDS))
+        whole = (_with_delay(*reading) for reading in self._readings(said) if not _FRAGMENT.match(reading[0]))
+        readings = [
+            (said_of(rest, self.thing, moment, "" if happening is None else happening.said), happening)
+            for rest, moment, happening in islice(whole, 2)
+        ]
+        for kind, chance in kinds:
+            for text, happening in readings:
                 for wish in wishes(kind, text, chance):
                     with suppress(Refusal, UserError, ValidationError):
                         if isinstance(wish.command, Command):
                             found = self._made(wish.command, wish.moment, happening)
                         else:
-                            found = self._command(wish.command, "", wish.moment, happening, told)
+                            found = self._command(wish.command, "", wish.moment, happening, text.told)
                         if found:
                             return found
         return None
@@ -464,6 +469,7 @@ class TimeReader:
 
 
 _TIME_FIRST = re.compile(r"(?:when|whenever|once|while|as soon as) (?:the|my|our|this|that|it|he|she|they) .* , ")
+_A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
 _LONGEST = 45  # words of an instruction with one wish
 _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b")
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
@@ -534,7 +540,7 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
     Args:
         ends: whether the time of the command has an end.
     """
-    if re.search(rf"\d|\b(?:{'|'.join(NUMBERS)})\b", remark):
+    if _A_NUMBER.search(remark):
         return False  # "starting at one second, done by three"
     if _COMES_BACK.search(remark):
         return command.kind == "look" and not command.inverse

@@ -135,7 +135,8 @@ RULES: Rules = (
      r"(?: mark)?$", r"start the \g<x> at \g<d>"),
     (rf"^start of (?P<x>[a-z ]+?)(?: :)?(?: to| at)? (?P<d>{DURATION})$", r"start the \g<x> at \g<d>"),
     (r"^start the the ", "start the "),
-    (rf"\b(?<!the )(?<!final )lasts? (?:only |just |for )*(?P<d>{DURATION})$", r"take \g<d>"),
+    (r"\b(?<!the )(?<!final )(?<!its )(?<!his )(?<!her )(?<!'s )(?<!these )(?<!those )lasts? (?:only |just |for )*"
+     rf"(?P<d>{DURATION})$", r"take \g<d>"),
     (rf"^(?P<x>.+?) (?:be|being|to be) the (?P<r>last|first)(?: one| thing| of them)? to (?P<v>{PLAIN})\b(?P<y>.*)$",
      lambda m: f"let {unwished(m['x'])} {m['v']} {m['r']}{m['y']}"),
     (r"^(?P<before>.+?)(?: (?P<how>more (?:gently|slowly)|slower|faster))?(?: ,)? (?:beginning|starting|setting off)"

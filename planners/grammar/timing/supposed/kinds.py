@@ -38,12 +38,13 @@ class Model:
     weights: NDArray[np.float32]
 
     @cached_property
-    def _places(self) -> dict[str, int]:
+    def places(self) -> dict[str, int]:
+        """The row of each feature."""
         return {name: row for row, name in enumerate(self.names)}
 
     def kinds_of(self, said: str) -> list[tuple[str, float]]:
         """The kinds of wish with their probabilities, the likeliest first."""
-        found = sorted(self._places[feature] for feature in features(said) if feature in self._places)
+        found = sorted(self.places[feature] for feature in features(said) if feature in self.places)
         scores = self.weights[-1] + self.weights[found].sum(axis=0) / np.sqrt(max(1, len(found)))
         chances = np.exp(scores - scores.max())
         chances /= chances.sum()

@@ -28,7 +28,10 @@ _NO_THINGS = EVERYWHERE | bag(
 _BETWEEN = bag("to at on in into onto by of for with from and or but then so as until while when once after before")
 _LONGEST = 5  # words of a name
 _UNKNOWN = 3  # words of a name with "the" whose noun is not known
-_ONE = re.compile(r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b")
+_ONE = re.compile(
+    r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b"
+    r"(?! (?:and|full|whole|half|third|quarter|seconds?|secs?|s|m|cm|met(?:re|er)s?|times?|turns?|by)\b)"
+)
 
 
 @cache

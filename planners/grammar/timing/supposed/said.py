@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
+from ...vocabulary.quantities import NUMBERS
 from ..manner import Thing
 from ..moments import Moment
 from .names import named, with_moving
@@ -19,9 +21,12 @@ _AS_BEFORE = re.compile(  # ", then red again afterwards"
 _IDLE = tuple(
     re.compile(pattern)
     for pattern in (
-        r" , (?:and |but )?(?:not|instead of|rather than) (?:at |to |by )?(?:the )?[a-z0-9.]+(?: [a-z]+)?$",
-        r" , (?:and |with )?(?:no|not|without) [a-z]+ing\b(?: (?:at|after|in|it|down|up|again) ?[a-z0-9.]*)*$",
-        r" , (?:so )?(?:i|we) (?:just )?(?:want|like|love|need|would like|would love) to (?:see|watch|look|have)\b.*$",
+        rf" , (?:and |but )?(?:not|instead of|rather than) (?:at |to |by )?(?:\d[\d.]*|{'|'.join(NUMBERS)})"
+        r"(?: [a-z]+)?$",
+        r" , (?:and |but )?not (?:before|earlier|sooner|later|any (?:earlier|sooner|later))(?: (?:that|then))?$",
+        r" , (?:and |with )?(?:no|not|without) [a-z]+ing\b(?: [a-z0-9.]+){0,3}$",
+        r" , (?:so )?(?:i|we) (?:just )?(?:want|like|love|need|would like|would love) to (?:see|watch|look at) "
+        r"(?:it|that|this|him|her|them)(?: (?:in|on|from|at|up|properly|clearly|better) ?(?:the |my )?[a-z]*)?$",
         r"(?<= )(?:say|well|like) ,|(?: ,)? say (?=(?:from|at|for|until|between)\b)",
     )
 )
@@ -36,7 +41,6 @@ class Said:
         things: the names in it, as they stand.
         moment: its time in numbers.
         event: whether a time is told by what happens.
-        as_before: whether it told, too, that things are then as before.
         thing: reads a name.
     """
 
@@ -44,7 +48,6 @@ class Said:
     things: tuple[str, ...]
     moment: Moment
     event: bool
-    as_before: bool
     thing: Thing
 
     @property
@@ -52,12 +55,16 @@ class Said:
         """Whether any time is told."""
         return self.event or self.moment.told
 
-    @property
+    @cached_property
     def whose(self) -> Query:
         """What the first name means."""
         return self.thing(self.things[0]) or Query(last=True)
 
-    @property
+    def until_then(self) -> Said:
+        """The same, if a time is told, without words that things are as before afterwards: ", then red again"."""
+        return replace(self, text=_AS_BEFORE.sub("", self.text)) if self.told else self
+
+    @cached_property
     def beside(self) -> str:
         """The words, with a bar for each name."""
         text = self.text
@@ -77,10 +84,7 @@ def said_of(text: str, thing: Thing, moment: Moment, clause: str) -> Said:
     text = with_moving(text)
     for idle in _IDLE:
         text = " ".join(idle.sub(" ", text).split())
-    whole = text
-    if clause or moment.told:
-        text = _AS_BEFORE.sub("", text)
     things = named(text, thing)
     if not things and _PRONOUN.search(text):
         things = named(clause, thing)[:1]
-    return Said(text, things, moment, clause != "", text != whole, thing)
+    return Said(text, things, moment, clause != "", thing)

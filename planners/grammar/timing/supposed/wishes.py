@@ -12,12 +12,15 @@ from functools import partial
 
 from .....gaussians import late_re as re
 from ...tagging.spelling import is_word
+from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS
 from ..asides import HUES
+from ..clauses import AUXILIARIES
 from ..command import Command, pace
-from ..moments import DURATION, Moment, seconds_of
+from ..moments import DURATION, End, Moment, seconds_of
 from ..verbs import SENSES, has_form
-from .names import hues
+from .kinds import stored
+from .names import MOVING, hues
 from .said import Said
 
 SURE = 0.85  # probability from which a change without a time is supposed: the rest of the grammar reads these
@@ -44,12 +47,14 @@ class Wish:
         moment: its time in numbers.
         things: how many things stand in it.
         holds: words of the instruction, other than names, that stand in it.
+        spent: seconds of the time in numbers that are no time of it.
     """
 
     command: str | Command
     moment: Moment
     things: int = 1
     holds: str = ""
+    spent: float | None = None
 
 
 def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
@@ -59,29 +64,55 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
         chance: the probability of the kind.
     """
     made = _KINDS.get(kind)
-    if made is None or not said.things or not is_word(said.text.split(" ")[0]):
+    if made is None or not said.things or not _is_any_word(said.text.split(" ")[0]):
         return  # a verb that is no word may ask for anything
     timeless = not said.told and not said.moment.always
     if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
         return
     if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text) or _OTHER_EDITS.search(said.text):
         return
+    if kind in _STATIC and MOVING in said.things:
+        return  # all, or what of it moves
+    if kind in ("recolor", "hide"):
+        if kind == "hide" and _is_to_be_seen(said) and _BACK.search(said.text):
+            return  # "show it for a second, then bring it back" contradicts itself
+        said = said.until_then()
     for wish in made(said):
         if _is_whole(wish, said) and _says_no_more(kind, wish, said):
             yield wish
 
 
+def _is_any_word(word: str) -> bool:
+    """Whether a word stands in any of the vocabularies, or in the sentences that kinds were learned from."""
+    return (
+        is_word(word)
+        or is_known(word)
+        or word in stored().places
+        or has_form(word, tuple(SENSES), "plain", "s", "ing", "past")
+    )
+
+
 def _is_whole(wish: Wish, said: Said) -> bool:
     """Whether nothing that the instruction names is left out."""
     left = _left(wish, said)
+    if _times(said.moment) - _times(wish.moment) - {wish.spent}:
+        return False
     if len(said.things) > wish.things or _TIMES_LEFT.search(left):
         return False
     return not any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in hues() for w in left.split())
 
 
+def _times(moment: Moment) -> set[End | None]:
+    return {moment.start, moment.stop, moment.lasting} - {None}
+
+
 def _left(wish: Wish, said: Said) -> str:
     """The words that do not stand in a command."""
-    return _COMPLAINED.sub(" ", said.beside.replace(wish.holds, " ") if wish.holds else said.beside)
+    often = 0 if wish.holds in hues() else 1  # "red, a good strong red"
+    left = (
+        re.sub(rf"(?<!\S){re.escape(wish.holds)}(?!\S)", " ", said.beside, count=often) if wish.holds else said.beside
+    )
+    return _COMPLAINED.sub(" ", left)
 
 
 _TELLING = {  # words that say something by themselves, and the kinds of wishes that say it
@@ -97,6 +128,7 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order",
 }
+_NEGATED = ("hide", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _WISHED = re.compile(r" , (?:and |but )?(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b")
 _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
@@ -107,8 +139,10 @@ def _says_no_more(kind: str, wish: Wish, said: Said) -> bool:
     left = _left(wish, said)
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY) or _WISHED.search(said.text):
         return False
+    if kind not in _NEGATED and _NOT.search(_TOO_FAST.sub(" ", _TOO_SLOW.sub(" ", left))):
+        return kind == "begin" and _LATER.search(left) is not None  # "not at once, it waits"
     manner = _MANNER.search(left)
-    return manner is None or has_form(manner["verb"], tuple(SENSES), "plain", "s")
+    return manner is None or manner["verb"] in AUXILIARIES or has_form(manner["verb"], tuple(SENSES), "plain", "s")
 
 
 def _durations(text: str) -> Iterator[tuple[float, str]]:
@@ -130,6 +164,10 @@ _APPEARS = re.compile(
     r"\b(?:appears?|shows?|shown|visible|pops? (?:up|in)|comes? in(?:to)?|reveals?|there only|turns? up)\b"
 )
 _NOT = re.compile(r"\b(?:not|no|never|without|invisible|nobody|nothing)\b")
+_BACK = re.compile(r"\b(?:back|again)\b")
+_TOWARDS = re.compile(
+    r"\b(?:to|towards?|next to|beside|by|near|against|alongside|close to)(?: (?:the side of|stand by))? $"
+)
 _WAYS = {"up": "up", "upwards": "up", "left": "to the left", "right": "to the right", "down": "down"}
 _LENGTH = re.compile(
     r"(?:\d+(?:\.\d+)?|half a|a|one|two|three|fifty|thirty|twenty|ten|forty) ?"
@@ -138,7 +176,7 @@ _LENGTH = re.compile(
 
 
 def _recolor(said: Said) -> Iterator[Wish]:
-    hue = next((word for word in said.beside.split() if word in hues()), None)
+    hue = next((word for word in _COMPLAINED.sub(" ", said.beside).split() if word in hues()), None)
     if hue is not None:
         shade = re.search(rf"\b(?:{_SHADE}) {hue}\b", said.text)
         text = f"make {said.things[0]} {hue if shade is None else shade[0]}"
@@ -146,9 +184,12 @@ def _recolor(said: Said) -> Iterator[Wish]:
 
 
 def _hide(said: Said) -> Iterator[Wish]:
-    seen = _APPEARS.search(said.text) is not None and _NOT.search(said.text) is None
-    if not (seen and said.as_before):  # "show it for a second, then bring it back" contradicts itself
-        yield Wish(f"{'show' if seen else 'hide'} {said.things[0]}", said.moment)
+    yield Wish(f"{'show' if _is_to_be_seen(said) else 'hide'} {said.things[0]}", said.moment)
+
+
+def _is_to_be_seen(said: Said) -> bool:
+    """Whether something is to be seen at the time that is told, and not to be hidden then."""
+    return _APPEARS.search(said.text) is not None and _NOT.search(said.text) is None
 
 
 def _remove(said: Said) -> Iterator[Wish]:
@@ -157,12 +198,12 @@ def _remove(said: Said) -> Iterator[Wish]:
 
 
 def _move(said: Said) -> Iterator[Wish]:
-    if len(said.things) == 2:
+    if len(said.things) == 2 and _TOWARDS.search(said.beside.split("|")[1]):
         yield Wish(f"move {said.things[0]} to {said.things[1]}", said.moment, things=2)
     length = _LENGTH.search(said.text)
-    way = next((_WAYS[word] for word in said.beside.split() if word in _WAYS), None)
-    if way is not None and length is not None:
-        yield Wish(f"move {said.things[0]} {way} by {length[0]}", said.moment, holds=length[0])
+    ways = {_WAYS[word] for word in said.beside.split() if word in _WAYS}
+    if len(ways) == 1 and length is not None:
+        yield Wish(f"move {said.things[0]} {ways.pop()} by {length[0]}", said.moment, holds=length[0])
 
 
 # -- turns and repeats -----------------------------------------------------------------------------------------------
@@ -232,6 +273,7 @@ _TOO_SLOW = re.compile(
     r"\b(?:too|so|painfully)(?: \w+)? (?:slow|slowly|sluggish|lazy)\b|\b(?:less|not so|not as|not that) slow\b"
 )
 _SLOWER = re.compile(r"\b(?:slow|slower|slowly|half|calm|calmer|gentle|gentler|lazy|leisurely)\b")
+_HASTE = re.compile(r"\b(?:faster|quicker|hurry|rush)\b")
 _FASTER = re.compile(r"\b(?:fast|faster|quick|quicker|quickly|hurry|speed .*up|rush|snappier|brisk|brisker|zip)\b")
 
 
@@ -249,7 +291,7 @@ def _begin(said: Said) -> Iterator[Wish]:
         for seconds, words in _durations(said.text):
             yield Wish(pace(said.whose, "later", seconds=sign * seconds), Moment(), holds=words)
         if moment.lasting is not None and moment.start is None and moment.stop is None:
-            yield Wish(pace(said.whose, "later", seconds=sign * moment.lasting), Moment())
+            yield Wish(pace(said.whose, "later", seconds=sign * moment.lasting), Moment(), spent=moment.lasting)
     if said.told and moment.lasting is None:
         if moment.stop is not None and moment.start is None and not said.event:  # "it waits until 2 s"
             moment = replace(moment, start=moment.stop, stop=None)
@@ -269,7 +311,13 @@ def _speed(said: Said) -> Iterator[Wish]:
     slower, faster = _SLOWER.search(plain) is not None, _FASTER.search(plain) is not None
     for pattern, factor in _FACTORS:
         if (found := pattern.search(said.beside)) is not None:
-            factor = round(1 / factor, 4) if factor > 1 and "slow" in plain else factor  # "three times slower"
+            if factor < 1 and re.search(rf"\bby {re.escape(found[0])}", said.beside):
+                factor = 1 + factor if faster else 1 - factor
+            elif factor < 1 and _HASTE.search(plain):
+                return  # "faster in the second half"
+            elif factor > 1 and "slow" in plain:
+                factor = 1 / factor  # "three times slower"
+            factor = round(factor, 4)
             yield Wish(pace(said.whose, "speed", factor=factor), _plainly(said), holds=found[0])
             return
     if slower != faster:
@@ -388,8 +436,8 @@ def _order(said: Said) -> Iterator[Wish]:
 
 def _together(said: Said) -> Iterator[Wish]:
     if len(said.things) > 1 or _SEVERAL.search(said.things[0]):
-        who, moment = " and ".join(said.things), said.moment if len(said.things) == 1 else Moment()
-        yield Wish(f"let {who} start at the same time", moment, things=len(said.things))
+        who = " and ".join(said.things)
+        yield Wish(f"let {who} start at the same time", said.moment, things=len(said.things))
 
 
 _KINDS: dict[str, Callable[[Said], Iterator[Wish]]] = {
