@@ -11,29 +11,9 @@ from ..gaussians.world.relations import named, names
 from .alternatives import either, given
 
 Part = Literal["while", "unless", "from", "until", "after", "until_end"]
-STATES = (
-    "moving",
-    "still",
-    "falling",
-    "turning",
-    "open",
-    "opening",
-    "closing",
-    "fully_open",
-    "touches",
-    "closest",
-    *(n for n in names("query") if named(n).score is not None),
-)
-ALONE = (
-    "moving",
-    "still",
-    "falling",
-    "turning",
-    "open",
-    "opening",
-    "closing",
-    "fully_open",
-)  # states that say nothing of another thing
+# States that say nothing of another thing.
+ALONE = ("moving", "still", "falling", "turning", "open", "opening", "closing", "fully_open")
+STATES = (*ALONE, "touches", "closest", *(n for n in names("query") if named(n).score is not None))
 _STATED = {
     "moving": "moves",
     "still": "stands still",

@@ -78,7 +78,8 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
             return  # "show it for a second, then bring it back" contradicts itself
         said = said.until_then()
     for wish in made(said):
-        if _is_whole(wish, said) and _says_no_more(kind, wish, said):
+        left = _left(wish, said)
+        if _is_whole(wish, said, left) and _says_no_more(kind, said, left):
             yield wish
 
 
@@ -92,9 +93,8 @@ def _is_any_word(word: str) -> bool:
     )
 
 
-def _is_whole(wish: Wish, said: Said) -> bool:
-    """Whether nothing that the instruction names is left out."""
-    left = _left(wish, said)
+def _is_whole(wish: Wish, said: Said, left: str) -> bool:
+    """Whether nothing that the instruction names is among the words that are `left`, and no time is lost."""
     if _times(said.moment) - _times(wish.moment) - {wish.spent}:
         return False
     if len(said.things) > wish.things or _TIMES_LEFT.search(left):
@@ -134,9 +134,8 @@ _WISHED = re.compile(r" , (?:and |but )?(?:i|we) (?:want|would like|need) (?:it|
 _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
 
 
-def _says_no_more(kind: str, wish: Wish, said: Said) -> bool:
-    """Whether no word that a command leaves out tells of another wish: "one second earlier, and slower"."""
-    left = _left(wish, said)
+def _says_no_more(kind: str, said: Said, left: str) -> bool:
+    """Whether no word that is `left` tells of another wish: "one second earlier, and slower"."""
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY) or _WISHED.search(said.text):
         return False
     if kind not in _NEGATED and _NOT.search(_TOO_FAST.sub(" ", _TOO_SLOW.sub(" ", left))):
