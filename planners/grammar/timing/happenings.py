@@ -66,7 +66,7 @@ _UNTIL = (
     r"(?:until|till|til|untill|up until|up to when|before|by the time|right before|just before|right until|only until|"
     r"prior to)"
 )
-_CONJUNCTION = re.compile(
+CONJUNCTION = re.compile(
     rf"(?:^|(?<= ))(?:only |but only |just )?(?P<word>{_ONCE}|{_WHILE}|{_AFTER}|{_UNTIL})(?: that)?(?= )"
 )
 _PRONOUNS = ("it", "he", "she", "they", "that", "this")
@@ -239,7 +239,7 @@ def _who(said: str, thing: Thing) -> Query | None:
 
 def cut(said: str, thing: Thing) -> Iterator[tuple[str, Happening]]:
     """The words of a sentence without a clause that tells a time, and what it tells; the likeliest first."""
-    for found in reversed(list(_CONJUNCTION.finditer(said))):
+    for found in reversed(list(CONJUNCTION.finditer(said))):
         word, start = found["word"], found.start()
         words = said[found.end() :].strip().split(" ")
         for end in _ends(words, bool(said[:start].strip(" ,"))):

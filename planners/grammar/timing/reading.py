@@ -40,8 +40,9 @@ from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
 from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
-from .supposed.kinds import likely
+from .supposed.kinds import likely, marked
 from .supposed.names import with_nouns
+from .supposed.parts import divided
 from .supposed.said import said_of
 from .supposed.wishes import wishes
 from .verbs import SENSES, any_of, forms, has_form
@@ -114,12 +115,16 @@ class TimeReader:
         kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
         if not kinds:
             return None
-        said = with_nouns(_spelled(_tidy(_spelt_out(words)), _LONG_WORDS))
+        spelled = _spelled(_spelt_out(words), _LONG_WORDS)
+        said = with_nouns(_tidy(spelled))
         whole = (_with_delay(*reading) for reading in self._readings(said) if not _FRAGMENT.match(reading[0]))
         readings = [
             (said_of(rest, self.thing, moment, "" if happening is None else happening.said), happening)
             for rest, moment, happening in islice(whole, 2)
         ]
+        wording = with_nouns(spelled).split(" ")
+        if (by_marks := divided(wording, marked(wording), self.thing)) is not None:
+            readings.insert(0, by_marks)
         for kind, chance in kinds:
             for text, happening in readings:
                 for wish in wishes(kind, text, chance):

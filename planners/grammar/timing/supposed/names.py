@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
 
-from .....gaussians import color
 from .....gaussians import late_re as re
 from ...tagging.words import bag
 from ...vocabulary.nouns import EVERYWHERE, is_known
@@ -32,12 +30,6 @@ _ONE = re.compile(
     r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b"
     r"(?! (?:and|full|whole|half|third|quarter|seconds?|secs?|s|m|cm|met(?:re|er)s?|times?|turns?|by)\b)"
 )
-
-
-@cache
-def hues() -> frozenset[str]:
-    """Colours of one word."""
-    return frozenset(name for name in color.names() if " " not in name)
 
 
 def with_moving(text: str) -> str:

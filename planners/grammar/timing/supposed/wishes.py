@@ -19,8 +19,9 @@ from ..clauses import AUXILIARIES
 from ..command import Command, pace
 from ..moments import DURATION, End, Moment, seconds_of
 from ..verbs import SENSES, has_form
-from .kinds import stored
-from .names import MOVING, hues
+from ....learned.seen import hues
+from .kinds import classifier
+from .names import MOVING
 from .said import Said
 
 SURE = 0.85  # probability from which a change without a time is supposed: the rest of the grammar reads these
@@ -88,7 +89,7 @@ def _is_any_word(word: str) -> bool:
     return (
         is_word(word)
         or is_known(word)
-        or word in stored().places
+        or word in classifier().places
         or has_form(word, tuple(SENSES), "plain", "s", "ing", "past")
     )
 

@@ -1,0 +1,1 @@
+"""What is told of a sentence by models that learned from written ones: its kind, and which words name what."""
