@@ -109,7 +109,7 @@ _AT_TIME = re.compile(rf"{_UNIT}|\b(?:t|sec|time|start|beginning|end|middle|half
 
 def _value(text: str) -> float | None:
     """Seconds that a number or a duration names."""
-    text = _HEDGED.sub("", text.strip())
+    text = re.sub(r"^second(?= and a half$)", "one second", _HEDGED.sub("", text.strip()))
     text = re.sub(r"^(?:the )?(?:t|time|seconds?|sec)\b(?: ?= ?| )(?=\w)", "", text)
     text = re.sub(r" (?:mark|point)$", "", text)
     half = 0.0
@@ -196,7 +196,7 @@ def _last(moment: Moment, found: re.Match[str]) -> Moment | None:
 
 _OVER, _OF_CLIP = r"(?:for |during |in |over |within )?(?:the )?", rf"(?: of (?:the |this )?{_CLIP})?"
 _PHRASES: tuple[tuple[str, Made], ...] = (
-    (rf"{_OVER}first (?P<a>{_DURATION}|second)(?! later){_OF_CLIP}", _first),
+    (rf"{_OVER}first (?P<a>{_DURATION}|second and a half|second)(?! later){_OF_CLIP}", _first),
     (rf"{_OVER}(?:last|final) (?P<a>{_DURATION}|second){_OF_CLIP}", _last),
     (rf"(?:from|starting (?:at|from)) (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
     (rf"(?:in )?between (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),

@@ -7,7 +7,9 @@ from dataclasses import replace
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
-from ...vocabulary.quantities import NUMBERS, ORDINALS
+from ...tagging.spelling import is_word
+from ...vocabulary.nouns import is_known
+from ...vocabulary.quantities import ORDINALS
 from ..happenings import CONJUNCTION, Happening, clause_of
 from ..manner import Thing
 from ..moments import DURATION, End, Moment, cut, seconds_of
@@ -19,19 +21,23 @@ _TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of
 _IDLE = ("not", "off")  # tags of words that ask for nothing
 _LEADING = re.compile(
     r"^(?:(?:,|and|then|but|just|only|right|exactly|about|around|starting|beginning|start|begin|finish(?:ed|ing)?|done|"
-    r"ending|end) (?=\w))*"
+    r"ending|end|arriving|being|be|there|taking|takes?|lasting|lasts?) (?=\w))*"
 )
 _BARE = re.compile(
     r"^(?:(?:by|at|on|from|in|to|till|until|after|before|up|for|over|within|during|the|only|just|about|around|exactly|"
     r"say|like|mark|starting|beginning|finished|done|,) )*(?P<value>.+?)(?: (?:mark|on|onwards?|already|sharp|flat|in|"
     r"long))*$"
 )
+_AS = re.compile(r"^(?:all the while|the whole time(?: that)?|for the time(?: that)?) (?=\w)")
+_WHERE = re.compile(r"^(?:at )?(?:the (?:point|place|spot|corner) )?(?:where|upon) (?=\w)")
 _ALL = re.compile(r"\b(?:whole|entire|throughout|all the time|always|(?:beginning|start) to (?:the )?(?:end|finish))\b")
 _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     (re.compile(r"\b(?:middle|half ?way|half time|midway|half the)\b"), "middle"),
     (re.compile(r"\b(?:end|finish|close|last frame|over|finale)\b"), "end"),
     (re.compile(r"\b(?:beginning|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b"), 0.0),
 )
+_HALF = re.compile(r"\b(first|second|last|latter|other) half\b")
+_UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 
 
@@ -47,7 +53,10 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     for tag, start, stop in spans:
         if tag not in _TIMES:
             continue
-        phrase = _LEADING.sub("", " ".join(words[start:stop]).strip(" ,.;:"))
+        phrase = " ".join(words[start:stop]).strip(" ,.;:")
+        if tag == "from" and _UNTIL.match(phrase):
+            tag = "to"
+        phrase = _LEADING.sub("", phrase)
         if (delay := _DELAY.match(phrase)) is not None and (seconds := seconds_of(delay["delay"])) is not None:
             phrase, moment = phrase[delay.end() :], replace(moment, start=seconds)
         if (found := _moment(tag, phrase)) is not None:
@@ -97,8 +106,10 @@ def _joined(one: Moment, other: Moment) -> Moment | None:
 def _moment(tag: str, phrase: str) -> Moment | None:
     """A time in numbers."""
     rest, moment = cut(phrase)
-    if not rest.strip(" ,.") and moment != Moment():
+    if moment != Moment() and not any(is_word(word) or is_known(word) for word in rest.strip(" ,.").split()):
         return moment
+    if (half := _HALF.search(phrase)) is not None:
+        return Moment(start=None if half[1] == "first" else "middle", stop="middle" if half[1] == "first" else None, said=(phrase,))
     if _ALL.search(phrase):
         return Moment(always=True, said=(phrase,))
     bare = _BARE.match(phrase)
@@ -121,7 +132,7 @@ _EVEN_SO = ("until", "till", "after", "by", "before")
 
 def _seconds(said: str) -> float | None:
     """Seconds that a number names, with or without its unit."""
-    said = re.sub(r"^(?:second|sec|t|time) ?=? ?(?=\w)", "", said)
+    said = re.sub(r"^(?:second|sec|t|time)\b ?=? ?(?=\w)", "", re.sub(r"\b(?:more|another|extra|further) ", "", said))
     found = seconds_of(said)
     if found is None:
         found = seconds_of(f"{said} seconds")
@@ -132,6 +143,7 @@ def _seconds(said: str) -> float | None:
 
 def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
     """A time told by what happens."""
+    phrase = _WHERE.sub("when ", _AS.sub("while ", phrase))
     for said in (phrase, f"{_TIMES[tag]} {phrase}"):
         for found in CONJUNCTION.finditer(said):
             if found.start() == 0 and (during := clause_of(found["word"], said[found.end() :].strip(" ,."), thing)):

@@ -1,0 +1,19 @@
+"""Learn to tell the kinds of questions about time and motion, and which words name what, from written questions.
+
+    python -m scenewright.training.timed_questions
+
+Reads `timed_questions.tsv` (eight writers knew the kinds and no code), tells how often the questions of a writer are
+told right by what the others wrote, and writes the weights of `planners/questions/reading/time/supposed/`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..planners.questions.reading.time.supposed.kinds import FOLDER
+from .wording import learn
+
+SENTENCES = Path(__file__).with_name("timed_questions.tsv")
+
+if __name__ == "__main__":
+    learn(SENTENCES, FOLDER)
