@@ -12,7 +12,7 @@ from .alternatives import either, given
 
 Part = Literal["while", "unless", "from", "until", "after", "until_end"]
 # States that say nothing of another thing.
-ALONE = ("moving", "still", "falling", "turning", "open", "opening", "closing", "fully_open")
+ALONE = ("moving", "still", "falling", "turning", "open", "opening", "closing", "fully_open", "halfway")
 STATES = (*ALONE, "touches", "closest", *(n for n in names("query") if named(n).score is not None))
 _STATED = {
     "moving": "moves",
@@ -23,6 +23,7 @@ _STATED = {
     "opening": "opens",
     "closing": "closes",
     "fully_open": "is open all the way",
+    "halfway": "has gone half its way",
     "touches": "touches",
     "closest": "is closest to",
 }
@@ -36,11 +37,11 @@ Seconds = Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)]
 
 class During(BaseModel):
     """A time told by what happens: "while it is on the rug". `state` is moving, still, falling, turning, open,
-    opening, closing, fully_open, touches, closest, or a name of Relation.
+    opening, closing, fully_open, halfway, touches, closest, or a name of Relation.
 
     `part`: while or unless it is so, from when it first is on, until then, after it was, or until it no longer is.
     "open" is not being where it is at the start, "opening" and "closing" going away from there and back, "fully_open"
-    as far from there as it comes;
+    as far from there as it comes, "halfway" the second half of a movement;
     "closest" the moment of being nearest to the middle of another thing.
     """
 

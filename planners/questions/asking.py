@@ -31,6 +31,7 @@ from .reading.time.everyday import everyday
 from .reading.time.frames import plain
 from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
+from .reading.time.supposed.plainly import supposed
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
 from .telling import absent, absent_text, evidence
@@ -128,8 +129,11 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         return still
     refused = moved or still
     misread = refused is None or refused.answer.text.startswith(_MISREAD)
-    if misread and (loose := _loosely(words, survey, timeline)) is not None:
-        return loose
+    if misread:
+        names = _names(survey)
+        for questions in (loosely(plain(words), names), supposed(text, names)):
+            if (guess := _read_as(questions, survey, timeline)) is not None:
+                return guess
     if refused is not None:
         return refused
     none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
@@ -326,19 +330,16 @@ _LOST = bag(
 )
 
 
-def _loosely(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
-    """The answer to a question whose parts are known and whose words say nothing else; None if it is not plain which.
+def _names(survey: Survey) -> frozenset[str]:
+    """Words of the names of the things of a scene."""
+    own = frozenset(singular(w) for t in survey.things for w in t.label.split())
+    return own | {"wall", "floor", "ceiling", "door"}
 
-    All plainer questions that it may mean must have the same answer, if they have one.
-    """
-    names = frozenset(singular(w) for t in survey.things for w in t.label.split()) | {
-        "wall",
-        "floor",
-        "ceiling",
-        "door",
-    }
+
+def _read_as(questions: Sequence[str], survey: Survey, timeline: Timeline) -> Reading | None:
+    """The answer to plainer questions that a question may mean; None if those that have one differ in it."""
     told: list[tuple[str, Reading]] = []
-    for plainer in loosely(plain(words), names):
+    for plainer in questions:
         asked = Asked(plainer, words=tuple(plainer.split()), timeline=timeline)
         found = _of_motion(asked, survey)
         if found is None or found.answer.answer is None:

@@ -159,7 +159,7 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
     found: list[Span] = []
     unit = 1.0 / (scene.frame.metres_per_unit or 1.0)
     for group in groups:
-        if during.state in ("falling", "turning", "open", "opening", "closing", "fully_open"):
+        if during.state in ("falling", "turning", "open", "opening", "closing", "fully_open", "halfway"):
             course = course_of(scene, group)
             found += falls(course, unit) if during.state == "falling" else _own(course, during.state, unit)
         elif during.state == "touches":  # "the wall" may be several
@@ -200,11 +200,14 @@ def _snapped(time: float, edges: list[float]) -> float:
 
 def _own(course: Course, state: str, unit: float) -> list[Span]:
     """When a thing turns about the vertical, or is away from where it is at the start, or goes away or comes back."""
+    from ...gaussians.motion.events import movements
     from ...gaussians.motion.holding import spans
 
     times = course.grid()
     if state == "turning":
         return spans(lambda t: np.abs(course.turns(t) @ course.up), times, _TURNS)
+    if state == "halfway":
+        return [(_half(course, span), span[1]) for span in movements(course, unit)]
     first = course.centers(np.array([course.start]))
     if state in ("opening", "closing"):
         return _going(course, first, 1.0 if state == "opening" else -1.0, unit)
@@ -214,6 +217,13 @@ def _own(course: Course, state: str, unit: float) -> list[Span]:
             return []
         return spans(lambda t: np.linalg.norm(course.centers(t) - first, axis=1), times, _WIDE * float(far.max()))
     return spans(lambda t: np.linalg.norm(course.centers(t) - first, axis=1), times, _AWAY * unit)
+
+
+def _half(course: Course, span: Span) -> float:
+    """When a thing has gone half the way of a movement, or turned by half its angle."""
+    times = course.grid(span)
+    gone = np.cumsum(course.rates(times))
+    return float(times[int(np.searchsorted(gone, gone[-1] / 2))])
 
 
 def _going(course: Course, first: NDArray[np.float64], sign: float, unit: float) -> list[Span]:

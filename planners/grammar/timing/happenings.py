@@ -46,6 +46,7 @@ _EVENT = _Course("from", "while", "until", "after")  # "it moves"
 _LASTS = _Course("while", "while", "until", "after")  # "it is moving"
 _BEGINS = _Course("from", "from", "until", "from")
 _ENDED = _Course("after", "after", "until_end", "after")  # "it has moved"
+_SHUTS = _Course("after", "while", "until", "after")  # "it shuts"
 _HOLDS = _Course("while", "while", "until", "from")  # "it is open"
 _LACKS = _Course("unless", "unless", "until_end", "after")  # "it is closed"
 _COMES = _Course("from", "while", "until", "from")  # "it hits the wall"
@@ -78,6 +79,11 @@ _RELATIONS = {
 }  # fmt: skip
 _RELATED = {said: relation for relation, phrases in _RELATIONS.items() for said in phrases.split("|")}
 _TO = ("to", "up to", "over to", "against", "as far as", "across to", "back to")
+_DONE = re.compile(r"\b(?:is|has|are|have|gets|'s) (?:all )?(?:done|finished|through) (?:with )?(?:its |his |the )?[a-z]+ing$")
+_AT_TURN = re.compile(
+    r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at) (?:its|his|her|the|that) "
+    r"(?:turn|turning point|corner|bend|curve)$"
+)
 _FULLY = re.compile(r"\b(?:fully|completely|all the way|wide|entirely|totally)\b")
 _NEXT = ("touching", "in contact with", "resting against")
 
@@ -86,6 +92,9 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     """What a clause behind a conjunction tells of; None if the whole of it is not understood."""
     if _PEOPLE.match(said):
         return None
+    said = _DONE.sub("has stopped", said)
+    if (turn := _AT_TURN.match(said)) is not None and (whose := _who(turn["who"], thing)) is not None:
+        return During(state="turning", of=whose, part=_part(word, _EVENT))
 
     def who(phrase: str) -> Query | None:
         return _who(phrase, thing)
@@ -110,6 +119,8 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
 def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     """The state that a clause tells of."""
     sense, fields = clause.sense, manner.fields
+    if sense == "close" and clause.form in ("s", "plain") and not clause.negated and manner.only("state", "back"):
+        return "closing", _SHUTS
     at_rest = sense in ("be", "stay") and manner.state == "still" and manner.whom is not None
     if at_rest and manner.only("state", "at", "whom", "goal"):
         return "moving", _ENDED  # "it is lying still at the wall"

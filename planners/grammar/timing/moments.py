@@ -240,14 +240,14 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
     ),
     (
         r"(?:at|by) (?P<a>the (?:very )?(?:end|start|beginning)|halfway|half time|the middle)(?: of "
-        r"it| through| point)?",
+        r"it| through| point)?(?! (?:down|up|there|across|along|to|open)\b)",
         _start,
     ),
     (
         r"(?:(?:from|at|in) the (?P<a>first) (?:moment|frame|instant)|immediately|right away|straight away|instantly)",
         _at_once,
     ),
-    (r"(?P<a>halfway) (?:through|in)(?: (?:it|the (?:clip|scene|film|video|animation)))?", _start),
+    (r"(?P<a>halfway) (?:through|in)(?! (?:its|his|her|their|the [a-z]+ing)\b)(?: (?:it|the (?:clip|scene|film|video|animation)))?", _start),
 )
 _COMPILED = tuple((re.compile(rf"(?:^|(?<= )){pattern}(?= |$)"), made) for pattern, made in _PHRASES)
 OWN = "in its own time"  # what `restated` makes of "instead of to the wall"

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
+from .....tools.when import During
 from ...tagging.spelling import is_word
 from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import ORDINALS
-from ..happenings import CONJUNCTION, Happening, clause_of
+from ..happenings import CONJUNCTION, IT, Happening, clause_of
 from ..manner import Thing
-from ..moments import DURATION, End, Moment, cut, seconds_of
+from ..moments import DURATION, TIMED, End, Moment, cut, seconds_of
 from .names import named as names_in
 from .said import Said
 
@@ -38,6 +39,13 @@ _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
 )
 _HALF = re.compile(r"\b(first|second|last|latter|other) half\b")
 _UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
+_HALFWAY = re.compile(
+    r"^(?:when |once |at |as soon as )?(?:(?P<who>.+?) (?:is|has (?:gone|got)|gets) )?(?:half ?way|midway|half the way|in the middle of)"
+    r"(?P<way>(?: (?:down|up|through|there|across|along|over|to|into|out|open|of))* ?(?P<what>.*))$"
+)
+_ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| in| point)*$")
+_FILM = re.compile(r"\b(?:film|clip|video|movie|scene|shot|time|animation|footage|sequence)\b")
+_CONTRAST = re.compile(r"^(?:,|\.|and|but|so|then|only|just|so that)* ?(?:not|no|instead|rather|than|never|without|and then|then|back|as|like)\b")
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 
 
@@ -67,6 +75,10 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
             happening = event
         else:
             return None
+    if happening is not None and happening.during.part in ("until", "until_end") and moment.start is not None:
+        return None  # a time that starts in numbers and stops with what happens
+    if any(tag in _IDLE and _loses(tag, words[start:stop]) for tag, start, stop in spans):
+        return None
     left = {at for tag, start, stop in spans if tag in _TIMES or tag in _IDLE for at in range(start, stop)}
     text = " ".join(word for at, word in enumerate(words) if at not in left).strip(" ,.;:!")
     text = re.sub(r"(?: [,.;:!])+(?= [,.;:!])", "", text)
@@ -78,6 +90,14 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         things = names_in(happening.said, thing)[:1]
     goals = _things(named, "y", thing)
     return Said(text, (*things, *(g for g in goals if g not in things)), moment, happening is not None, thing), happening
+
+
+def _loses(tag: str, words: Sequence[str]) -> bool:
+    """Whether words that seem to ask for nothing tell a time."""
+    said = " ".join(words).strip(" ,.;")
+    if tag == "not" and _CONTRAST.match(" ".join(words)):
+        return False
+    return TIMED.search(said) is not None or any(found["word"] != "as" for found in CONJUNCTION.finditer(said))
 
 
 def _things(named: Sequence[tuple[str, str]], tag: str, thing: Thing) -> tuple[str, ...]:
@@ -105,6 +125,10 @@ def _joined(one: Moment, other: Moment) -> Moment | None:
 
 def _moment(tag: str, phrase: str) -> Moment | None:
     """A time in numbers."""
+    if _HALFWAY.match(phrase) and not _FILM.search(phrase) and not _ALONE.match(phrase):
+        return None
+    if tag == "to" and re.match(r"by (?:the )?(?:very )?end\b", phrase):
+        return Moment(stop="end", said=(phrase,))
     rest, moment = cut(phrase)
     if moment != Moment() and not any(is_word(word) or is_known(word) for word in rest.strip(" ,.").split()):
         return moment
@@ -143,6 +167,10 @@ def _seconds(said: str) -> float | None:
 
 def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
     """A time told by what happens."""
+    if (half := _HALFWAY.match(phrase)) is not None:
+        of = names_in(half["who"] or half["what"], thing)[:1]
+        whose = thing(of[0]) if of and (half["who"] or half["way"].startswith((" through", " of"))) else None
+        return Happening(During(state="halfway", of=whose or IT, part="until" if tag == "to" else "from"), phrase)
     phrase = _WHERE.sub("when ", _AS.sub("while ", phrase))
     for said in (phrase, f"{_TIMES[tag]} {phrase}"):
         for found in CONJUNCTION.finditer(said):

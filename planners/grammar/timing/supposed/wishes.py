@@ -213,7 +213,9 @@ _ONCE = ("once", "one time")
 _ROUND = re.compile(
     r"\b(?:one|a) (?:[a-z]+ ){0,2}(?:turn|circle|spin|rotation|twirl|pirouette|round)\b|\ball the way round\b"
 )
-_OTHER_WAY = re.compile(r"\b(?:way|direction|clockwise|anti|counter)\b")
+_OTHER_WAY = re.compile(
+    r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction)|way (?:round|around)|direction|clockwise|anti|counter)\b"
+)
 
 
 def _spin(said: Said) -> Iterator[Wish]:
@@ -251,7 +253,8 @@ def _return(said: Said) -> Iterator[Wish]:
 
 _A_PART = re.compile(r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back|returns?|again)\b")  # of a movement that has two
 _LATER = re.compile(r"\b(?:later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
-_EARLIER = re.compile(r"\b(?:earlier|sooner|early|ahead)\b")
+_EARLIER = re.compile(r"\b(?:earlier|sooner|early|ahead|forward)\b")
+_TOO_LATE = re.compile(r"\b(?:too|so) (?:\w+ )?(late|early|soon)\b")
 _FACTORS = tuple(
     (re.compile(pattern), factor)
     for pattern, factor in (
@@ -300,6 +303,8 @@ def _begin(said: Said) -> Iterator[Wish]:
 
 def _sign(text: str) -> float | None:
     """1 if something is to be later, -1 if earlier; None if neither is said, or both."""
+    if (late := _TOO_LATE.search(text)) is not None:
+        return -1.0 if late[1] == "late" else 1.0
     later, earlier = _LATER.search(text) is not None, _EARLIER.search(text) is not None
     return None if later == earlier else 1.0 if later else -1.0
 
