@@ -29,6 +29,7 @@ TOUCHES = 0.04  # metres: gap up to which measured boxes may touch
 SLIP = 0.006  # metres: more than the least gap of an encounter, and the things do not touch any more
 LOOSE = 0.94  # of the score from which a relation holds: the hysteresis of its spans
 LET_GO = 0.02  # metres: a gap up to which two encounters are one
+_JUMP = 8.0  # times the usual speed: what is faster jumps, and tells nothing of how fast a thing moves
 PAUSE = 0.15  # seconds: shorter rests are no stop
 STILL = 0.004  # metres a second: a thing whose fastest corner is slower stands still
 _SLOW = 0.02  # of the fastest speed: slower is still, so that smooth starts count from where they can be seen
@@ -236,9 +237,11 @@ def movements(course: Course, unit: float = 1.0) -> list[Span]:
     if course.moving is None:
         return []
     times = course.grid()
-    fastest = float(course.rates(times).max())
+    rates = course.rates(times)
+    fastest = float(rates.max())
     if fastest < STILL * unit:
         return []
+    fastest = min(fastest, _JUMP * float(np.median(rates[rates >= STILL * unit])))
     level = max(STILL * unit, _SLOW * fastest)
     found = joined(spans(course.rates, times, level, 0.5 * level), PAUSE)
     return [s for s in found if _swept(course, s) > _JITTER * unit]

@@ -79,12 +79,14 @@ _RELATIONS = {
 }  # fmt: skip
 _RELATED = {said: relation for relation, phrases in _RELATIONS.items() for said in phrases.split("|")}
 _TO = ("to", "up to", "over to", "against", "as far as", "across to", "back to")
-_DONE = re.compile(r"\b(?:is|has|are|have|gets|'s) (?:all )?(?:done|finished|through) (?:with )?(?:its |his |the )?[a-z]+ing$")
+_DONE = re.compile(
+    r"(?:\b(?:is|has|are|have|gets)|'s) (?:all )?(?:done|finished|through) (?:with )?(?:its |his |the )?[a-z]+ing$"
+)
 _AT_TURN = re.compile(
     r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at) (?:its|his|her|the|that) "
     r"(?:turn|turning point|corner|bend|curve)$"
 )
-_FULLY = re.compile(r"\b(?:fully|completely|all the way|wide|entirely|totally)\b")
+_FULLY = re.compile(r"\b(?:full|fully|completely|all the way|wide|entirely|totally)\b")
 _NEXT = ("touching", "in contact with", "resting against")
 
 

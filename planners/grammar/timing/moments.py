@@ -54,7 +54,7 @@ class Moment:
 
 _UNIT = r"(?:seconds?|secs?|s)\b"
 _ONES = "|".join(sorted((w for w in NUMBERS if NUMBERS[w] < 61), key=len, reverse=True))
-_WORD = rf"(?:(?:{_ONES})(?: (?:{_ONES}))?|a couple of|a few|a|an)"
+_WORD = rf"(?:(?:{_ONES})(?: (?:{_ONES}))?|a couple of|couple of|a few|a|an)"
 _DIGITS = r"\d+(?:[.,]\d+)?"
 _HALVES = r"(?:a half|half|a quarter|three quarters|one and a half|a)"
 _HEDGE = r"(?:(?:like|about|around|exactly|just|roughly|only|approximately|some|the|full|good|whole|first|same|say) )*"
@@ -126,7 +126,7 @@ def _value(text: str) -> float | None:
         return float(number.replace(",", ".")) + half
     if number in ("a", "an", ""):
         return 1.0 + half
-    if number == "a couple of":
+    if number in ("a couple of", "couple of"):
         return 2.0
     if number == "a few":
         return 3.0
@@ -196,7 +196,7 @@ def _last(moment: Moment, found: re.Match[str]) -> Moment | None:
 
 _OVER, _OF_CLIP = r"(?:for |during |in |over |within )?(?:the )?", rf"(?: of (?:the |this )?{_CLIP})?"
 _PHRASES: tuple[tuple[str, Made], ...] = (
-    (rf"{_OVER}first (?P<a>{_DURATION}|second and a half|second)(?! later){_OF_CLIP}", _first),
+    (rf"{_OVER}(?:first|opening) (?P<a>{_DURATION}|second and a half|second)(?! later){_OF_CLIP}", _first),
     (rf"{_OVER}(?:last|final) (?P<a>{_DURATION}|second){_OF_CLIP}", _last),
     (rf"(?:from|starting (?:at|from)) (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
     (rf"(?:in )?between (?P<a>{_BARE}) ?{_TO} (?P<b>{_BARE})", _range),
@@ -247,7 +247,10 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
         r"(?:(?:from|at|in) the (?P<a>first) (?:moment|frame|instant)|immediately|right away|straight away|instantly)",
         _at_once,
     ),
-    (r"(?P<a>halfway) (?:through|in)(?! (?:its|his|her|their|the [a-z]+ing)\b)(?: (?:it|the (?:clip|scene|film|video|animation)))?", _start),
+    (
+        r"(?P<a>halfway) (?:through|in)(?! (?:its|his|her|their|the [a-z]+ing)\b)(?: (?:it|the (?:clip|scene|film|video|animation)))?",
+        _start,
+    ),
 )
 _COMPILED = tuple((re.compile(rf"(?:^|(?<= )){pattern}(?= |$)"), made) for pattern, made in _PHRASES)
 OWN = "in its own time"  # what `restated` makes of "instead of to the wall"

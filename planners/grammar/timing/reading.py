@@ -40,9 +40,9 @@ from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
 from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
-from .supposed.kinds import likely, marked
+from .supposed.kinds import COURSES, likely, marked
 from .supposed.names import with_nouns
-from .supposed.parts import divided
+from .supposed.parts import divided, loses_numbers
 from .supposed.said import said_of
 from .supposed.wishes import wishes
 from .verbs import SENSES, any_of, forms, has_form
@@ -123,19 +123,30 @@ class TimeReader:
             for rest, moment, happening in islice(whole, 2)
         ]
         wording = with_nouns(spelled).split(" ")
-        if (by_marks := divided(wording, marked(wording), self.thing)) is not None:
+        marks = marked(wording)
+        if (by_marks := divided(wording, marks, self.thing)) is not None:
             readings.insert(0, by_marks)
         for kind, chance in kinds:
             for text, happening in readings:
                 for wish in wishes(kind, text, chance):
                     with suppress(Refusal, UserError, ValidationError):
+                        event = None if wish.timeless else happening
                         if isinstance(wish.command, Command):
-                            found = self._made(wish.command, wish.moment, happening)
+                            found = self._made(wish.command, wish.moment, event)
                         else:
-                            found = self._command(wish.command, "", wish.moment, happening, text.told)
-                        if found:
+                            told = text.told and not wish.timeless
+                            found = self._command(wish.command, "", wish.moment, event, told)
+                        if found and not loses_numbers(wording, marks, found):
                             return found
         return None
+
+    def contradicts(self, cleaned: str, ops: Sequence[Fields]) -> bool:
+        """Whether operations change what is there once and for all, or its look, where words most likely ask for another
+        course of a motion: "set off at 1 s" deletes nothing."""
+        if not any(op["op"] in _ONCE_FOR_ALL for op in ops):
+            return False
+        kinds = likely(cleaned)
+        return bool(kinds) and kinds[0][0] in COURSES and kinds[0][1] >= _SAID_SO
 
     def _without_remarks(self, said: str, cleaned: str) -> tuple[Fields, ...] | None:
         """What is asked for beside the pieces that ask for nothing; None if that is not understood either."""
@@ -335,6 +346,9 @@ class TimeReader:
             return None
         if happening is not None and not moment.empty and moment.lasting is None and moment.stop is not None:
             return None
+        if happening is not None and happening.during.part in ("until", "until_end"):
+            if moment.start is not None and any(map(_AT_A_TIME.match, moment.said)):
+                return None  # a time that starts in numbers and stops with what happens
         if happening is not None and happening.said.startswith("before ") and phrases.RIDDING.match(said):
             return None  # "delete the vase before it falls" gives a reason
         for command in commands(said, self.thing, moment, told):
@@ -395,6 +409,20 @@ class TimeReader:
             and all(op.get("change") in ("stop", "begin") for op in ops)
         ):  # "stop when it is turning" begins then
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
+        opened = happening is not None and happening.during.state in ("open", "opening", "fully_open")
+        if (
+            happening is not None
+            and opened
+            and moment.lasting is not None
+            and not moment.taken
+            and moment.start is None
+        ):
+            if all(
+                op["op"] == "articulate" and op.get("change") == "close" for op in ops
+            ):  # "when it was open for 1 s"
+                moment = replace(moment, start=moment.lasting, lasting=None)
+                during = happening.during.model_copy(update={"state": "fully_open", "part": "from"})
+                happening = replace(happening, during=during)
         waits = moment.lasting is not None and all(op.get("change") == "stop" for op in ops)
         if happening is not None and waits and happening.during.part == "until":  # "pause for 1 s before it turns"
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
@@ -475,6 +503,8 @@ class TimeReader:
 
 _TIME_FIRST = re.compile(r"(?:when|whenever|once|while|as soon as) (?:the|my|our|this|that|it|he|she|they) .* , ")
 _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
+_ONCE_FOR_ALL = ("delete", "rotate", "restyle", "insert", "duplicate", "scale")
+_SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 _LONGEST = 45  # words of an instruction with one wish
 _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b")
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
@@ -801,6 +831,9 @@ def _when(moment: Moment, during: During | None, kind: str, op: Fields) -> When 
     stop: End | None = None if lasting is not None else moment.stop
     if kind == "path" and isinstance(start, float) and start < 0 and lasting is None and stop is None:
         stop = "end"  # "in the last two seconds" is there at the end
+    ends = during is not None and during.part in ("from", "after") and moment.always
+    if kind == "path" and ends and stop is None and lasting is None:
+        stop = "end"  # "by the end of the film"
     if kind == "path" and start is None and stop is None and lasting is None and during is None:
         return When(stop="end" if moment.always else None)
     if start is None and stop is None and lasting is None and during is None:

@@ -15,6 +15,10 @@ from ....learned.seen import stored
 
 FOLDER = Path(__file__).parent
 NO_WISH = "none"  # the kind of questions, remarks, and wishes that are about neither time nor motion
+COURSES = (  # kinds that are about how what is there moves by itself
+    "begin", "speed", "duration", "pause", "halt", "still", "reverse", "stay", "order", "together", "repeat", "return",
+    "longer",
+)  # fmt: skip
 LEAST = 0.3  # probability of a kind that is tried
 MOST = 2  # kinds that are tried
 

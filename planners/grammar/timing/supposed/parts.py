@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+
+from pydantic import BaseModel
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
+from .....gaussians.world.words import singular
 from .....tools.when import During
 from ...tagging.spelling import is_word
 from ...vocabulary.nouns import is_known
-from ...vocabulary.quantities import ORDINALS
+from ...vocabulary.quantities import NUMBERS, ORDINALS
+from ....learned.seen import hues
+from ..command import Fields
 from ..happenings import CONJUNCTION, IT, Happening, clause_of
+from ..happenings import cut as happenings_in
 from ..manner import Thing
 from ..moments import DURATION, TIMED, End, Moment, cut, seconds_of
+from ..verbs import SENSES, has_form
 from .names import named as names_in
+from .names import with_moving
 from .said import Said
 
 Span = tuple[str, int, int]  # a tag, and the words from one to another
@@ -31,11 +39,15 @@ _BARE = re.compile(
 )
 _AS = re.compile(r"^(?:all the while|the whole time(?: that)?|for the time(?: that)?) (?=\w)")
 _WHERE = re.compile(r"^(?:at )?(?:the (?:point|place|spot|corner) )?(?:where|upon) (?=\w)")
+_WHERE_IN = re.compile(r"\bwhere\b(?= (?:it|he|she|they|the) )")
 _ALL = re.compile(r"\b(?:whole|entire|throughout|all the time|always|(?:beginning|start) to (?:the )?(?:end|finish))\b")
 _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     (re.compile(r"\b(?:middle|half ?way|half time|midway|half the)\b"), "middle"),
     (re.compile(r"\b(?:end|finish|close|last frame|over|finale)\b"), "end"),
-    (re.compile(r"\b(?:beginning|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b"), 0.0),
+    (
+        re.compile(r"\b(?:beginning|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b"),
+        0.0,
+    ),
 )
 _HALF = re.compile(r"\b(first|second|last|latter|other) half\b")
 _UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
@@ -45,7 +57,7 @@ _HALFWAY = re.compile(
 )
 _ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| in| point)*$")
 _FILM = re.compile(r"\b(?:film|clip|video|movie|scene|shot|time|animation|footage|sequence)\b")
-_CONTRAST = re.compile(r"^(?:,|\.|and|but|so|then|only|just|so that)* ?(?:not|no|instead|rather|than|never|without|and then|then|back|as|like)\b")
+_CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 
 
@@ -81,23 +93,46 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         return None
     left = {at for tag, start, stop in spans if tag in _TIMES or tag in _IDLE for at in range(start, stop)}
     text = " ".join(word for at, word in enumerate(words) if at not in left).strip(" ,.;:!")
-    text = re.sub(r"(?: [,.;:!])+(?= [,.;:!])", "", text)
-    named = [
-        (tag, " ".join(words[start:stop]).strip(" ,.")) for tag, start, stop in sorted(spans, key=lambda s: s[1])
-    ]
-    things = _things(named, "x", thing)
-    if not things and happening is not None:  # "once the door has opened, shut it"
-        things = names_in(happening.said, thing)[:1]
+    text = with_moving(re.sub(r"(?: [,.;:!])+(?= [,.;:!])", "", text))
+    if happening is None:
+        text, moment, happening = _with_unmarked(text, moment, thing)
+    named = [(tag, _name(words, start, stop, thing)) for tag, start, stop in sorted(spans, key=lambda s: s[1])]
     goals = _things(named, "y", thing)
-    return Said(text, (*things, *(g for g in goals if g not in things)), moment, happening is not None, thing), happening
+    things = _things(named, "x", thing) or tuple(name for name in names_in(text, thing) if name not in goals)[:1]
+    if not things and happening is not None:  # "once the door has opened, shut it"
+        if any(names_in(" ".join(words[start:stop]), thing) for tag, start, stop in spans if tag in _IDLE):
+            return None  # "that lamp would look so pretty ... in pink as long as the fan turns"
+        things = names_in(happening.said, thing)[:1]
+    goals = tuple(name for name in goals if name not in things)
+    return Said(text, (*things, *goals), moment, happening is not None, thing, goals), happening
 
 
 def _loses(tag: str, words: Sequence[str]) -> bool:
     """Whether words that seem to ask for nothing tell a time."""
     said = " ".join(words).strip(" ,.;")
-    if tag == "not" and _CONTRAST.match(" ".join(words)):
+    if len(hues() & set(said.split())) > 1:
+        return True  # "first blue, then green, and red for the finale"
+    if tag == "not" and _CONTRAST.search(said):
         return False
     return TIMED.search(said) is not None or any(found["word"] != "as" for found in CONJUNCTION.finditer(said))
+
+
+def _with_unmarked(text: str, moment: Moment, thing: Thing) -> tuple[str, Moment, Happening | None]:
+    """A text without times that no mark tells, and these beside those that marks tell."""
+    rest, found = cut(text)
+    if found != Moment() and (both := _joined(moment, found)) is not None:
+        text, moment = rest, both
+    rest, happening = next(happenings_in(_WHERE_IN.sub("when", text), thing), (text, None))
+    return rest, moment, happening
+
+
+def _name(words: Sequence[str], start: int, stop: int, thing: Thing) -> str:
+    """A name with a mark, and the noun behind it if that is a part of it: "[the coat] rack"."""
+    said = " ".join(words[start:stop]).strip(" ,.")
+    longer = f"{said} {words[stop]}" if stop < len(words) and is_known(words[stop]) else ""
+    if longer and thing(longer) is not None and not has_form(words[stop], tuple(SENSES), "plain", "s"):
+        return longer
+    return said if thing(said) is not None else next(iter(names_in(said, thing)), said)
 
 
 def _things(named: Sequence[tuple[str, str]], tag: str, thing: Thing) -> tuple[str, ...]:
@@ -133,7 +168,8 @@ def _moment(tag: str, phrase: str) -> Moment | None:
     if moment != Moment() and not any(is_word(word) or is_known(word) for word in rest.strip(" ,.").split()):
         return moment
     if (half := _HALF.search(phrase)) is not None:
-        return Moment(start=None if half[1] == "first" else "middle", stop="middle" if half[1] == "first" else None, said=(phrase,))
+        first = half[1] == "first"
+        return Moment(start=None if first else "middle", stop="middle" if first else "end", said=(phrase,))
     if _ALL.search(phrase):
         return Moment(always=True, said=(phrase,))
     bare = _BARE.match(phrase)
@@ -177,3 +213,33 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
             if found.start() == 0 and (during := clause_of(found["word"], said[found.end() :].strip(" ,."), thing)):
                 return Happening(during, said)
     return None
+
+
+def loses_numbers(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fields]) -> bool:
+    """Whether a number that an instruction tells, and not as what is not wanted, stands in no operation."""
+    idle = {at for tag, start, stop in spans if tag == "not" for at in range(start, stop)}
+    exact = {abs(value) for op in ops for value in _numbers(op)}
+    held = exact | {1 / value for value in exact if value} | {100 * value for value in exact} | {1 - value for value in exact}
+    for at, (word, then) in enumerate(zip(words, (*words[1:], ""), strict=True)):
+        told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
+        if told != 1 and at not in idle and not is_known(singular(then)) and then not in ("of", "ones"):
+            among = exact if re.fullmatch("full|whole|s|sec|secs|seconds?", then) else held
+            if not any(abs(told - value) < 0.01 or abs(told + 0.5 - value) < 0.01 for value in among):
+                return True
+    return False
+
+
+def _numbers(value: object) -> Iterator[float]:
+    """All numbers in the fields of an operation."""
+    if isinstance(value, BaseModel):
+        value = value.model_dump()
+    if isinstance(value, bool):
+        return
+    if isinstance(value, int | float):
+        yield float(value)
+    elif isinstance(value, dict):
+        for inner in value.values():
+            yield from _numbers(inner)
+    elif isinstance(value, list | tuple):
+        for inner in value:
+            yield from _numbers(inner)

@@ -42,6 +42,7 @@ class Said:
         moment: its time in numbers.
         event: whether a time is told by what happens.
         thing: reads a name.
+        goals: those of the names to which something goes, or beside which it is, where marks tell.
     """
 
     text: str
@@ -49,6 +50,7 @@ class Said:
     moment: Moment
     event: bool
     thing: Thing
+    goals: tuple[str, ...] = ()
 
     @property
     def told(self) -> bool:

@@ -24,7 +24,7 @@ from .kinds import classifier
 from .names import MOVING
 from .said import Said
 
-SURE = 0.85  # probability from which a change without a time is supposed: the rest of the grammar reads these
+SURE = 0.85  # probability from which a change without a time is supposed, or an unknown verb is left aside
 _STATIC = ("recolor", "hide", "remove", "move")  # kinds that need no time
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _PROHIBITED = re.compile(
@@ -49,6 +49,7 @@ class Wish:
         things: how many things stand in it.
         holds: words of the instruction, other than names, that stand in it.
         spent: seconds of the time in numbers that are no time of it.
+        timeless: whether what happens at its time goes without saying.
     """
 
     command: str | Command
@@ -56,6 +57,7 @@ class Wish:
     things: int = 1
     holds: str = ""
     spent: float | None = None
+    timeless: bool = False
 
 
 def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
@@ -65,7 +67,9 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
         chance: the probability of the kind.
     """
     made = _KINDS.get(kind)
-    if made is None or not said.things or not _is_any_word(said.text.split(" ")[0]):
+    if made is None or not said.things:
+        return
+    if chance < SURE and not _is_any_word(said.text.split(" ")[0]):
         return  # a verb that is no word may ask for anything
     timeless = not said.told and not said.moment.always
     if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
@@ -122,15 +126,18 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"far|farther|further|wide|wider": "amount",
     r"earlier|sooner|later": "begin open order",
     r"backwards?|reverse|reversed": "reverse return",
-    r"back": "return reverse close stay still hide order repeat",
-    r"again": "repeat return close open stay still halt hide recolor reverse",
+    r"back": "return reverse close stay still hide order repeat pause",
+    r"again": "repeat return close open stay still halt hide recolor reverse pause",
     r"invisible|hidden|disappears?|vanish|vanishes|gone": "hide remove",
     r"shows?|shown|reveals?|visible": "hide",
+    r"shut|shuts|close|closes": "close stay still open begin order together speed",
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order",
 }
+_OPENING = ("speed", "duration", "begin", "open", "amount")  # of what opens, in whatever manner
 _NEGATED = ("hide", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
+_DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")
 _WISHED = re.compile(r" , (?:and |but )?(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b")
 _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
 
@@ -139,9 +146,11 @@ def _says_no_more(kind: str, said: Said, left: str) -> bool:
     """Whether no word that is `left` tells of another wish: "one second earlier, and slower"."""
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY) or _WISHED.search(said.text):
         return False
-    if kind not in _NEGATED and _NOT.search(_TOO_FAST.sub(" ", _TOO_SLOW.sub(" ", left))):
+    if kind not in _NEGATED and _NOT.search(_DISLIKES.sub(" ", _TOO_FAST.sub(" ", _TOO_SLOW.sub(" ", left)))):
         return kind == "begin" and _LATER.search(left) is not None  # "not at once, it waits"
     manner = _MANNER.search(left)
+    if kind in _OPENING:
+        return True
     return manner is None or manner["verb"] in AUXILIARIES or has_form(manner["verb"], tuple(SENSES), "plain", "s")
 
 
@@ -177,7 +186,8 @@ _LENGTH = re.compile(
 
 def _recolor(said: Said) -> Iterator[Wish]:
     hue = next((word for word in _COMPLAINED.sub(" ", said.beside).split() if word in hues()), None)
-    if hue is not None:
+    several = [word for word in said.beside.split() if word in hues() and word != hue]
+    if hue is not None and not several:
         shade = re.search(rf"\b(?:{_SHADE}) {hue}\b", said.text)
         text = f"make {said.things[0]} {hue if shade is None else shade[0]}"
         yield Wish(Command(kind="look", text=text), said.moment, holds=hue)
@@ -213,27 +223,37 @@ _ONCE = ("once", "one time")
 _ROUND = re.compile(
     r"\b(?:one|a) (?:[a-z]+ ){0,2}(?:turn|circle|spin|rotation|twirl|pirouette|round)\b|\ball the way round\b"
 )
+_RATE = re.compile(r"\b(?:once|twice|(?:[a-z]+|\d+) (?:times|turns|rounds)) (?:a|per|every|each) second\b")
 _OTHER_WAY = re.compile(
     r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction)|way (?:round|around)|direction|clockwise|anti|counter)\b"
 )
 
 
 def _spin(said: Said) -> Iterator[Wish]:
+    if (rate := _RATE.search(said.beside)) is not None:
+        yield Wish(f"spin {said.things[0]} {rate[0]}", said.moment, holds=rate[0])
+        return
     times, full = _TIMES.search(said.beside), _ROUND.search(said.beside)
     if times is not None:
         often = "once" if times[0] in _ONCE else times[0]
-        yield Wish(f"spin {said.things[0]} {often}", said.moment, holds=times[0])
+        yield Wish(f"spin {said.things[0]} {often}", _to_the_end(said.moment), holds=times[0])
     elif full is not None:
-        yield Wish(f"spin {said.things[0]} once", said.moment, holds=full[0])
+        yield Wish(f"spin {said.things[0]} once", _to_the_end(said.moment), holds=full[0])
     else:
         yield Wish(f"spin {said.things[0]}", said.moment)
+
+
+def _to_the_end(moment: Moment) -> Moment:
+    """A time "in the last two seconds", all of which a turn takes."""
+    last = isinstance(moment.start, float) and moment.start < 0 and moment.stop is None
+    return replace(moment, stop="end") if last else moment
 
 
 def _reverse(said: Said) -> Iterator[Wish]:
     if not said.told and _OTHER_WAY.search(said.text):
         yield Wish(f"let {said.things[0]} turn the other way round", said.moment)
     elif not said.told:
-        yield Wish(pace(said.whose, "reverse"), said.moment)
+        yield Wish(pace(said.whose, "reverse"), said.moment, things=1 + len(said.goals))
 
 
 def _repeat(said: Said) -> Iterator[Wish]:
@@ -246,6 +266,8 @@ def _repeat(said: Said) -> Iterator[Wish]:
 
 
 def _return(said: Said) -> Iterator[Wish]:
+    if len(said.goals) == 1 and said.told:
+        yield Wish(f"move {said.things[0]} to {said.goals[0]}", said.moment, things=2)
     yield Wish(pace(said.whose, "return"), said.moment)
 
 
@@ -268,6 +290,7 @@ _FACTORS = tuple(
         (r"\bhalf\b|\bhalve\b", 0.5),
     )
 )
+_OFTEN = re.compile(r"\b(?:by (?:a )?factor (?:of )?)?(?P<n>\d+(?:\.\d+)?) ?(?P<unit>x|times|%|percent|fold)(?= |$)")
 _TOO_FAST = re.compile(
     r"\b(?:too|so|painfully)(?: \w+)? (?:fast|quick|quickly|hasty|rushed|wild)\b|"
     r"\b(?:less|not so|not as|not that) (?:fast|quick|quickly|hasty|wild|rushed|speedy|speed)\b"
@@ -295,6 +318,8 @@ def _begin(said: Said) -> Iterator[Wish]:
             yield Wish(pace(said.whose, "later", seconds=sign * seconds), Moment(), holds=words)
         if moment.lasting is not None and moment.start is None and moment.stop is None:
             yield Wish(pace(said.whose, "later", seconds=sign * moment.lasting), Moment(), spent=moment.lasting)
+    if moment.lasting is not None and moment.taken and isinstance(moment.start, float) and moment.stop is None:
+        yield Wish(pace(said.whose, "begin"), _plainly(said))  # "start it at 2 s and finish in half a second"
     if said.told and moment.lasting is None:
         if moment.stop is not None and moment.start is None and not said.event:  # "it waits until 2 s"
             moment = replace(moment, start=moment.stop, stop=None)
@@ -313,6 +338,11 @@ def _speed(said: Said) -> Iterator[Wish]:
     if _A_PART.search(said.text):
         return
     plain = _TOO_SLOW.sub("faster", _TOO_FAST.sub("slower", said.beside))
+    if (often := _OFTEN.search(said.beside)) is not None and "slow" not in plain:
+        factor = float(often["n"]) / 100 if often["unit"] in ("%", "percent") else float(often["n"])
+        if factor > 0 and (factor > 1 or not _HASTE.search(plain)):
+            yield Wish(pace(said.whose, "speed", factor=factor), _plainly(said), holds=often[0])
+        return
     slower, faster = _SLOWER.search(plain) is not None, _FASTER.search(plain) is not None
     for pattern, factor in _FACTORS:
         if (found := pattern.search(said.beside)) is not None:
@@ -331,7 +361,11 @@ def _speed(said: Said) -> Iterator[Wish]:
 
 def _duration(said: Said) -> Iterator[Wish]:
     moment = said.moment
-    if _A_PART.search(said.text) or moment.stop is not None or (moment.lasting is not None and not moment.taken):
+    if _A_PART.search(said.text):
+        return
+    if isinstance(moment.stop, float) and moment.start is None and moment.lasting is None:
+        yield Wish(pace(said.whose, "begin"), _plainly(said), things=1 + len(said.goals))
+    if moment.stop is not None or (moment.lasting is not None and not moment.taken):
         return
     if moment.lasting is not None:
         if not any(words.startswith("by ") for words in moment.said):  # that is a time, and no duration
@@ -350,8 +384,16 @@ _RESTS = re.compile(
 )
 
 
+_HALF_DONE = re.compile(r"\b(?:half ?way|half (?:of )?(?:the|its|his|her) (?:way|fall|drop|walk|swing)|midway)\b")
+
+
 def _pause(said: Said) -> Iterator[Wish]:
     moment, rest = said.moment, pace(said.whose, "stop")
+    half = _HALF_DONE.search(said.beside)
+    if half is not None and moment.lasting is not None and moment.start is None and not said.event:
+        rest = replace(rest, during={"state": "halfway", "part": "from"})
+        yield Wish(rest, replace(moment, taken=False), things=1 + len(said.goals), holds=half[0])
+        return
     if moment.lasting is not None or moment.stop is not None:
         if moment.start is not None or moment.stop is not None or said.event:
             yield Wish(rest, replace(moment, taken=False, slowly=False))
@@ -373,10 +415,11 @@ def _still(said: Said) -> Iterator[Wish]:
 
 
 def _stay(said: Said) -> Iterator[Wish]:
-    if _RESTS.search(said.text):
+    moment = said.moment
+    if _RESTS.search(said.text) and not said.event:
         yield from _still(said)
-    elif not said.told:
-        yield Wish(f"keep {said.things[0]} open", Moment())
+    elif moment.start is None and moment.lasting is None and moment.stop in (None, "end"):
+        yield Wish(f"keep {said.things[0]} open", Moment(), timeless=True)
 
 
 def _longer(said: Said) -> Iterator[Wish]:
@@ -425,6 +468,12 @@ _SEVERAL = re.compile(r"^(?:all|both|everything|these|those|the (?:two|three|fou
 
 
 def _order(said: Said) -> Iterator[Wish]:
+    colors = [word for word in said.beside.split() if word in hues()]
+    if len(said.things) == 1 and len(colors) > 1 and len(set(colors)) == len(colors) and not said.told:
+        listed = ", ".join(colors)
+        holds = said.beside[said.beside.index(colors[0]) : said.beside.rindex(colors[-1]) + len(colors[-1])]
+        yield Wish(f"let {said.things[0]} move in the order {listed}", Moment(), holds=holds)
+        return
     if len(said.things) == 1:
         if said.told and said.moment.empty:
             yield Wish(pace(said.whose, "begin"), said.moment)

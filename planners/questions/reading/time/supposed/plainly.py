@@ -91,7 +91,9 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]]) -> Sa
 
 def _named(said: str) -> str:
     """A name with an article."""
-    said = re.sub(r" 's$", "", re.sub(r"^(?:this|that|these|those|a|an|my|our|your|his|her|their|its) (?=\w)", "the ", said))
+    said = re.sub(
+        r" 's$", "", re.sub(r"^(?:this|that|these|those|a|an|my|our|your|his|her|their|its) (?=\w)", "the ", said)
+    )
     return said if _DETERMINED.match(said) or said in _PRONOUNS else f"the {said}"
 
 
@@ -245,7 +247,9 @@ def _fast(said: Said) -> Iterator[str]:
 
 def _which(said: Said) -> Iterator[str]:
     if said.x:
-        yield f"which {_one_of(said.x)} is the fastest" if " and " not in said.x else f"which of {said.x} is the fastest"
+        yield (
+            f"which {_one_of(said.x)} is the fastest" if " and " not in said.x else f"which of {said.x} is the fastest"
+        )
 
 
 def _over(said: Said) -> Iterator[str]:
@@ -326,4 +330,3 @@ _PLAIN: Mapping[str, Plain] = {
     "near": _about("what is {x} next to"),
     "on_way": _about("what does {x} touch"),
 }
-
