@@ -15,5 +15,7 @@ from .wording import learn
 
 SENTENCES = Path(__file__).with_name("timed_questions.tsv")
 
+RIDGE = 1e-6  # of 63 kinds; .77 of those of unseen writers are told, .76 with 1e-5
+
 if __name__ == "__main__":
-    learn(SENTENCES, FOLDER)
+    learn(SENTENCES, FOLDER, RIDGE)

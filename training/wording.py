@@ -16,10 +16,10 @@ import torch
 
 from ..gaussians import late_re as re
 from ..planners.grammar.tagging.words import split
-from ..planners.learned import kinds, marks
-from ..planners.learned.kinds import Classifier
-from ..planners.learned.marks import Span, Tagger, labels_of
-from ..planners.learned.seen import store
+from ..planners.grammar.learned import kinds, marks
+from ..planners.grammar.learned.kinds import Classifier
+from ..planners.grammar.learned.marks import Span, Tagger, labels_of
+from ..planners.grammar.learned.seen import store
 
 RARE = 2  # sentences, or words, in which a feature must stand
 RIDGE = 1e-5  # of the squares of the classifier's weights
@@ -64,8 +64,12 @@ def sentences(path: Path) -> list[Sentence]:
     return [Sentence(*line.split("\t")) for line in path.read_text(encoding="utf-8").splitlines()]
 
 
-def classifier(known: Sequence[Sentence]) -> Classifier:
-    """What tells the kinds of sentences best: logistic regression with a Gaussian prior."""
+def classifier(known: Sequence[Sentence], ridge: float = RIDGE) -> Classifier:
+    """What tells the kinds of sentences best: logistic regression with a Gaussian prior.
+
+    Args:
+        ridge: weight of the squares of its weights; less for many kinds, of which each has few sentences.
+    """
     seen = [kinds.features(sentence.said) for sentence in known]
     names, rows = _numbered(seen)
     labels = sorted({sentence.kind for sentence in known})
@@ -76,7 +80,7 @@ def classifier(known: Sequence[Sentence]) -> Classifier:
 
     def loss() -> torch.Tensor:
         scores = torch.sparse.mm(given, weights[:-1]) + weights[-1]
-        return torch.nn.functional.cross_entropy(scores, wanted) + RIDGE * weights[:-1].square().sum()
+        return torch.nn.functional.cross_entropy(scores, wanted) + ridge * weights[:-1].square().sum()
 
     _minimized(loss, [weights])
     return Classifier(labels, names, weights.detach().numpy().astype(np.float32))
@@ -153,12 +157,12 @@ class Told:
     recall: float
 
 
-def told_of_unseen(known: Sequence[Sentence]) -> Told:
+def told_of_unseen(known: Sequence[Sentence], ridge: float = RIDGE) -> Told:
     """How well the sentences of each writer are told by models that know those of the others."""
     right, hits, given, wanted = 0, 0, 0, 0
     for writer in sorted({sentence.writer for sentence in known}):
         others = [sentence for sentence in known if sentence.writer != writer]
-        kind_of, spans_of = classifier(others), tagger(others)
+        kind_of, spans_of = classifier(others, ridge), tagger(others)
         for sentence in known:
             if sentence.writer == writer:
                 right += kind_of.kinds_of(sentence.said)[0][0] == sentence.kind
@@ -167,15 +171,15 @@ def told_of_unseen(known: Sequence[Sentence]) -> Told:
     return Told(right / len(known), hits / given, hits / wanted)
 
 
-def learn(path: Path, folder: Path) -> None:
+def learn(path: Path, folder: Path, ridge: float = RIDGE) -> None:
     """Learn from the sentences of a file, say how well that goes, and write `kinds.npz` and `marks.npz`."""
     known = sentences(path)
-    told = told_of_unseen(known)
+    told = told_of_unseen(known, ridge)
     print(
         f"{len(known)} sentences; of a writer who was left out {told.kinds:.3f} of the kinds are told right, "
         f"and marks with a precision of {told.precision:.3f} and a recall of {told.recall:.3f}"
     )
-    kind_of, spans_of = classifier(known), tagger(known)
+    kind_of, spans_of = classifier(known, ridge), tagger(known)
     store(folder / "kinds.npz", {"labels": kind_of.labels, "names": kind_of.names}, {"weights": kind_of.weights})
     lists = {"labels": spans_of.labels, "names": spans_of.names}
     store(folder / "marks.npz", lists, {"weights": spans_of.weights, "moves": spans_of.moves})

@@ -28,7 +28,7 @@ from .reading.situation import Situation, read_situation
 from .reading.time import several
 from .reading.time.comparing import comparisons
 from .reading.time.everyday import everyday
-from .reading.time.frames import plain
+from .reading.time.frames import UNIT, plain
 from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
 from .reading.time.supposed.plainly import supposed
@@ -155,6 +155,7 @@ _ASKED_FOR = re.compile(
     r"\b(?:how|what)\b|^(?:list|which|who)\b.*\b(?:when|time|second|moment|distance|speed|number|angle)\b"
 )
 # What is no question for yes or no, though it may hold a statement: "it stops at last , when would that be".
+_UNIT_AT_END = re.compile(rf"\b(?:in|measured in) (?:{UNIT}|rpm)(?: , .*)?$")
 _WANTS_MORE = re.compile(
     r"^(?:sort|order|rank|list|name|count|describe|give|find|show|state|put|draw|pinpoint|determine|calculate|estimate|"
     r"measure|add|sum|compare|explain)\b|"
@@ -168,6 +169,7 @@ def _of_motion(asked: Asked, survey: Survey) -> Reading | None:
     refused: Reading | None = None
     no_number = asked.words[0] in _NO_NUMBER and not _ASKED_FOR.search(asked.said)
     wants_more = _WANTS_MORE.search(asked.said) is not None
+    in_unit = _UNIT_AT_END.search(asked.said) is not None
     for kind in kinds.OF_MOTION:
         for slots in (found for template in kind.templates for found in template.match(asked.words, READERS)):
             try:
@@ -176,7 +178,9 @@ def _of_motion(asked: Asked, survey: Survey) -> Reading | None:
                 refused = refused or Reading(_unnamed(error, survey), kind.name)
                 continue
             if isinstance(given, Answer) and (
-                (isinstance(given.answer, float) and no_number) or (given.answer_type == "yesno" and wants_more)
+                (isinstance(given.answer, float) and no_number)
+                or (in_unit and isinstance(given.answer, str | tuple))
+                or (given.answer_type == "yesno" and wants_more)
             ):
                 continue
             if isinstance(given, Answer) and given.answer is None:

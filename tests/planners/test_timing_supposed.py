@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from scenewright.planners.grammar.planner import SUPPOSED, GrammarPlanner
-from scenewright.planners.grammar.timing.supposed.kinds import likely, stored
-from scenewright.training import timed_wishes
+from scenewright.planners.grammar.timing.supposed.kinds import classifier, likely, marked
+from scenewright.training import timed_wishes, wording
 
 PLANNER = GrammarPlanner()
 
@@ -32,7 +32,7 @@ KINDS = [
 @pytest.mark.parametrize(("text", "kind"), KINDS)
 def test_the_kind_of_a_wish_is_told(text: str, kind: str) -> None:
     """None of these was learned from."""
-    assert text not in {sentence.said for sentence in timed_wishes.sentences()}
+    assert text not in {sentence.said for sentence in wording.sentences(timed_wishes.SENTENCES)}
     assert likely(text)[0][0] == kind
 
 
@@ -88,9 +88,72 @@ def test_a_plan_says_that_it_was_supposed_and_is_not_sure() -> None:
 @pytest.mark.slow
 def test_the_weights_are_those_of_the_sentences() -> None:
     """Stored in steps of 1/127 of the largest: sentences whose kinds are nearly as likely may change places."""
-    known = timed_wishes.sentences()
-    model = timed_wishes.learned(known)
+    known = wording.sentences(timed_wishes.SENTENCES)
+    model = wording.classifier(known)
     told = [model.kinds_of(s.said)[0][0] for s in known]
-    kept = [stored().kinds_of(s.said)[0][0] for s in known]
+    kept = [classifier().kinds_of(s.said)[0][0] for s in known]
     assert sum(a == b for a, b in zip(told, kept, strict=True)) >= 0.995 * len(known)
-    assert timed_wishes.right_of_unseen(known) > 0.8  # .835 measured, of 22 kinds
+
+
+@pytest.mark.slow
+def test_a_writer_who_was_left_out_is_told() -> None:
+    """.835 of the kinds, of 22, and .83 and .78 of marks with both their ends were measured for all writers."""
+    known = wording.sentences(timed_wishes.SENTENCES)
+    writer = known[-1].writer
+    others, own = ([s for s in known if (s.writer == writer) == it] for it in (False, True))
+    kind_of, spans_of = wording.classifier(others), wording.tagger(others)
+    assert sum(kind_of.kinds_of(s.said)[0][0] == s.kind for s in own) > 0.7 * len(own)
+    hits = sum(len(set(spans_of.spans(s.words)) & set(s.spans)) for s in own)
+    assert hits > 0.7 * sum(len(s.spans) for s in own)
+
+
+@pytest.mark.parametrize(
+    ("text", "tag", "said"),
+    [
+        ("make the kettle blue once the tram has gone by", "from", "once the tram has gone by"),
+        ("let the swing take three seconds for it, not two", "not", ", not two"),
+        ("push the crate over to the wall by the end of the film", "to", "by the end of the film"),
+        ("push the crate over to the wall by the end of the film", "y", "the wall"),
+        ("lower the flag by half a metre, it looks odd", "by", "by half a metre"),
+    ],
+)
+def test_words_are_marked(text: str, tag: str, said: str) -> None:
+    words = text.replace(",", " ,").split()
+    assert said in [" ".join(words[start:stop]) for own, start, stop in marked(words) if own == tag]
+
+
+@pytest.mark.parametrize(
+    ("text", "plainly"),
+    [
+        ("the red book is to hang in the air halfway down for one second, then drop on", None),
+        ("I'd love the vase to twirl about itself two times a second while the fan is turning",
+         "spin the vase two times a second while the fan turns"),
+        ("once it's open give it a second, then close the door again", None),
+    ],
+)  # fmt: skip
+def test_halfway_rates_and_lengths_of_what_happens(text: str, plainly: str | None) -> None:
+    ops = planned(text)
+    if plainly is not None:
+        assert ops == planned(plainly) != []
+    elif "halfway" in text:
+        assert ops[0]["change"] == "stop" and ops[0]["when"]["lasting"] == 1.0
+        assert ops[0]["when"]["during"] == {"state": "halfway", "part": "from"}
+    else:
+        assert ops[0]["when"]["start"] == 1.0 and ops[0]["when"]["during"] == {"state": "fully_open", "part": "from"}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "slow mo the blue book, like it takes 2 whole seconds to fall, and 4 for the red one",  # a number too many
+        "By the time the drawer is out I want the chair over at the bed, it can begin at 1 second.",  # ends with an event
+        "Let me have the books fall in another order: first blue, then green, and red for the finale.",
+    ],
+)
+def test_no_time_number_or_colour_is_lost(text: str) -> None:
+    assert planned(text) == []
+
+
+def test_words_about_a_course_delete_nothing() -> None:
+    text = "would it be possible for the robot to set off at 1 second, so the room gets a moment alone"
+    assert planned(text) == planned("let the robot start at 1 s") != []

@@ -168,7 +168,13 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
             found += [s for anchor in anchors[0] for s in intervals(scene, group, during.state, (anchor,), stand)]
         else:
             found += intervals(scene, group, during.state, [a[0] for a in anchors], stand)
-    if during.of is not None and during.of.pick == "all" and during.of.text and during.part in ("while", "unless") and found:
+    if (
+        during.of is not None
+        and during.of.pick == "all"
+        and during.of.text
+        and during.part in ("while", "unless")
+        and found
+    ):
         found = [(min(a for a, _ in found), max(b for _, b in found))]  # "while the books fall", one after the other
     if during.state == "closing" and not found:  # what began open closes as it moves
         found = [s for group in groups for s in movements(course_of(scene, group), unit)]

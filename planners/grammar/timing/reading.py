@@ -141,8 +141,13 @@ class TimeReader:
         return None
 
     def contradicts(self, cleaned: str, ops: Sequence[Fields]) -> bool:
-        """Whether operations change what is there once and for all, or its look, where words most likely ask for another
-        course of a motion: "set off at 1 s" deletes nothing."""
+        """Whether operations leave out a number of an instruction, or change what is there once and for all where its
+        words most likely ask for another course of a motion: "set off at 1 s" deletes nothing."""
+        if not ops:
+            return False
+        words = _in_words(cleaned).split(" ")
+        if moments.TIMED.search(" ".join(words)) and loses_numbers(words, marked(words), ops):
+            return True
         if not any(op["op"] in _ONCE_FOR_ALL for op in ops):
             return False
         kinds = likely(cleaned)
@@ -150,12 +155,13 @@ class TimeReader:
 
     def _without_remarks(self, said: str, cleaned: str) -> tuple[Fields, ...] | None:
         """What is asked for beside the pieces that ask for nothing; None if that is not understood either."""
+        words = _in_words(cleaned).split(" ")
         for shorter in without_remarks(said, self.thing, self._is_command):
             shorter = self._unfronted(_tidy(shorter))
             with suppress(Refusal):
                 found = self._whole(shorter) or next(self._guesses(shorter), None)
                 if found is not None and not self._is_timeless(found, shorter):
-                    return found
+                    return None if loses_numbers(words, marked(words), found) else found
                 if found is None and self._is_plain(shorter) and not self._is_plain(cleaned):
                     return tuple(self._understand(shorter))
         return None
@@ -409,20 +415,10 @@ class TimeReader:
             and all(op.get("change") in ("stop", "begin") for op in ops)
         ):  # "stop when it is turning" begins then
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
-        opened = happening is not None and happening.during.state in ("open", "opening", "fully_open")
-        if (
-            happening is not None
-            and opened
-            and moment.lasting is not None
-            and not moment.taken
-            and moment.start is None
-        ):
-            if all(
-                op["op"] == "articulate" and op.get("change") == "close" for op in ops
-            ):  # "when it was open for 1 s"
-                moment = replace(moment, start=moment.lasting, lasting=None)
-                during = happening.during.model_copy(update={"state": "fully_open", "part": "from"})
-                happening = replace(happening, during=during)
+        if happening is not None and _closes_later(ops, moment, happening):  # "when it was open for one second"
+            moment = replace(moment, start=moment.lasting, lasting=None)
+            during = happening.during.model_copy(update={"state": "fully_open", "part": "from"})
+            happening = replace(happening, during=during)
         waits = moment.lasting is not None and all(op.get("change") == "stop" for op in ops)
         if happening is not None and waits and happening.during.part == "until":  # "pause for 1 s before it turns"
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
@@ -503,7 +499,7 @@ class TimeReader:
 
 _TIME_FIRST = re.compile(r"(?:when|whenever|once|while|as soon as) (?:the|my|our|this|that|it|he|she|they) .* , ")
 _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
-_ONCE_FOR_ALL = ("delete", "rotate", "restyle", "insert", "duplicate", "scale")
+_ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 _SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 _LONGEST = 45  # words of an instruction with one wish
 _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b")
@@ -839,6 +835,15 @@ def _when(moment: Moment, during: During | None, kind: str, op: Fields) -> When 
     if start is None and stop is None and lasting is None and during is None:
         return None
     return When(start=start, stop=stop, lasting=lasting, during=during, gradual=gradual)
+
+
+def _closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) -> bool:
+    """Whether seconds beside what happens are how long something is open before it is to close."""
+    opened = happening.during.state in ("open", "opening", "fully_open") and happening.during.part != "until"
+    if not opened or moment.lasting is None or moment.start is not None or moment.stop is not None:
+        return False
+    taken = any(re.match(r"(?:in|over|within|during|taking) ", said) for said in moment.said)
+    return not taken and all(op["op"] == "articulate" and op.get("change") == "close" for op in ops)
 
 
 _FLIPPED: dict[Part, Part] = {

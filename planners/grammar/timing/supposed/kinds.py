@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from ....learned.kinds import Classifier
-from ....learned.marks import Span, Tagger
-from ....learned.seen import stored
+from ...learned.kinds import Classifier
+from ...learned.marks import Span, Tagger
+from ...learned.seen import stored
 
 FOLDER = Path(__file__).parent
 NO_WISH = "none"  # the kind of questions, remarks, and wishes that are about neither time nor motion

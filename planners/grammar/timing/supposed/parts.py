@@ -14,7 +14,7 @@ from .....tools.when import During
 from ...tagging.spelling import is_word
 from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS, ORDINALS
-from ....learned.seen import hues
+from ...learned.seen import hues
 from ..command import Fields
 from ..happenings import CONJUNCTION, IT, Happening, clause_of
 from ..happenings import cut as happenings_in
@@ -57,6 +57,7 @@ _HALFWAY = re.compile(
 )
 _ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| in| point)*$")
 _FILM = re.compile(r"\b(?:film|clip|video|movie|scene|shot|time|animation|footage|sequence)\b")
+_BEFORE = re.compile(r"\b(?:not|never) (?:before|until|till|unless|if|when|while) \w+ \w+")  # that waits for something
 _CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 
@@ -104,7 +105,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
             return None  # "that lamp would look so pretty ... in pink as long as the fan turns"
         things = names_in(happening.said, thing)[:1]
     goals = tuple(name for name in goals if name not in things)
-    return Said(text, (*things, *goals), moment, happening is not None, thing, goals), happening
+    idle = " ".join(" ".join(words[start:stop]) for tag, start, stop in spans if tag in _IDLE)
+    return Said(text, (*things, *goals), moment, happening is not None, thing, goals, idle), happening
 
 
 def _loses(tag: str, words: Sequence[str]) -> bool:
@@ -112,6 +114,8 @@ def _loses(tag: str, words: Sequence[str]) -> bool:
     said = " ".join(words).strip(" ,.;")
     if len(hues() & set(said.split())) > 1:
         return True  # "first blue, then green, and red for the finale"
+    if _BEFORE.search(said):
+        return True
     if tag == "not" and _CONTRAST.search(said):
         return False
     return TIMED.search(said) is not None or any(found["word"] != "as" for found in CONJUNCTION.finditer(said))
@@ -218,21 +222,29 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
 def loses_numbers(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fields]) -> bool:
     """Whether a number that an instruction tells, and not as what is not wanted, stands in no operation."""
     idle = {at for tag, start, stop in spans if tag == "not" for at in range(start, stop)}
+    if "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
+        idle |= set(range(words.index("not"), words.index("but", words.index("not"))))
     exact = {abs(value) for op in ops for value in _numbers(op)}
-    held = exact | {1 / value for value in exact if value} | {100 * value for value in exact} | {1 - value for value in exact}
+    held = {0.0}.union(*({v, v and 1 / v, 100 * v, 1 - v, 360 * v} for v in exact))  # shares, degrees of turns
     for at, (word, then) in enumerate(zip(words, (*words[1:], ""), strict=True)):
+        if at in idle or is_known(singular(then)) or then in _NO_NUMBER:
+            continue
         told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
-        if told != 1 and at not in idle and not is_known(singular(then)) and then not in ("of", "ones"):
-            among = exact if re.fullmatch("full|whole|s|sec|secs|seconds?", then) else held
+        seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
+        if told != 1 or (seconds and word in ("1", "one")):
+            among = exact if seconds else held
             if not any(abs(told - value) < 0.01 or abs(told + 0.5 - value) < 0.01 for value in among):
                 return True
     return False
 
 
+_NO_NUMBER = ("of", "ones", "quarters", "thirds", "quarter", "third")  # behind a part of something
+
+
 def _numbers(value: object) -> Iterator[float]:
     """All numbers in the fields of an operation."""
     if isinstance(value, BaseModel):
-        value = value.model_dump()
+        value = value.model_dump(exclude_defaults=True)
     if isinstance(value, bool):
         return
     if isinstance(value, int | float):

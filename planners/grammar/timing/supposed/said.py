@@ -42,6 +42,7 @@ class Said:
         moment: its time in numbers.
         event: whether a time is told by what happens.
         thing: reads a name.
+        idle: words that ask for nothing, where marks tell.
         goals: those of the names to which something goes, or beside which it is, where marks tell.
     """
 
@@ -51,6 +52,7 @@ class Said:
     event: bool
     thing: Thing
     goals: tuple[str, ...] = ()
+    idle: str = ""
 
     @property
     def told(self) -> bool:

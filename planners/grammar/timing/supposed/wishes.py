@@ -19,7 +19,7 @@ from ..clauses import AUXILIARIES
 from ..command import Command, pace
 from ..moments import DURATION, End, Moment, seconds_of
 from ..verbs import SENSES, has_form
-from ....learned.seen import hues
+from ...learned.seen import hues
 from .kinds import classifier
 from .names import MOVING
 from .said import Said
@@ -79,7 +79,7 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
     if kind in _STATIC and MOVING in said.things:
         return  # all, or what of it moves
     if kind in ("recolor", "hide"):
-        if kind == "hide" and _is_to_be_seen(said) and _BACK.search(said.text):
+        if kind == "hide" and _is_to_be_seen(said) and _BACK.search(f"{said.text} {said.idle}"):
             return  # "show it for a second, then bring it back" contradicts itself
         said = said.until_then()
     for wish in made(said):
@@ -134,7 +134,6 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order",
 }
-_OPENING = ("speed", "duration", "begin", "open", "amount")  # of what opens, in whatever manner
 _NEGATED = ("hide", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")
@@ -149,8 +148,6 @@ def _says_no_more(kind: str, said: Said, left: str) -> bool:
     if kind not in _NEGATED and _NOT.search(_DISLIKES.sub(" ", _TOO_FAST.sub(" ", _TOO_SLOW.sub(" ", left)))):
         return kind == "begin" and _LATER.search(left) is not None  # "not at once, it waits"
     manner = _MANNER.search(left)
-    if kind in _OPENING:
-        return True
     return manner is None or manner["verb"] in AUXILIARIES or has_form(manner["verb"], tuple(SENSES), "plain", "s")
 
 
@@ -303,6 +300,7 @@ _HASTE = re.compile(r"\b(?:faster|quicker|hurry|rush)\b")
 _FASTER = re.compile(r"\b(?:fast|faster|quick|quicker|quickly|hurry|speed .*up|rush|snappier|brisk|brisker|zip)\b")
 
 
+_MOVED_ON = re.compile(r"\b(?:shift|delay|postpone|move|later|earlier|sooner)\b")
 _TAKES = re.compile(
     r"\b(?:takes?|taking|lasts?|needs?|stretch(?:ed)?|spread|drag(?:ged)?|spends?|within|over|to|whole|full|in) "
     rf"(?:just |only |about |a |the )*{DURATION}"
@@ -363,7 +361,8 @@ def _duration(said: Said) -> Iterator[Wish]:
     moment = said.moment
     if _A_PART.search(said.text):
         return
-    if isinstance(moment.stop, float) and moment.start is None and moment.lasting is None:
+    done = isinstance(moment.stop, float) and moment.start is None and moment.lasting is None
+    if done and _MOVED_ON.search(said.text) is None:
         yield Wish(pace(said.whose, "begin"), _plainly(said), things=1 + len(said.goals))
     if moment.stop is not None or (moment.lasting is not None and not moment.taken):
         return

@@ -157,6 +157,7 @@ where does \1 stop
 ^how long (?:is )?(the \w+(?: \w+)?) (?=fully|out\b|open|still\b|at rest|closed|motionless) => how long is \1
 \bflush(?: with (?:the|its) \w+)?(?: again)? => closed
 ^(which \w+) (?:is it )?that (?=\w+s\b) => \1
+\b(takes?|needs?|took|needed) to (open|close|shut)(?: up)? (?:all the way|fully|completely|entirely)\b => \1 to \2
 ^(.+?) (?:lasts?|takes?|needs?|requires?) how (long|many seconds|much time)((?: ,)? .+)?$ => how \2 does \1 take\3
 ^(?:how long|how many seconds|how much time) does (?:a|one|each|every) (?:single |full |complete |whole )*(?:turn|\
 rotation|revolution|round|circle|lap|spin|go round)(?: of (.+?))? (?:takes?|lasts?)$ => how long does one turn take \1

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from .....learned.kinds import Classifier
-from .....learned.marks import Span, Tagger
-from .....learned.seen import stored
+from .....grammar.learned.kinds import Classifier
+from .....grammar.learned.marks import Span, Tagger
+from .....grammar.learned.seen import stored
 
 FOLDER = Path(__file__).parent
 
@@ -32,6 +32,12 @@ def classifier() -> Classifier:
     """What tells kinds."""
     lists, weights = stored(FOLDER / "kinds.npz")
     return Classifier(lists["labels"], lists["names"], weights["weights"])
+
+
+@cache
+def vocabulary() -> frozenset[str]:
+    """The words that the classifier knows."""
+    return frozenset(name for name in classifier().names if name.isalpha())
 
 
 @cache

@@ -10,8 +10,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..grammar.tagging.words import split
-from ..grammar.vocabulary.nouns import is_known
+from ..tagging.words import split
+from ..vocabulary.nouns import is_known
 from .seen import STEM, amount_or_color, hues
 
 _MARKS = frozenset('.;!,:"')

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...gaussians import color
-from ..grammar.timing.verbs import SENSES, has_form
-from ..grammar.vocabulary.nouns import is_known
-from ..grammar.vocabulary.quantities import NUMBERS
+from ....gaussians import color
+from ..timing.verbs import SENSES, has_form
+from ..vocabulary.nouns import is_known
+from ..vocabulary.quantities import NUMBERS
 
 STEM = 5  # letters of a word by which its forms are alike
 LEVELS = 127  # weights are stored as whole numbers of steps

@@ -1,0 +1,50 @@
+"""Questions about time that no frame reads are put plainly by their kind, and only where nothing is left out."""
+
+from __future__ import annotations
+
+import pytest
+
+from scenewright.planners.questions.reading.time.supposed.kinds import kinds_of, marked
+from scenewright.planners.questions.reading.time.supposed.plainly import supposed
+
+NAMES = frozenset("ball sofa rug lamp table wall floor door plant drawer fan book robot car bed shelf".split())
+
+
+@pytest.mark.parametrize(
+    ("text", "plainly"),
+    [
+        ("hey um, ball get rolling at what second?", "when does the ball start to move"),
+        ("sorry, at what point does that robot finally make it to the bed?", "when does the robot reach the bed"),
+        ("what sort of distance does the little robot cover, in cm?", "how far does the robot move in cm"),
+        ("top speed of the ball?", "what is the maximum speed of the ball"),
+        ("I wonder whether the drawer goes shut again", "does the drawer close"),
+        ("which of the books is first to drop, please?", "which book falls first"),
+        ("when does the fan stop spining", "when does the fan stop moving"),
+    ],
+)
+def test_a_question_is_put_plainly(text: str, plainly: str) -> None:
+    assert supposed(text, NAMES) == (plainly,)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "when does the ball not reach the wall?",  # a negation
+        "how far does the robot go on its second trip?",  # a rank
+        "is the ball faster than the robot?",  # a comparison of what is no kind
+        "why does the ball roll?",
+        "who painted the door?",
+        "stop the ball at 2 s",  # an order
+        "halfway through the robot changes direction, which way does it turn?",  # a time that no mark tells
+    ],
+)
+def test_what_says_more_is_not_put_plainly(text: str) -> None:
+    assert supposed(text, NAMES) == ()
+
+
+def test_kinds_and_marks_are_told() -> None:
+    text = "can you tell me how many metres the cat covers before it sits down"
+    assert kinds_of(text)[0][0] == "far"
+    words = text.split()
+    found = {tag: " ".join(words[a:b]) for tag, a, b in marked(words)}
+    assert found["x"] == "the cat" and found["t"] == "before it sits down"
