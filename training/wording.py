@@ -15,11 +15,11 @@ import numpy as np
 import torch
 
 from ..gaussians import late_re as re
-from ..planners.grammar.tagging.words import split
 from ..planners.grammar.learned import kinds, marks
 from ..planners.grammar.learned.kinds import Classifier
 from ..planners.grammar.learned.marks import Span, Tagger, labels_of
 from ..planners.grammar.learned.seen import store
+from ..planners.grammar.tagging.words import split
 
 RARE = 2  # sentences, or words, in which a feature must stand
 RIDGE = 1e-5  # of the squares of the classifier's weights
@@ -97,7 +97,7 @@ def tagger(known: Sequence[Sentence]) -> Tagger:
     counts = torch.tensor([len(sentence.words) for sentence in marked])
     here = torch.arange(int(counts.max())) < counts[:, None]  # [sentences, words]
     at = torch.zeros(here.shape, dtype=torch.long).masked_scatter(here, torch.arange(len(rows)))
-    told = [labels.index(l) for sentence in marked for l in labels_of(len(sentence.words), sentence.spans)]
+    told = [labels.index(label) for s in marked for label in labels_of(len(s.words), s.spans)]
     wanted = torch.zeros(here.shape, dtype=torch.long).masked_scatter(here, torch.tensor(told))
     weights = torch.zeros(len(names), len(labels), dtype=torch.float64, requires_grad=True)
     moves = torch.zeros(len(labels), len(labels), dtype=torch.float64, requires_grad=True)

@@ -248,7 +248,8 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
         _at_once,
     ),
     (
-        r"(?P<a>halfway) (?:through|in)(?! (?:its|his|her|their|the [a-z]+ing)\b)(?: (?:it|the (?:clip|scene|film|video|animation)))?",
+        r"(?P<a>halfway) (?:through|in)(?! (?:its|his|her|their|the [a-z]+ing)\b)"
+        r"(?: (?:it|the (?:clip|scene|film|video|animation)))?",
         _start,
     ),
 )

@@ -11,10 +11,10 @@ from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
 from .....gaussians.world.words import singular
 from .....tools.when import During
+from ...learned.seen import hues
 from ...tagging.spelling import is_word
 from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS, ORDINALS
-from ...learned.seen import hues
 from ..command import Fields
 from ..happenings import CONJUNCTION, IT, Happening, clause_of
 from ..happenings import cut as happenings_in
@@ -52,7 +52,8 @@ _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
 _HALF = re.compile(r"\b(first|second|last|latter|other) half\b")
 _UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
 _HALFWAY = re.compile(
-    r"^(?:when |once |at |as soon as )?(?:(?P<who>.+?) (?:is|has (?:gone|got)|gets) )?(?:half ?way|midway|half the way|in the middle of)"
+    r"^(?:when |once |at |as soon as )?(?:(?P<who>.+?) (?:is|has (?:gone|got)|gets) )?"
+    r"(?:half ?way|midway|half the way|in the middle of)"
     r"(?P<way>(?: (?:down|up|through|there|across|along|over|to|into|out|open|of))* ?(?P<what>.*))$"
 )
 _ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| in| point)*$")

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from .....gaussians import late_re as re
+from ...learned.seen import hues
 from ...tagging.spelling import is_word
 from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS
@@ -19,7 +20,6 @@ from ..clauses import AUXILIARIES
 from ..command import Command, pace
 from ..moments import DURATION, End, Moment, seconds_of
 from ..verbs import SENSES, has_form
-from ...learned.seen import hues
 from .kinds import classifier
 from .names import MOVING
 from .said import Said
@@ -222,7 +222,8 @@ _ROUND = re.compile(
 )
 _RATE = re.compile(r"\b(?:once|twice|(?:[a-z]+|\d+) (?:times|turns|rounds)) (?:a|per|every|each) second\b")
 _OTHER_WAY = re.compile(
-    r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction)|way (?:round|around)|direction|clockwise|anti|counter)\b"
+    r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction)|way (?:round|around)|direction|clockwise|anti|"
+    r"counter)\b"
 )
 
 

@@ -29,7 +29,8 @@ _DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|your|his|he
 _PLURAL = re.compile(r"^(?:all |both )?(?:of )?(?:the |these |those |my |our )?")
 _IN_UNIT = re.compile(rf"\b(?:{UNIT}|rpm|revs? (?:a|per) minute)\b")
 _HARD = bag(
-    "not no never nothing none nobody neither nor without except besides only than more less fewer faster slower longer "
+    "not no never nothing none nobody neither nor without except besides only than more less fewer faster slower "
+    "longer "
     "shorter farther further earlier later sooner first last next second third again back same different other another "
     "else if because why half quarter between every each both most least final initial twice before after while until"
 )
@@ -170,7 +171,8 @@ _ALLOWED: Mapping[str, frozenset[str]] = {
     "first": _ORDERS, "last": _ORDERS | {"final"}, "order": _ORDERS, "if_before": _ORDERS, "if_after": _ORDERS,
     "if_together": bag("same both each other"), "if_returns": bag("back again"), "when_closes": bag("back again"),
     "when_shut": bag("back again"), "if_closes": bag("back again"), "if_shut": bag("again back"),
-    "long_closes": bag("back again"), "where_ends": bag("last final"), "fastest": bag("most than faster every each other"),
+    "long_closes": bag("back again"), "where_ends": bag("last final"),
+    "fastest": bag("most than faster every each other"),
     "when_closest": bag("most least"), "when_starts": bag("first"), "when_stops": bag("last final again"),
     "when_reaches": bag("first"), "when_falls": bag("first"), "where_starts": bag("first initial"),
     "turns": bag("every each"), "often": bag("every each"), "fast_most": bag("most"), "gap": _ORDERS | {"between"},
@@ -184,7 +186,7 @@ _DEEDS = tuple(
     (re.compile(rf"\b(?:{words})\b"), deed)
     for words, deed in (
         (r"land(?:s|ed|ing)?|hits? (?:the )?(?:floor|ground)|touch(?:es|ed)? down", "land"),
-        (r"f[ae]ll(?:s|en|ing)?|drop(?:s|ped|ping)?|tumbl\w+|c[oa]mes? (?:down|off)|plung\w+|plummet\w*|go(?:es)? down|down", "fall"),
+        (r"f[ae]ll(?:s|en|ing)?|drop(?:s|ped|ping)?|tumbl\w+|c[oa]mes? (?:down|off)|plung\w+|plummet\w*|down", "fall"),
         (r"stop(?:s|ped|ping)?|finish\w*|halt\w*|rest|standstill|end(?:s|ed)?|done|still", "stop"),
         (r"clos(?:e|es|ed|ing)|shut(?:s|ting)?", "close"),
         (r"open(?:s|ed|ing)?", "open"),
