@@ -36,6 +36,7 @@ from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
 from .timing.reading import TimeReader, is_misread, may_be_timed
+from .timing.supposed.wishes import SURE
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
 
@@ -164,7 +165,9 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     try:
         outcome = _timed(reader, cleaned, previous)
     except Refusal as refusal:
-        if refusal.firm or (supposed := reader.supposed(cleaned)) is None:
+        if refusal.verdict == "unsafe" or (refusal.firm and refusal.verdict != "impossible"):
+            raise
+        if (supposed := reader.supposed(cleaned, SURE if refusal.verdict == "impossible" else 0.0)) is None:
             raise
         return _guessed(supposed)
     if reader.contradicts(cleaned, outcome.ops):

@@ -108,11 +108,15 @@ class TimeReader:
             raise Refusal(f"what is to happen “{clause[1].said}” is not understood", clause[1].said)
         return None
 
-    def supposed(self, cleaned: str) -> tuple[Fields, ...] | None:
+    def supposed(self, cleaned: str, least: float = 0.0) -> tuple[Fields, ...] | None:
         """The operations that an instruction most likely asks for, by the kind of its wish; None if that is not likely
-        enough, or if they would leave out anything that it names."""
+        enough, or if they would leave out anything that it names.
+
+        Args:
+            least: probability of the kind.
+        """
         words = _in_words(cleaned)
-        kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
+        kinds = [(kind, p) for kind, p in likely(cleaned) if p >= least] if words.count(" ") < _LONGEST else []
         if not kinds:
             return None
         spelled = _spelled(_spelt_out(words), _LONG_WORDS)
@@ -533,9 +537,13 @@ _SHORT_VERB = re.compile(
 )
 
 
+_STAMP = re.compile(r"(?<![\d:])(?P<minutes>\d{1,2}):(?P<seconds>[0-5]\d)(?![\d:])(?: ?(?:s|secs?|seconds)\b)?")  # "0:02"
+
+
 def _in_words(cleaned: str) -> str:
     """The words and marks of an instruction, with spaces between."""
-    ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", cleaned)
+    stamped = _STAMP.sub(lambda m: f"{60 * int(m['minutes']) + int(m['seconds'])} s", cleaned)
+    ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", stamped)
     return " ".join(w.text for w in split(ranged))
 
 

@@ -26,6 +26,7 @@ from .said import Said
 
 SURE = 0.85  # probability from which a change without a time is supposed, or an unknown verb is left aside
 _STATIC = ("recolor", "hide", "remove", "move")  # kinds that need no time
+_GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _PROHIBITED = re.compile(
     r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b"
@@ -69,7 +70,7 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
     made = _KINDS.get(kind)
     if made is None or not said.things:
         return
-    if chance < SURE and not _is_any_word(said.text.split(" ")[0]):
+    if chance < SURE and not _is_any_word(_GREETING.sub("", said.text).split(" ")[0]):
         return  # a verb that is no word may ask for anything
     timeless = not said.told and not said.moment.always
     if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
@@ -254,10 +255,15 @@ def _reverse(said: Said) -> Iterator[Wish]:
         yield Wish(pace(said.whose, "reverse"), said.moment, things=1 + len(said.goals))
 
 
+_AGAIN_FOR = re.compile(r"\b(?:over and over|again and again|all the time|keeps?|repeatedly|loops?|non ?stop)\b")
+
+
 def _repeat(said: Said) -> Iterator[Wish]:
     times = _TIMES.search(said.beside)
     if times is None or times[0] in _ONCE:
         holds = "" if times is None else times[0]
+        if said.told and not _AGAIN_FOR.search(said.text):
+            yield Wish(pace(said.whose, "repeat", times=1), said.moment, holds=holds)
         yield Wish(f"repeat the movement of {said.things[0]}", said.moment, holds=holds)
     else:
         yield Wish(f"let {said.things[0]} move {times[0]}", said.moment, holds=times[0])
