@@ -174,6 +174,8 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         if (supposed := reader.supposed(cleaned)) is None:
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
         return _guessed(supposed)
+    if (supposed := reader.timed(cleaned, outcome.ops)) is not None:
+        return _guessed(supposed)
     if not _names_things(outcome.ops, previous) and (supposed := reader.supposed(cleaned)):
         return _guessed(supposed) if _names_things(supposed, previous) else outcome
     return outcome

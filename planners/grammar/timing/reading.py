@@ -42,7 +42,7 @@ from .restated.restating import restated
 from .sentences import folded
 from .supposed.kinds import COURSES, likely, marked
 from .supposed.names import with_nouns
-from .supposed.parts import divided, loses_numbers
+from .supposed.parts import TIMES, divided, loses_numbers
 from .supposed.said import said_of
 from .supposed.wishes import wishes
 from .verbs import SENSES, any_of, forms, has_form
@@ -144,6 +144,18 @@ class TimeReader:
                             return found
         return None
 
+    def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
+        """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if
+        they leave none out, or if that is not told."""
+        if not ops or any(op.get("when") is not None or op.get("seconds") is not None for op in ops):
+            return None
+        words = _in_words(cleaned)
+        told = any(tag in TIMES for tag, _, _ in marked(words.split(" ")))
+        if not told and next(happenings.cut(words, self.thing), None) is None:
+            return None
+        found = self.supposed(cleaned)
+        return found if found and all(op.get("when") is not None for op in found) else None
+
     def contradicts(self, cleaned: str, ops: Sequence[Fields]) -> bool:
         """Whether operations leave out a number of an instruction, or change what is there once and for all where its
         words most likely ask for another course of a motion: "set off at 1 s" deletes nothing."""
@@ -152,7 +164,7 @@ class TimeReader:
         words = _in_words(cleaned).split(" ")
         if moments.TIMED.search(" ".join(words)) and loses_numbers(words, marked(words), ops):
             return True
-        if not any(op["op"] in _ONCE_FOR_ALL for op in ops):
+        if not any(op["op"] in _ONCE_FOR_ALL and op.get("when") is not None for op in ops):
             return False
         kinds = likely(cleaned)
         return bool(kinds) and kinds[0][0] in COURSES and kinds[0][1] >= _SAID_SO

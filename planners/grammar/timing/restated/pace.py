@@ -6,6 +6,9 @@ from ..moments import DURATION
 from .wording import EVENT, ING, IT, PLAIN, POINT, SHARE, Rules, S, rate, slowed_to, with_unit
 
 RULES: Rules = (
+    # what is switched off
+    (r"^(?:kill|cut) (?P<np>(?:the |that |this |my )?(?:[a-z]+ )?(?:fan|wheel|windmill|propeller|rotor|carousel|motor|"
+     r"engine|machine))\b(?! (?:in|into|out|off)\b)", r"stop \g<np>"),
     # how fast
     (r"(?: ,)? like (?=(?:in|over|for|about|at|around|half|twice|double) |\d)", " "),
     (r"\bgive (?P<np>(?:the |my )?[a-z ]+?) (?P<n>a|an|one|two|three|four|\d+) (?:full |single |complete |slow |"

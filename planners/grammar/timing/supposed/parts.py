@@ -26,7 +26,7 @@ from .names import with_moving
 from .said import Said
 
 Span = tuple[str, int, int]  # a tag, and the words from one to another
-_TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
+TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
 _IDLE = ("not", "off")  # tags of words that ask for nothing
 _LEADING = re.compile(
     r"^(?:(?:,|and|then|but|just|only|right|exactly|about|around|starting|beginning|start|begin|finish(?:ed|ing)?|done|"
@@ -73,7 +73,7 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     """
     moment, happening = Moment(), None
     for tag, start, stop in spans:
-        if tag not in _TIMES:
+        if tag not in TIMES:
             continue
         phrase = " ".join(words[start:stop]).strip(" ,.;:")
         if tag == "from" and _UNTIL.match(phrase):
@@ -93,7 +93,7 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         return None  # a time that starts in numbers and stops with what happens
     if any(tag in _IDLE and _loses(tag, words[start:stop]) for tag, start, stop in spans):
         return None
-    left = {at for tag, start, stop in spans if tag in _TIMES or tag in _IDLE for at in range(start, stop)}
+    left = {at for tag, start, stop in spans if tag in TIMES or tag in _IDLE for at in range(start, stop)}
     text = " ".join(word for at, word in enumerate(words) if at not in left).strip(" ,.;:!")
     text = with_moving(re.sub(r"(?: [,.;:!])+(?= [,.;:!])", "", text))
     if happening is None:
@@ -213,7 +213,7 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
         whose = thing(of[0]) if of and (half["who"] or half["way"].startswith((" through", " of"))) else None
         return Happening(During(state="halfway", of=whose or IT, part="until" if tag == "to" else "from"), phrase)
     phrase = _WHERE.sub("when ", _AS.sub("while ", phrase))
-    for said in (phrase, f"{_TIMES[tag]} {phrase}"):
+    for said in (phrase, f"{TIMES[tag]} {phrase}"):
         for found in CONJUNCTION.finditer(said):
             if found.start() == 0 and (during := clause_of(found["word"], said[found.end() :].strip(" ,."), thing)):
                 return Happening(during, said)

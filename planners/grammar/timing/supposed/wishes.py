@@ -31,7 +31,7 @@ _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|rec
 _PROHIBITED = re.compile(
     r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b"
 )
-_OTHER_EDITS = re.compile(r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade)\b")
+_OTHER_EDITS = re.compile(r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b")
 _REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _TIMES_LEFT = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
@@ -484,7 +484,7 @@ def _order(said: Said) -> Iterator[Wish]:
         if said.told and said.moment.empty:
             yield Wish(pace(said.whose, "begin"), said.moment)
         for place in ("first", "last") if not said.told else ():
-            if re.search(rf"\b{place}\b", said.beside):
+            if re.search(rf"\b{place}\b(?! (?:year|month|week|night|summer|winter|one to)\b)", said.beside):
                 yield Wish(f"let {said.things[0]} start {place}", Moment(), holds=place)
     elif len(said.things) == 2:
         one, other = said.things

@@ -154,6 +154,8 @@ def _says_more(kind: str, said: Said, names: Collection[str]) -> bool:
         return True  # "which way does it turn" wants no yes or no
     if kind in _NEGATED or (rest and rest[0] in _AUXILIARIES):
         rest = [word for word in rest if word not in ("not", "no", "never", "nothing")]  # "did it not move?"
+    if "and" in rest or "or" in rest:
+        return True  # two deeds, or things to choose from
     allowed = _ALLOWED.get(kind, frozenset())
     if any(word in _HARD and word not in allowed for word in rest):
         return True
