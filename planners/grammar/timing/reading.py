@@ -147,7 +147,7 @@ class TimeReader:
     def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
         """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if
         they leave none out, or if that is not told."""
-        if not ops or any(op.get("when") is not None or op.get("seconds") is not None for op in ops):
+        if not ops or any(op.get("when") is not None or op["op"] not in _TIMELESS for op in ops):
             return None
         words = _in_words(cleaned)
         told = any(tag in TIMES for tag, _, _ in marked(words.split(" ")))
@@ -515,6 +515,7 @@ class TimeReader:
 
 _TIME_FIRST = re.compile(r"(?:when|whenever|once|while|as soon as) (?:the|my|our|this|that|it|he|she|they) .* , ")
 _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
+_TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 _SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 _LONGEST = 45  # words of an instruction with one wish
