@@ -550,7 +550,9 @@ _SHORT_VERB = re.compile(
 )
 
 
-_STAMP = re.compile(r"(?<![\d:])(?P<minutes>\d{1,2}):(?P<seconds>[0-5]\d)(?![\d:])(?: ?(?:s|secs?|seconds)\b)?")  # "0:02"
+_STAMP = re.compile(
+    r"(?<![\d:])(?P<minutes>\d{1,2}):(?P<seconds>[0-5]\d)(?![\d:])(?: ?(?:s|secs?|seconds)\b)?"
+)  # "0:02"
 
 
 def _in_words(cleaned: str) -> str:

@@ -59,6 +59,7 @@ _HALFWAY = re.compile(
 _ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| in| point)*$")
 _FILM = re.compile(r"\b(?:film|clip|video|movie|scene|shot|time|animation|footage|sequence)\b")
 _BEFORE = re.compile(r"\b(?:not|never) (?:before|until|till|unless|if|when|while) \w+ \w+")  # that waits for something
+_AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 
@@ -119,6 +120,8 @@ def _loses(tag: str, words: Sequence[str]) -> bool:
         return True
     if tag == "not" and _CONTRAST.search(said):
         return False
+    if _AMOUNT.search(said):
+        return True
     return TIMED.search(said) is not None or any(found["word"] != "as" for found in CONJUNCTION.finditer(said))
 
 
@@ -233,7 +236,8 @@ def loses_numbers(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fie
         told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
         seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
         if told != 1 or (seconds and word in ("1", "one")):
-            among = exact if seconds else held
+            rate = words[max(0, at - 1)] in ("every", "each", "per")
+            among = exact if seconds and not rate else held
             if not any(abs(told - value) < 0.01 or abs(told + 0.5 - value) < 0.01 for value in among):
                 return True
     return False

@@ -31,7 +31,9 @@ _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|rec
 _PROHIBITED = re.compile(
     r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b"
 )
-_OTHER_EDITS = re.compile(r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b")
+_OTHER_EDITS = re.compile(
+    r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b"
+)
 _REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _TIMES_LEFT = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
