@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from scenewright.planners.grammar.tagging.words import split
 from scenewright.planners.questions.reading.time.supposed import kinds as question_kinds
 from scenewright.training import timed_questions, timed_wishes
 from scenewright.training.wording import Sentence, classifier, sentences, tagger, told_of_unseen
@@ -33,7 +34,8 @@ def test_marks_stand_in_the_words() -> None:
 def test_what_is_learned_tells_the_kinds_and_marks_of_new_sentences() -> None:
     kind_of, spans_of = classifier(MADE), tagger(MADE)
     assert kind_of.kinds_of("halt the ferry at 2 s")[0][0] == "stop"
-    assert spans_of.spans("hide the old cat once the bell has rung".split()) == (("x", 1, 4), ("t", 4, 9))
+    words = tuple(word.text for word in split("hide the old cat once the bell has rung"))
+    assert spans_of.spans(words) == (("x", 1, 4), ("t", 4, 9))
 
 
 def test_the_same_sentences_give_the_same_weights() -> None:

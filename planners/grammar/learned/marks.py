@@ -13,14 +13,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..tagging.words import bag
 from .seen import STEM, classed
 
 OUTSIDE = "O"
 Span = tuple[str, int, int]  # a tag, and the words from one to another
-_ENDS = frozenset(", . ; and but so".split())
-_LEADS = frozenset(
+_ENDS = bag(", . ; and but so")
+_LEADS = bag(
     "when once while until till after before as during from at for in over by to because so instead not than between "
-    ", .".split()
+    ", ."
 )
 
 

@@ -57,7 +57,10 @@ _ONES = "|".join(sorted((w for w in NUMBERS if NUMBERS[w] < 61), key=len, revers
 _WORD = rf"(?:(?:{_ONES})(?: (?:{_ONES}))?|a couple of|couple of|a few|a|an)"
 _DIGITS = r"\d+(?:[.,]\d+)?"
 _HALVES = r"(?:a half|half|a quarter|three quarters|one and a half|a)"
-_HEDGE = r"(?:(?:like|about|around|exactly|precisely|just|roughly|only|approximately|some|the|full|good|whole|first|same|say) )*"
+_HEDGE = (
+    r"(?:(?:like|about|around|exactly|precisely|just|roughly|only|approximately|some|the|full|good|whole|first|same|"
+    r"say) )*"
+)
 _NUMBER = rf"(?:{_DIGITS}|{_WORD})"
 _DURATION = (
     rf"(?:{_NUMBER} and (?:a )?half {_UNIT}|{_NUMBER} {_UNIT} and a half|(?:{_NUMBER} and )?(?:a "

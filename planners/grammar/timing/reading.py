@@ -368,9 +368,9 @@ class TimeReader:
             return None
         if happening is not None and not moment.empty and moment.lasting is None and moment.stop is not None:
             return None
-        if happening is not None and happening.during.part in ("until", "until_end"):
-            if moment.start is not None and any(map(_AT_A_TIME.match, moment.said)):
-                return None  # a time that starts in numbers and stops with what happens
+        ends = happening is not None and happening.during.part in ("until", "until_end")
+        if ends and moment.start is not None and any(map(_AT_A_TIME.match, moment.said)):
+            return None  # a time that starts in numbers and stops with what happens
         if happening is not None and happening.said.startswith("before ") and phrases.RIDDING.match(said):
             return None  # "delete the vase before it falls" gives a reason
         for command in commands(said, self.thing, moment, told):

@@ -39,7 +39,7 @@ def likeliest(model: Tagger, words: list[str]) -> list[str]:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_the_likeliest_row_is_found(seed: int) -> None:
-    words = "stop the old fan now".split()
+    words = ["stop", "the", "old", "fan", "now"]
     model = tagger(seed, words)
     assert model.spans(words) == tuple(spans_of(likeliest(model, words)))
 

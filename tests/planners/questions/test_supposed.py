@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from scenewright.planners.grammar.tagging.words import bag
 from scenewright.planners.questions.reading.time.supposed.kinds import kinds_of, marked
 from scenewright.planners.questions.reading.time.supposed.plainly import supposed
 
-NAMES = frozenset("ball sofa rug lamp table wall floor door plant drawer fan book robot car bed shelf".split())
+NAMES = bag("ball sofa rug lamp table wall floor door plant drawer fan book robot car bed shelf")
 
 
 @pytest.mark.parametrize(

@@ -147,9 +147,9 @@ def _things(named: Sequence[tuple[str, str]], tag: str, thing: Thing) -> tuple[s
     """The names with a tag, each once; pronouns only where no name is there."""
     found = list[tuple[str, Query]]()
     for own, name in named:
-        if own == tag and (query := thing(name)) is not None and not query.last:
-            if not any(query == other for _, other in found):
-                found.append((name, query))
+        query = thing(name) if own == tag else None
+        if query is not None and not query.last and not any(query == other for _, other in found):
+            found.append((name, query))
     return tuple(name for name, _ in found)
 
 
@@ -181,8 +181,8 @@ def _moment(tag: str, phrase: str) -> Moment | None:
     if _ALL.search(phrase):
         return Moment(always=True, said=(phrase,))
     bare = _BARE.match(phrase)
-    value = None if bare is None else _seconds(bare["value"])
-    if value is None and tag in ("from", "to") and not CONJUNCTION.match(phrase) or phrase.split()[0] in _EVEN_SO:
+    value: End | None = None if bare is None else _seconds(bare["value"])
+    if value is None and (phrase.split(" ")[0] in _EVEN_SO or (tag != "for" and not CONJUNCTION.match(phrase))):
         value = next((end for pattern, end in _NAMED if pattern.search(phrase)), None)
     if value is None:
         return None
