@@ -13,6 +13,8 @@ import torch
 
 from scenewright.gaussians.errors import InstructionError
 from scenewright.gaussians.motion.at import at
+from scenewright.gaussians.motion.courses import course_of
+from scenewright.gaussians.motion.events import movements
 from scenewright.gaussians.motion.motion import Motion, Track, moving_ids
 from scenewright.gaussians.scene import Scene
 from scenewright.tools.execute import Done, carry_out
@@ -402,3 +404,29 @@ def test_what_begins_open_closes_as_it_moves(moving: Scene, context: Context) ->
     data = {"op": "recolor", "target": {"groups": [VASE]}, "color": "red", "when": {"during": during}}
     made = done(moving, data, context).scene
     assert not len(differs(moving, made, 2.9)) and differs(moving, made, 3.1).tolist() == [VASE]
+
+
+@pytest.mark.parametrize(("part", "red"), [("from", (0.8, 3.9)), ("until", (0.1, 0.7)), ("while", (0.8, 0.95))])
+def test_halfway_is_the_second_half_of_a_way(
+    corner: Scene, context: Context, part: str, red: tuple[float, float]
+) -> None:
+    """The chair slides at an even speed from .5 to 1 s: it has gone half its way at .75 s."""
+    ids = corner.cloud.ids[corner.cloud.group == CHAIR].numpy()
+    track = Track.slide(ids, (0.5, 1.0), (0.0, 0.4), (1.0, 0.0, 0.0), smooth=False)
+    scene = corner.replace(motion=Motion((track,), (), (), 0.0, 4.0))
+    during = {"state": "halfway", "of": A_CHAIR, "part": part}
+    data = {"op": "recolor", "target": {"groups": [VASE]}, "color": "red", "when": {"during": during}}
+    made = done(scene, data, context).scene
+    assert all(len(differs(scene, made, t)) for t in red)
+    others = {"from": (0.1, 0.7), "until": (0.8, 3.9), "while": (0.7, 1.05)}[part]
+    assert not any(len(differs(scene, made, t)) for t in others)
+
+
+def test_a_movement_once_more_does_not_hide_the_first(corner: Scene, context: Context) -> None:
+    """It jumps back to where it began, which tells nothing of how fast it moves."""
+    ids = corner.cloud.ids[corner.cloud.group == CHAIR].numpy()
+    track = Track.slide(ids, (0.5, 1.0), (0.0, 0.4), (1.0, 0.0, 0.0))
+    scene = corner.replace(motion=Motion((track,), (), (), 0.0, 4.0))
+    data = {"op": "pace", "target": A_CHAIR, "change": "repeat", "times": 1, "when": {"start": 3.0}}
+    spans = movements(course_of(done(scene, data, context).scene, CHAIR))
+    assert [tuple(round(t, 1) for t in span) for span in spans] == [(0.5, 1.0), (3.0, 3.5)]
