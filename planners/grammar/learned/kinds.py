@@ -44,9 +44,8 @@ def features(said: str) -> frozenset[str]:
     """What the classifier sees of a sentence: words and their beginnings, alone and in a row. Numbers, seconds and
     colours are each one word; a colour that tells which thing is meant is none."""
     given = [word.text for word in split(said) if word.text not in _MARKS]
-    behind = [*given[1:], ""]
-    named = (_is_part_of_name(w, then) for w, then in zip(given, behind, strict=True))
-    words = ["^", *(amount_or_color(w) for w, part in zip(given, named, strict=True) if not part), "$"]
+    named = {i for i, (word, then) in enumerate(pairwise(given)) if _is_part_of_name(word, then)}
+    words = ["^", *(amount_or_color(word) for i, word in enumerate(given) if i not in named), "$"]
     rows = {" ".join(words[i : i + n]) for n in range(1, _LONGEST + 1) for i in range(len(words) - n + 1)}
     stems = [word[:STEM] for word in words]
     return frozenset(rows | {f"{a}~{b}" for a, b in pairwise(stems)} | {f"{stem}~" for stem in stems})

@@ -47,6 +47,11 @@ def test_what_says_more_is_not_put_plainly(text: str) -> None:
     assert supposed(text, NAMES) == ()
 
 
+@pytest.mark.parametrize("text", ["", " . ", "?", "[x", "ball " * 300, "\u2026 , ;"])
+def test_what_says_nothing_is_no_question(text: str) -> None:
+    assert supposed(text, NAMES) == ()
+
+
 def test_kinds_and_marks_are_told() -> None:
     text = "can you tell me how many metres the cat covers before it sits down"
     assert kinds_of(text)[0][0] == "far"

@@ -61,9 +61,9 @@ def supposed(text: str, names: frozenset[str]) -> tuple[str, ...]:
     Args:
         names: words of the names of the things of the scene.
     """
-    told = tuple(word.text for word in split(clean(text)))
-    if not told or len(told) > _LONGEST:
+    if not text.strip() or len(text.split()) > _LONGEST:
         return ()
+    told = tuple(word.text for word in split(clean(text)))
     told = tuple(_spelled(word, names) for word in told)
     kind, chance = _likeliest(" ".join(told))
     if chance < LEAST or kind not in _PLAIN:
