@@ -157,3 +157,20 @@ def test_no_time_number_or_colour_is_lost(text: str) -> None:
 def test_words_about_a_course_delete_nothing() -> None:
     text = "would it be possible for the robot to set off at 1 second, so the room gets a moment alone"
     assert planned(text) == planned("let the robot start at 1 s") != []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "don't remove the ball when it stops",  # asks for nothing
+        "speed up the first half of the ball's roll",  # a part of a movement
+        "the ball must not turn red while it rolls",
+    ],
+)
+def test_the_contrary_is_not_done(text: str) -> None:
+    assert planned(text) == []
+
+
+def test_to_stop_at_the_end_goes_without_saying() -> None:
+    assert planned("let the door swing to 45 degrees then stop") == planned("let the door swing to 45 degrees") != []
+    assert planned("freeze everything at 2.5") == planned("stop everything at 2.5 s") != []

@@ -484,6 +484,8 @@ def _hidden(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]
     if sense == "fade":
         yield plain(clause, "look", "hide {}", fades=True)
         return
+    if clause.negated and clause.verb is not None and clause.verb.first in ("remove", "delete", "erase"):
+        return  # "do not remove it when it stops" asks for nothing
     yield plain(clause, "look", "hide {}", needs=True, inverse=shown != clause.negated)
 
 

@@ -657,6 +657,9 @@ def _resting(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
         return list(ops)  # "keep it closed until 3 s, then let it open"
     if last.get("change") == then.get("change") == "stop" and then.get("when") is None and _is_from(last):
         return list(ops)  # "freeze it at 2 s and do not let it move again"
+    moves = last.get("op") in ("articulate", "move", "spin", "orbit", "follow")
+    if moves and then.get("change") == "stop" and then.get("when") is None and then["target"] == IT:
+        return list(ops)  # "swing to 45 degrees, then stop"
     stop, start = last.get("when"), then.get("when")
     if (last.get("change"), then.get("change")) != ("stop", "begin") or then["target"] not in (IT, last["target"]):
         return [*ops, *more]

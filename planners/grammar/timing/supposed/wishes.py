@@ -280,6 +280,7 @@ def _return(said: Said) -> Iterator[Wish]:
 # -- when and how fast -----------------------------------------------------------------------------------------------
 
 _A_PART = re.compile(r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back|returns?|again)\b")  # of a movement that has two
+_A_STRETCH = re.compile(r"\b(?:first|second|last|latter|other|final) (?:half|third|quarter|part|stretch|leg|bit)\b")
 _LATER = re.compile(r"\b(?:later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
 _EARLIER = re.compile(r"\b(?:earlier|sooner|early|ahead|forward)\b")
 _TOO_LATE = re.compile(r"\b(?:too|so) (?:\w+ )?(late|early|soon)\b")
@@ -342,7 +343,7 @@ def _sign(text: str) -> float | None:
 
 
 def _speed(said: Said) -> Iterator[Wish]:
-    if _A_PART.search(said.text):
+    if _A_PART.search(said.text) or _A_STRETCH.search(said.text):
         return
     plain = _TOO_SLOW.sub("faster", _TOO_FAST.sub("slower", said.beside))
     if (often := _OFTEN.search(said.beside)) is not None and "slow" not in plain:
@@ -472,6 +473,7 @@ def _opening(said: Said, verb: str) -> Iterator[Wish]:
 
 # -- one after the other ---------------------------------------------------------------------------------------------
 
+_ENDS = re.compile(r"\b(?:freez\w+|stop\w*|halt\w*|still|paus\w+|rest\w*|end\w*|finish\w*)\b")
 _SEVERAL = re.compile(r"^(?:all|both|everything|these|those|the (?:two|three|four))\b|[^s]s$")
 
 
@@ -497,6 +499,8 @@ def _order(said: Said) -> Iterator[Wish]:
 
 
 def _together(said: Said) -> Iterator[Wish]:
+    if _ENDS.search(said.text):
+        return  # "freeze everything at 2.5"
     if len(said.things) > 1 or _SEVERAL.search(said.things[0]):
         who = " and ".join(said.things)
         yield Wish(f"let {who} start at the same time", said.moment, things=len(said.things))
