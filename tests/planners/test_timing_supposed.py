@@ -174,3 +174,9 @@ def test_the_contrary_is_not_done(text: str) -> None:
 def test_to_stop_at_the_end_goes_without_saying() -> None:
     assert planned("let the door swing to 45 degrees then stop") == planned("let the door swing to 45 degrees") != []
     assert planned("freeze everything at 2.5") == planned("stop everything at 2.5 s") != []
+
+
+def test_what_comes_back_was_hidden() -> None:
+    assert planned("the ball should be gone from 2 s on, then come back at 4") == planned("hide the ball from 2 to 4 s")
+    assert planned("let the ball roll up the wall") == []
+    assert planned("paint the door blue before it opens and red afterwards") == []

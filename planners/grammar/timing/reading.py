@@ -393,6 +393,8 @@ class TimeReader:
         if command.text:
             ops = list(self._understand(command.text.replace("rightwards", "to the right")))
             ways = all(op["op"] in ("move", "rotate") for op in ops)
+            if len(ops) > 1 and _AFTERWARDS.search(command.text):
+                return None  # each has its own time: "blue before it opens and red afterwards"
             if command.target is not None:
                 ops = [{**op, "target": command.target} if op.get("target") == IT else op for op in ops]
             if (
@@ -657,6 +659,11 @@ def _resting(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
         return list(ops)  # "keep it closed until 3 s, then let it open"
     if last.get("change") == then.get("change") == "stop" and then.get("when") is None and _is_from(last):
         return list(ops)  # "freeze it at 2 s and do not let it move again"
+    hidden = last.get("op") in ("opacity", "delete") and _is_from(last)
+    if hidden and then.get("change") == "return" and isinstance(then.get("when"), When) and then["target"] == IT:
+        if then["when"].start is None or then["when"].during is not None:
+            return [*ops, *more]
+        return [*ops[:-1], {**last, "when": last["when"].model_copy(update={"stop": then["when"].start})}]
     moves = last.get("op") in ("articulate", "move", "spin", "orbit", "follow")
     if moves and then.get("change") == "stop" and then.get("when") is None and then["target"] == IT:
         return list(ops)  # "swing to 45 degrees, then stop"
@@ -872,6 +879,7 @@ def _closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) -
     return not taken and all(op["op"] == "articulate" and op.get("change") == "close" for op in ops)
 
 
+_AFTERWARDS = re.compile(r"\b(?:afterwards?|after that|later)\b")
 _FLIPPED: dict[Part, Part] = {
     "from": "until", "after": "until_end", "until": "from", "until_end": "after", "while": "unless", "unless": "while",
 }  # fmt: skip

@@ -223,6 +223,9 @@ _ONCE = ("once", "one time")
 _ROUND = re.compile(
     r"\b(?:one|a) (?:[a-z]+ ){0,2}(?:turn|circle|spin|rotation|twirl|pirouette|round)\b|\ball the way round\b"
 )
+_BACKWARDS = re.compile(
+    r"\b(?:back|backwards?|revers\w+|in reverse|rewind|rewound|opposite|undo\w*|invert\w*|flip\w*|contrary)\b"
+)
 _RATE = re.compile(r"\b(?:once|twice|(?:[a-z]+|\d+) (?:times|turns|rounds)) (?:a|per|every|each) second\b")
 _OTHER_WAY = re.compile(
     r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction)|way (?:round|around)|direction|clockwise|anti|"
@@ -251,6 +254,8 @@ def _to_the_end(moment: Moment) -> Moment:
 
 
 def _reverse(said: Said) -> Iterator[Wish]:
+    if not _BACKWARDS.search(said.text) and not _OTHER_WAY.search(said.text):
+        return  # "roll up the wall"
     if not said.told and _OTHER_WAY.search(said.text):
         yield Wish(f"let {said.things[0]} turn the other way round", said.moment)
     elif not said.told:
