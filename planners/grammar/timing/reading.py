@@ -42,7 +42,7 @@ from .restated.restating import restated
 from .sentences import folded
 from .supposed.kinds import COURSES, likely, marked
 from .supposed.names import with_nouns
-from .supposed.parts import TIMES, divided, loses_numbers
+from .supposed.parts import TIMES, divided, leaves_out
 from .supposed.said import said_of
 from .supposed.wishes import wishes
 from .verbs import SENSES, any_of, forms, has_form
@@ -140,7 +140,7 @@ class TimeReader:
                         else:
                             told = text.told and not wish.timeless
                             found = self._command(wish.command, "", wish.moment, event, told)
-                        if found and not loses_numbers(wording, marks, found):
+                        if found and not leaves_out(wording, marks, found):
                             return found
         return None
 
@@ -157,12 +157,12 @@ class TimeReader:
         return found if found and all(op.get("when") is not None for op in found) else None
 
     def contradicts(self, cleaned: str, ops: Sequence[Fields]) -> bool:
-        """Whether operations leave out a number of an instruction, or change what is there once and for all where its
-        words most likely ask for another course of a motion: "set off at 1 s" deletes nothing."""
+        """Whether operations leave out a number or a later colour of an instruction, or change what is there once and
+        for all where its words most likely ask for another course of a motion: "set off at 1 s" deletes nothing."""
         if not ops:
             return False
         words = _in_words(cleaned).split(" ")
-        if moments.TIMED.search(" ".join(words)) and loses_numbers(words, marked(words), ops):
+        if leaves_out(words, marked(words), ops):
             return True
         if not any(op["op"] in _ONCE_FOR_ALL and op.get("when") is not None for op in ops):
             return False
@@ -177,7 +177,7 @@ class TimeReader:
             with suppress(Refusal):
                 found = self._whole(shorter) or next(self._guesses(shorter), None)
                 if found is not None and not self._is_timeless(found, shorter):
-                    return None if loses_numbers(words, marked(words), found) else found
+                    return None if leaves_out(words, marked(words), found) else found
                 if found is None and self._is_plain(shorter) and not self._is_plain(cleaned):
                     return tuple(self._understand(shorter))
         return None

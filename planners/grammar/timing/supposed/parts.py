@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from pydantic import BaseModel
 
@@ -223,8 +224,23 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
     return None
 
 
-def loses_numbers(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fields]) -> bool:
-    """Whether a number that an instruction tells, and not as what is not wanted, stands in no operation."""
+def leaves_out(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fields]) -> bool:
+    """Whether a number beside a time, or a colour for later, that an instruction tells stands in no operation.
+
+    What is marked as not wanted may be left out.
+    """
+    held = set(re.findall(r"[a-z]+", str(ops)))
+    later = {hue for hue, then in pairwise(words) if hue in hues() and then in _LATER_ON} - held
+    if later and not {"again", "back"} & set(words):
+        return True  # "blue before it opens and red afterwards"
+    return TIMED.search(" ".join(words)) is not None and _loses_numbers(words, spans, ops)
+
+
+_LATER_ON = ("after", "afterward", "afterwards", "later", "thereafter")
+
+
+def _loses_numbers(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fields]) -> bool:
+    """Whether a number stands in no operation."""
     idle = {at for tag, start, stop in spans if tag == "not" for at in range(start, stop)}
     if "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
         idle |= set(range(words.index("not"), words.index("but", words.index("not"))))
