@@ -12,6 +12,7 @@ from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
 from .....gaussians.world.words import singular
 from .....tools.when import During
+from ...learned.marks import Span
 from ...learned.seen import hues
 from ...tagging.spelling import is_word
 from ...vocabulary.nouns import is_known
@@ -26,7 +27,6 @@ from .names import named as names_in
 from .names import with_moving
 from .said import Said
 
-Span = tuple[str, int, int]  # a tag, and the words from one to another
 TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
 _IDLE = ("not", "off")  # tags of words that ask for nothing
 _LEADING = re.compile(
@@ -145,7 +145,7 @@ def _name(words: Sequence[str], start: int, stop: int, thing: Thing) -> str:
 
 
 def _things(named: Sequence[tuple[str, str]], tag: str, thing: Thing) -> tuple[str, ...]:
-    """The names with a tag, each once; pronouns only where no name is there."""
+    """The names with a tag, each once, without pronouns."""
     found = list[tuple[str, Query]]()
     for own, name in named:
         query = thing(name) if own == tag else None
@@ -155,7 +155,7 @@ def _things(named: Sequence[tuple[str, str]], tag: str, thing: Thing) -> tuple[s
 
 
 def _joined(one: Moment, other: Moment) -> Moment | None:
-    """Both times as one; None if they differ in what they say."""
+    """Both times as one; None if both tell the same part of it."""
     for key in ("start", "stop", "lasting"):
         if getattr(one, key) is not None and getattr(other, key) is not None:
             return None
@@ -168,7 +168,7 @@ def _joined(one: Moment, other: Moment) -> Moment | None:
 
 
 def _moment(tag: str, phrase: str) -> Moment | None:
-    """A time in numbers."""
+    """The time in numbers that words with a tag tell, None if they tell none."""
     if _HALFWAY.match(phrase) and not _FILM.search(phrase) and not _ALONE.match(phrase):
         return None
     if tag == "to" and re.match(r"by (?:the )?(?:very )?end\b", phrase):
@@ -211,7 +211,7 @@ def _seconds(said: str) -> float | None:
 
 
 def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
-    """A time told by what happens."""
+    """The time told by what happens of words with a tag, None if they tell none."""
     if (half := _HALFWAY.match(phrase)) is not None:
         of = names_in(half["who"] or half["what"], thing)[:1]
         whose = thing(of[0]) if of and (half["who"] or half["way"].startswith((" through", " of"))) else None
