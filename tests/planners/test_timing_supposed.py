@@ -164,6 +164,7 @@ def test_words_about_a_course_delete_nothing() -> None:
     [
         "don't remove the ball when it stops",  # asks for nothing
         "speed up the first half of the ball's roll",  # a part of a movement
+        "make everything twice as slow but the fan",
         "the ball must not turn red while it rolls",
     ],
 )
@@ -180,3 +181,8 @@ def test_what_comes_back_was_hidden() -> None:
     assert planned("the ball should be gone from 2 s on, then come back at 4") == planned("hide the ball from 2 to 4 s")
     assert planned("let the ball roll up the wall") == []
     assert planned("paint the door blue before it opens and red afterwards") == []
+
+
+def test_a_share_in_percent_is_in_the_plan() -> None:
+    (op,) = planned("make the ball 30 percent slower after 1 second")
+    assert op["factor"] == pytest.approx(0.7)

@@ -245,7 +245,8 @@ def _loses_numbers(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fi
     if "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
         idle |= set(range(words.index("not"), words.index("but", words.index("not"))))
     exact = {abs(value) for op in ops for value in _numbers(op)}
-    held = {0.0}.union(*({v, v and 1 / v, 100 * v, 1 - v, 360 * v} for v in exact))  # shares, degrees of turns
+    shares = [{v and 1 / v, 100 * v, 1 - v, 100 * (1 - v), 100 * (v - 1)} for v in exact]
+    held = exact.union({0.0}, {360 * v for v in exact}, *shares)  # degrees of turns
     for at, (word, then) in enumerate(zip(words, (*words[1:], ""), strict=True)):
         if at in idle or is_known(singular(then)) or then in _NO_NUMBER:
             continue

@@ -34,6 +34,7 @@ _PROHIBITED = re.compile(
 _OTHER_EDITS = re.compile(
     r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b"
 )
+_EXCEPT = re.compile(r"\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
 _REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _TIMES_LEFT = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
@@ -77,6 +78,8 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
     timeless = not said.told and not said.moment.always
     if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
         return
+    if _EXCEPT.search(f"{said.text} {said.idle}"):
+        return  # "everything but the fan"
     if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text) or _OTHER_EDITS.search(said.text):
         return
     if kind in _STATIC and MOVING in said.things:
