@@ -2,7 +2,7 @@
 
     python -m scenewright.training.timed_questions
 
-Reads `timed_questions.tsv` (eight writers knew the kinds and no code), tells how often the questions of a writer are
+Reads `timed_questions.tsv` (ten writers knew the kinds and no code), tells how often the questions of a writer are
 told right by what the others wrote, and writes the weights of `planners/questions/reading/time/supposed/`.
 """
 

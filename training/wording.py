@@ -18,7 +18,6 @@ from ..gaussians import late_re as re
 from ..planners.grammar.learned import kinds, marks
 from ..planners.grammar.learned.kinds import Classifier
 from ..planners.grammar.learned.marks import Span, Tagger, labels_of
-from ..planners.grammar.learned.seen import store
 from ..planners.grammar.tagging.words import split
 
 RARE = 2  # sentences, or words, in which a feature must stand
@@ -172,14 +171,12 @@ def told_of_unseen(known: Sequence[Sentence], ridge: float = RIDGE) -> Told:
 
 
 def learn(path: Path, folder: Path, ridge: float = RIDGE) -> None:
-    """Learn from the sentences of a file, say how well that goes, and write `kinds.npz` and `marks.npz`."""
+    """Learn from the sentences of a file, say how well that goes, and write the models into a folder."""
     known = sentences(path)
     told = told_of_unseen(known, ridge)
     print(
         f"{len(known)} sentences; of a writer who was left out {told.kinds:.3f} of the kinds are told right, "
         f"and marks with a precision of {told.precision:.3f} and a recall of {told.recall:.3f}"
     )
-    kind_of, spans_of = classifier(known, ridge), tagger(known)
-    store(folder / "kinds.npz", {"labels": kind_of.labels, "names": kind_of.names}, {"weights": kind_of.weights})
-    lists = {"labels": spans_of.labels, "names": spans_of.names}
-    store(folder / "marks.npz", lists, {"weights": spans_of.weights, "moves": spans_of.moves})
+    classifier(known, ridge).write(folder)
+    tagger(known).write(folder)

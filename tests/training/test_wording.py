@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -49,8 +51,8 @@ def test_writers_are_told_by_what_others_wrote() -> None:
 
 
 @pytest.mark.parametrize("path", [timed_wishes.SENTENCES, timed_questions.SENTENCES])
-def test_every_sentence_has_its_marks_in_its_words(path: object) -> None:
-    known = sentences(path)  # type: ignore[arg-type]
+def test_every_sentence_has_its_marks_in_its_words(path: Path) -> None:
+    known = sentences(path)
     for sentence in known:
         assert not set("[]") & set(sentence.said), sentence
         assert len(sentence.spans) == sentence.marked.count("["), sentence

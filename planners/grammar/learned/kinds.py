@@ -6,14 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..tagging.words import split
 from ..vocabulary.nouns import is_known
+from .files import store, stored
 from .seen import STEM, amount_or_color, hues
 
+FILE = "kinds.npz"
 _MARKS = frozenset('.;!,:"')
 _LONGEST = 3  # words in a row
 
@@ -30,6 +33,16 @@ class Classifier:
     def places(self) -> dict[str, int]:
         """The row of each feature."""
         return {name: row for row, name in enumerate(self.names)}
+
+    @classmethod
+    def of(cls, folder: Path) -> Classifier:
+        """The one that is stored in a folder."""
+        lists, weights = stored(folder / FILE)
+        return cls(lists["labels"], lists["names"], weights["weights"])
+
+    def write(self, folder: Path) -> None:
+        """Store it in a folder."""
+        store(folder / FILE, {"labels": self.labels, "names": self.names}, {"weights": self.weights})
 
     def kinds_of(self, said: str) -> list[tuple[str, float]]:
         """The kinds of a sentence with their probabilities, the likeliest first."""

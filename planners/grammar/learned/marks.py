@@ -9,13 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..tagging.words import bag
+from .files import store, stored
 from .seen import STEM, classed
 
+FILE = "marks.npz"
 OUTSIDE = "O"
 Span = tuple[str, int, int]  # a tag, and the words from one to another
 _ENDS = bag(", . ; and but so")
@@ -45,6 +48,17 @@ class Tagger:
         """The moves, with those to the inside of a mark that has not begun at minus infinity."""
         bad = [[b.startswith("I-") and a[2:] != b[2:] for b in self.labels] for a in self.labels]
         return np.where(np.array(bad), -np.inf, self.moves).astype(np.float32)
+
+    @classmethod
+    def of(cls, folder: Path) -> Tagger:
+        """The one that is stored in a folder."""
+        lists, weights = stored(folder / FILE)
+        return cls(lists["labels"], lists["names"], weights["weights"], weights["moves"])
+
+    def write(self, folder: Path) -> None:
+        """Store it in a folder."""
+        lists = {"labels": self.labels, "names": self.names}
+        store(folder / FILE, lists, {"weights": self.weights, "moves": self.moves})
 
     def spans(self, words: Sequence[str]) -> tuple[Span, ...]:
         """The marks in words."""

@@ -22,7 +22,7 @@ from ....gaussians.world import kinds
 from ....gaussians.world.spelling import best_slip
 from ....tools.registry import OPS
 from ....tools.registry import parse as parse_op
-from ....tools.when import During, Part, When
+from ....tools.when import During, When
 from ..parsing import Refusal
 from ..restating.speech.frames import unframed
 from ..tagging.spelling import is_word
@@ -34,9 +34,10 @@ from .asides import told_of, without_comparisons
 from .clauses import AUXILIARIES
 from .command import Command, Fields
 from .commands import commands, loose_commands
+from .following import followed, says_again
 from .happenings import IT, Happening
 from .manner import MOTION
-from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
+from .moments import Moment
 from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
@@ -46,6 +47,7 @@ from .supposed.parts import TIMES, divided, leaves_out
 from .supposed.said import said_of
 from .supposed.wishes import wishes
 from .verbs import SENSES, any_of, forms, has_form
+from .whens import closes_later, inverse, settled, when_of
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
 
@@ -127,8 +129,7 @@ class TimeReader:
             for rest, moment, happening in islice(whole, 2)
         ]
         wording = with_nouns(spelled).split(" ")
-        marks = marked(wording)
-        if (by_marks := divided(wording, marks, self.thing)) is not None:
+        if (by_marks := divided(wording, marked(wording), self.thing)) is not None:
             readings.insert(0, by_marks)
         for kind, chance in kinds:
             for text, happening in readings:
@@ -140,7 +141,7 @@ class TimeReader:
                         else:
                             told = text.told and not wish.timeless
                             found = self._command(wish.command, "", wish.moment, event, told)
-                        if found and not leaves_out(wording, marks, found):
+                        if found and not leaves_out(wording, found):
                             return found
         return None
 
@@ -162,7 +163,7 @@ class TimeReader:
         if not ops:
             return False
         words = _in_words(cleaned).split(" ")
-        if leaves_out(words, marked(words), ops):
+        if leaves_out(words, ops):
             return True
         if not any(op["op"] in _ONCE_FOR_ALL and op.get("when") is not None for op in ops):
             return False
@@ -177,7 +178,7 @@ class TimeReader:
             with suppress(Refusal):
                 found = self._whole(shorter) or next(self._guesses(shorter), None)
                 if found is not None and not self._is_timeless(found, shorter):
-                    return None if leaves_out(words, marked(words), found) else found
+                    return None if leaves_out(words, found) else found
                 if found is None and self._is_plain(shorter) and not self._is_plain(cleaned):
                     return tuple(self._understand(shorter))
         return None
@@ -276,10 +277,10 @@ class TimeReader:
                     found = tuple(self._understand(part))
                 except Refusal as error:
                     refusal = refusal or error
-            if found and _says_again(ops, found):
+            if found and says_again(ops, found):
                 ops = [{**found[0], "target": ops[-1]["target"]}]  # "close the door. Start closing it at 3 s"
             else:
-                ops = _resting(ops, found or ())
+                ops = followed(ops, found or ())
         if not timed:
             return None
         if refusal is not None:
@@ -433,7 +434,7 @@ class TimeReader:
             and all(op.get("change") in ("stop", "begin") for op in ops)
         ):  # "stop when it is turning" begins then
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
-        if happening is not None and _closes_later(ops, moment, happening):  # "when it was open for one second"
+        if happening is not None and closes_later(ops, moment, happening):  # "when it was open for one second"
             moment = replace(moment, start=moment.lasting, lasting=None)
             during = happening.during.model_copy(update={"state": "fully_open", "part": "from"})
             happening = replace(happening, during=during)
@@ -444,7 +445,7 @@ class TimeReader:
             ops = [
                 {k: v for k, v in op.items() if k != "factor"} | {"change": "begin"} for op in ops
             ]  # "faster, in 1 s"
-        times = _inverse(moment, happening) if command.inverse else [(moment, happening)]
+        times = inverse(moment, happening) if command.inverse else [(moment, happening)]
         made = tuple(op for time in times for op in self._with_time(ops, *time, kind))
         if command.every is not None:
             made = tuple(
@@ -460,11 +461,11 @@ class TimeReader:
             target = op.get("target")
             during = None
             if happening is not None:
-                target, during = _settled(target, happening.during)
+                target, during = settled(target, happening.during)
                 if during.part in ("from", "after") and any(map(_AT_A_TIME.match, moment.said)):
                     during = None  # "once it has opened, shut it at 3 s" is no 3 s later
                 op = {**op, **({"target": target} if target is not None else {})}
-            when = _when(moment, during, kind, op)
+            when = when_of(moment, during, kind, op)
             made.append({**op, **({"when": when} if when is not None else {})})
             parse_op(made[-1])  # an operation that cannot be is no reading
         return tuple(made)
@@ -646,55 +647,6 @@ def _is_verb(word: str) -> bool:
     return has_form(word, tuple(SENSES), "plain", "s", "past", "ing") and word not in _THINGS
 
 
-def _resting(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
-    """Operations one after the other; "it stops at 1 s and starts again at 2 s" is one rest from 1 to 2 s."""
-    last = ops[-1] if ops else {}
-    then = more[0] if len(more) == 1 else {}
-    if (
-        _waits_until(last)
-        and then.get("when") is None
-        and then.get("change") in ("begin", "open", "go_on")
-        and then["target"] in (IT, last["target"])
-    ):
-        return list(ops)  # "keep it closed until 3 s, then let it open"
-    if last.get("change") == then.get("change") == "stop" and then.get("when") is None and _is_from(last):
-        return list(ops)  # "freeze it at 2 s and do not let it move again"
-    hidden = last.get("op") in ("opacity", "delete") and _is_from(last)
-    if hidden and then.get("change") == "return" and isinstance(then.get("when"), When) and then["target"] == IT:
-        if then["when"].start is None or then["when"].during is not None:
-            return [*ops, *more]
-        return [*ops[:-1], {**last, "when": last["when"].model_copy(update={"stop": then["when"].start})}]
-    moves = last.get("op") in ("articulate", "move", "spin", "orbit", "follow")
-    if moves and then.get("change") == "stop" and then.get("when") is None and then["target"] == IT:
-        return list(ops)  # "swing to 45 degrees, then stop"
-    stop, start = last.get("when"), then.get("when")
-    if (last.get("change"), then.get("change")) != ("stop", "begin") or then["target"] not in (IT, last["target"]):
-        return [*ops, *more]
-    if not isinstance(stop, When) or not isinstance(start, When) or start.start is None or stop.stop or stop.lasting:
-        return [*ops, *more]
-    return [*ops[:-1], {**last, "when": stop.model_copy(update={"stop": start.start})}]
-
-
-def _waits_until(op: Fields) -> bool:
-    """Whether an operation holds a thing still until a time, so that it moves afterwards."""
-    when = op.get("when")
-    return op.get("change") == "stop" and isinstance(when, When) and when.start is None and when.stop is not None
-
-
-def _is_from(op: Fields) -> bool:
-    """Whether an operation holds from a time on to the end."""
-    when = op.get("when")
-    return isinstance(when, When) and when.stop is None and when.lasting is None and when != When()
-
-
-def _says_again(ops: Sequence[Fields], more: Sequence[Fields]) -> bool:
-    """Whether one operation tells the time of the one before."""
-    if len(ops) != 1 or len(more) != 1 or ops[0].get("when") is not None or more[0].get("when") is None:
-        return False
-    same = all(ops[0].get(k) == more[0].get(k) for k in ("op", "change"))
-    return same and more[0].get("target") in (IT, ops[0].get("target"))
-
-
 def _which_moves(query: Query, moving: bool) -> Query:
     text = "" if query.text in ("everything", "all", "thing", "object") else query.text
     return query.model_copy(update={"text": text, "moving": moving})
@@ -833,67 +785,4 @@ def _plain_queries(value: object) -> Iterator[Fields]:
         yield {"text": value.text}
 
 
-def _settled(target: Query | None, during: During) -> tuple[Query | None, During]:
-    """The target and the time, with "it" in each read as what the other names."""
-    of = during.of
-    if target is not None and of is not None:
-        if target == IT and of != IT and not of.moving:
-            target, of = of, None
-        elif (of == IT and target != IT) or of in (target, IT):
-            of = None
-    anchors = tuple(target if q == IT and target is not None else q for q in during.anchors)
-    return target, during.model_copy(update={"of": of, "anchors": anchors})
-
-
-def _when(moment: Moment, during: During | None, kind: str, op: Fields) -> When | None:
-    lasting, gradual = moment.lasting, False
-    start: End | None = moment.start
-    if kind == "look":
-        if moment.taken or moment.slowly or op.get("gradual"):
-            gradual = True
-            if moment.stop is None or moment.start is None:
-                lasting = lasting or LITTLE_BY_LITTLE
-        if op["op"] in ("insert", "delete", "replace", "isolate", "duplicate") and moment.taken:
-            gradual = False
-    elif lasting is None and moment.stop is None:
-        lasting = SLOW if moment.slowly else BRIEF if moment.quickly and kind == "path" else None
-    stop: End | None = None if lasting is not None else moment.stop
-    if kind == "path" and isinstance(start, float) and start < 0 and lasting is None and stop is None:
-        stop = "end"  # "in the last two seconds" is there at the end
-    ends = during is not None and during.part in ("from", "after") and moment.always
-    if kind == "path" and ends and stop is None and lasting is None:
-        stop = "end"  # "by the end of the film"
-    if kind == "path" and start is None and stop is None and lasting is None and during is None:
-        return When(stop="end" if moment.always else None)
-    if start is None and stop is None and lasting is None and during is None:
-        return None
-    return When(start=start, stop=stop, lasting=lasting, during=during, gradual=gradual)
-
-
-def _closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) -> bool:
-    """Whether seconds beside what happens are how long something is open before it is to close."""
-    opened = happening.during.state in ("open", "opening", "fully_open") and happening.during.part != "until"
-    if not opened or moment.lasting is None or moment.start is not None or moment.stop is not None:
-        return False
-    taken = any(re.match(r"(?:in|over|within|during|taking) ", said) for said in moment.said)
-    return not taken and all(op["op"] == "articulate" and op.get("change") == "close" for op in ops)
-
-
 _AFTERWARDS = re.compile(r"\b(?:afterwards?|after that|later)\b")
-_FLIPPED: dict[Part, Part] = {
-    "from": "until", "after": "until_end", "until": "from", "until_end": "after", "while": "unless", "unless": "while",
-}  # fmt: skip
-
-
-def _inverse(moment: Moment, happening: Happening | None) -> list[tuple[Moment, Happening | None]]:
-    """The times in which something is not to be seen that is to be seen in another; none if nobody can say."""
-    if happening is not None:
-        during = happening.during.model_copy(update={"part": _FLIPPED[happening.during.part]})
-        return [(moment, replace(happening, during=during))] if moment.empty else []
-    start, stop = moment.start, moment.stop
-    if moment.lasting is not None:
-        stop = start + moment.lasting if isinstance(start, float) and start >= 0 and stop is None else None
-        start = None if stop is None else start
-    ends = [replace(moment, start=None, stop=start, lasting=None)] if start not in (None, 0.0) else []
-    ends += [replace(moment, start=stop, stop=None, lasting=None)] if stop is not None else []
-    return [(end, None) for end in ends]

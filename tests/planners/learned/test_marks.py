@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from scenewright.planners.grammar.learned.files import store, stored
 from scenewright.planners.grammar.learned.marks import Tagger, features, labels_of, spans_of
-from scenewright.planners.grammar.learned.seen import classed, store, stored
+from scenewright.planners.grammar.learned.seen import classed
 
 LABELS = ("O", "B-x", "I-x", "B-t", "I-t")
 

@@ -11,7 +11,6 @@ from pathlib import Path
 
 from ...learned.kinds import Classifier
 from ...learned.marks import Span, Tagger
-from ...learned.seen import stored
 
 FOLDER = Path(__file__).parent
 NO_WISH = "none"  # the kind of questions, remarks, and wishes that are about neither time nor motion
@@ -44,12 +43,10 @@ def marked(words: Sequence[str]) -> tuple[Span, ...]:
 @cache
 def classifier() -> Classifier:
     """What tells kinds."""
-    lists, weights = stored(FOLDER / "kinds.npz")
-    return Classifier(lists["labels"], lists["names"], weights["weights"])
+    return Classifier.of(FOLDER)
 
 
 @cache
 def tagger() -> Tagger:
     """What tells marks."""
-    lists, weights = stored(FOLDER / "marks.npz")
-    return Tagger(lists["labels"], lists["names"], weights["weights"], weights["moves"])
+    return Tagger.of(FOLDER)

@@ -23,6 +23,7 @@ from ..happenings import cut as happenings_in
 from ..manner import Thing
 from ..moments import DURATION, TIMED, End, Moment, cut, seconds_of
 from ..verbs import SENSES, has_form
+from .kinds import marked
 from .names import named as names_in
 from .names import with_moving
 from .said import Said
@@ -224,7 +225,7 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
     return None
 
 
-def leaves_out(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fields]) -> bool:
+def leaves_out(words: Sequence[str], ops: Sequence[Fields]) -> bool:
     """Whether a number beside a time, or a colour for later, that an instruction tells stands in no operation.
 
     What is marked as not wanted may be left out.
@@ -233,22 +234,29 @@ def leaves_out(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fields
     later = {hue for hue, then in pairwise(words) if hue in hues() and then in _LATER_ON} - held
     if later and not {"again", "back"} & set(words):
         return True  # "blue before it opens and red afterwards"
-    return TIMED.search(" ".join(words)) is not None and _loses_numbers(words, spans, ops)
+    return TIMED.search(" ".join(words)) is not None and _loses_numbers(words, ops)
 
 
 _LATER_ON = ("after", "afterward", "afterwards", "later", "thereafter")
 
 
-def _loses_numbers(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fields]) -> bool:
-    """Whether a number stands in no operation."""
-    idle = {at for tag, start, stop in spans if tag == "not" for at in range(start, stop)}
-    if "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
-        idle |= set(range(words.index("not"), words.index("but", words.index("not"))))
+def _loses_numbers(words: Sequence[str], ops: Sequence[Fields]) -> bool:
+    """Whether a number stands in no operation, and not among what is not wanted."""
+    missing = set(_missing(words, ops))
+    if missing and "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
+        missing -= set(range(words.index("not"), words.index("but", words.index("not"))))
+    if missing:
+        missing -= {at for tag, start, stop in marked(words) if tag == "not" for at in range(start, stop)}
+    return bool(missing)
+
+
+def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
+    """Where the numbers stand that are in no operation."""
     exact = {abs(value) for op in ops for value in _numbers(op)}
     shares = [{v and 1 / v, 100 * v, 1 - v, 100 * (1 - v), 100 * (v - 1)} for v in exact]
     held = exact.union({0.0}, {360 * v for v in exact}, *shares)  # degrees of turns
     for at, (word, then) in enumerate(zip(words, (*words[1:], ""), strict=True)):
-        if at in idle or is_known(singular(then)) or then in _NO_NUMBER:
+        if is_known(singular(then)) or then in _NO_NUMBER:
             continue
         told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
         seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
@@ -256,8 +264,7 @@ def _loses_numbers(words: Sequence[str], spans: Sequence[Span], ops: Sequence[Fi
             rate = words[max(0, at - 1)] in ("every", "each", "per")
             among = exact if seconds and not rate else held
             if not any(abs(told - value) < 0.01 or abs(told + 0.5 - value) < 0.01 for value in among):
-                return True
-    return False
+                yield at
 
 
 _NO_NUMBER = ("of", "ones", "quarters", "thirds", "quarter", "third")  # behind a part of something

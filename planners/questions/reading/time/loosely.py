@@ -90,7 +90,7 @@ _SILENT = _AUX | bag(
     "bro honey darling love mate computer assistant people sorry remind suppose suppose think believe guess look looks "
     "looking right also too as it's"
 )
-_HARD = bag(
+HARD = bag(
     "not no never nothing none nobody neither nor without except besides only than more less fewer faster slower "
     "longer "
     "shorter farther earlier later sooner first last next second third again back same different other another else if "
@@ -207,7 +207,7 @@ def _parts(words: list[str], names: Collection[str]) -> list[_Part] | None:
             at = part.stop
             continue
         word = words[at]
-        if word in _HARD or not (word in _SILENT or _is_a_name(words, at, names)):
+        if word in HARD or not (word in _SILENT or _is_a_name(words, at, names)):
             return None
         at += 1
     return found
@@ -267,7 +267,7 @@ def _is_a_name(words: list[str], at: int, names: Collection[str]) -> bool:
     """Whether an unknown word is what somebody calls a thing: "robby the robot"."""
     word = words[at]
     return (
-        word.isalpha() and word not in _HARD and at + 2 < len(words) and words[at + 1] == "the"
+        word.isalpha() and word not in HARD and at + 2 < len(words) and words[at + 1] == "the"
         and (at == 0 or words[at - 1] in _AUX or words[at - 1] == ",") and _thing_at(words, at + 1, names) is not None
     )  # fmt: skip
 

@@ -11,7 +11,6 @@ from pathlib import Path
 
 from .....grammar.learned.kinds import Classifier
 from .....grammar.learned.marks import Span, Tagger
-from .....grammar.learned.seen import stored
 
 FOLDER = Path(__file__).parent
 
@@ -30,8 +29,7 @@ def marked(words: Sequence[str]) -> tuple[Span, ...]:
 @cache
 def classifier() -> Classifier:
     """What tells kinds."""
-    lists, weights = stored(FOLDER / "kinds.npz")
-    return Classifier(lists["labels"], lists["names"], weights["weights"])
+    return Classifier.of(FOLDER)
 
 
 @cache
@@ -43,5 +41,4 @@ def vocabulary() -> frozenset[str]:
 @cache
 def tagger() -> Tagger:
     """What tells marks."""
-    lists, weights = stored(FOLDER / "marks.npz")
-    return Tagger(lists["labels"], lists["names"], weights["weights"], weights["moves"])
+    return Tagger.of(FOLDER)

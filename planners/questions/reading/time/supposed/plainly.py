@@ -20,20 +20,15 @@ from .....grammar.vocabulary.quantities import NUMBERS
 from ...noun_phrase import is_color_word
 from ..everyday import everyday
 from ..frames import UNIT
+from ..loosely import HARD
 from .kinds import kinds_of, marked, vocabulary
 
-NOT_TOLD = "none"  # the kind of what cannot be told, or is not about time
 LEAST = 0.38  # probability of a kind that is tried: .8 of these are told right, .9 from .5 on
 _LONGEST = 40  # words
 _DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|your|his|her|its|their|all|both|any|every)\b")
 _PLURAL = re.compile(r"^(?:all |both )?(?:of )?(?:the |these |those |my |our )?")
 _IN_UNIT = re.compile(rf"\b(?:{UNIT}|rpm|revs? (?:a|per) minute)\b")
-_HARD = bag(
-    "not no never nothing none nobody neither nor without except besides only than more less fewer faster slower "
-    "longer "
-    "shorter farther further earlier later sooner first last next second third again back same different other another "
-    "else if because why half quarter between every each both most least final initial twice before after while until"
-)
+_HARD = (HARD - {"one"}) | bag("after before further until while")
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,83 @@
+"""The time of an operation, from what a sentence says of it in numbers and by what happens."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ....gaussians import late_re as re
+from ....gaussians.language.query.query import Query
+from ....tools.when import During, Part, When
+from .command import Fields
+from .happenings import IT, Happening
+from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
+
+
+def settled(target: Query | None, during: During) -> tuple[Query | None, During]:
+    """The target and the time, with "it" in each read as what the other names."""
+    of = during.of
+    if target is not None and of is not None:
+        if target == IT and of != IT and not of.moving:
+            target, of = of, None
+        elif (of == IT and target != IT) or of in (target, IT):
+            of = None
+    anchors = tuple(target if q == IT and target is not None else q for q in during.anchors)
+    return target, during.model_copy(update={"of": of, "anchors": anchors})
+
+
+def when_of(moment: Moment, during: During | None, kind: str, op: Fields) -> When | None:
+    """The time of an operation; None if it holds at all times.
+
+    Args:
+        kind: as `Command` has it.
+    """
+    lasting, gradual = moment.lasting, False
+    start: End | None = moment.start
+    if kind == "look":
+        if moment.taken or moment.slowly or op.get("gradual"):
+            gradual = True
+            if moment.stop is None or moment.start is None:
+                lasting = lasting or LITTLE_BY_LITTLE
+        if op["op"] in ("insert", "delete", "replace", "isolate", "duplicate") and moment.taken:
+            gradual = False
+    elif lasting is None and moment.stop is None:
+        lasting = SLOW if moment.slowly else BRIEF if moment.quickly and kind == "path" else None
+    stop: End | None = None if lasting is not None else moment.stop
+    if kind == "path" and isinstance(start, float) and start < 0 and lasting is None and stop is None:
+        stop = "end"  # "in the last two seconds" is there at the end
+    ends = during is not None and during.part in ("from", "after") and moment.always
+    if kind == "path" and ends and stop is None and lasting is None:
+        stop = "end"  # "by the end of the film"
+    if kind == "path" and start is None and stop is None and lasting is None and during is None:
+        return When(stop="end" if moment.always else None)
+    if start is None and stop is None and lasting is None and during is None:
+        return None
+    return When(start=start, stop=stop, lasting=lasting, during=during, gradual=gradual)
+
+
+def closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) -> bool:
+    """Whether seconds beside what happens are how long something is open before it is to close."""
+    opened = happening.during.state in ("open", "opening", "fully_open") and happening.during.part != "until"
+    if not opened or moment.lasting is None or moment.start is not None or moment.stop is not None:
+        return False
+    taken = any(re.match(r"(?:in|over|within|during|taking) ", said) for said in moment.said)
+    return not taken and all(op["op"] == "articulate" and op.get("change") == "close" for op in ops)
+
+
+_FLIPPED: dict[Part, Part] = {
+    "from": "until", "after": "until_end", "until": "from", "until_end": "after", "while": "unless", "unless": "while",
+}  # fmt: skip
+
+
+def inverse(moment: Moment, happening: Happening | None) -> list[tuple[Moment, Happening | None]]:
+    """The times in which something is not to be seen that is to be seen in another; none if nobody can say."""
+    if happening is not None:
+        during = happening.during.model_copy(update={"part": _FLIPPED[happening.during.part]})
+        return [(moment, replace(happening, during=during))] if moment.empty else []
+    start, stop = moment.start, moment.stop
+    if moment.lasting is not None:
+        stop = start + moment.lasting if isinstance(start, float) and start >= 0 and stop is None else None
+        start = None if stop is None else start
+    ends = [replace(moment, start=None, stop=start, lasting=None)] if start not in (None, 0.0) else []
+    ends += [replace(moment, start=stop, stop=None, lasting=None)] if stop is not None else []
+    return [(end, None) for end in ends]
