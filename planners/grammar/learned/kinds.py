@@ -66,4 +66,4 @@ def features(said: str) -> frozenset[str]:
 
 def _is_part_of_name(word: str, then: str) -> bool:
     """Whether a colour tells which thing is meant: "the red book"."""
-    return word in hues() and is_known(then)
+    return word in hues() and (then in ("one", "ones") or is_known(then))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ....tools.when import When
+from ....tools.when import Part, When
+from ..parsing import Refusal
 from .command import Fields
 from .happenings import IT
 
@@ -20,6 +21,8 @@ def followed(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
         and then["target"] in (IT, last["target"])
     ):
         return list(ops)  # "keep it closed until 3 s, then let it open"
+    if _colors_again(last, then) and isinstance(last.get("when"), When):
+        return [*ops, {**then, "when": _afterwards(last["when"])}]
     if last.get("change") == then.get("change") == "stop" and then.get("when") is None and _is_from(last):
         return list(ops)  # "freeze it at 2 s and do not let it move again"
     hidden = last.get("op") in ("opacity", "delete") and _is_from(last)
@@ -36,6 +39,36 @@ def followed(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
     if not isinstance(stop, When) or not isinstance(start, When) or start.start is None or stop.stop or stop.lasting:
         return [*ops, *more]
     return [*ops[:-1], {**last, "when": stop.model_copy(update={"stop": start.start})}]
+
+
+def goes_back(last: Fields, more: Sequence[Fields]) -> bool:
+    """Whether operations give a thing the look that it has when another operation ends: "then green again"."""
+    return len(more) == 1 and _colors_again(last, more[0]) and isinstance(last.get("when"), When)
+
+
+def _colors_again(last: Fields, then: Fields) -> bool:
+    """Whether an operation without a time gives another look to what has just got one: "then yellow"."""
+    same = last.get("op") in _LOOKS and then.get("op") in _LOOKS and then["target"] in (IT, last["target"])
+    return same and then.get("when") is None
+
+
+def _afterwards(when: When) -> When:
+    """The time after another one.
+
+    Raises:
+        Refusal: it has no end.
+    """
+    if when.stop is not None:
+        return When(start=when.stop)
+    if when.lasting is not None and when.during is None and not isinstance(when.start, str):
+        return When(start=(when.start or 0.0) + when.lasting)
+    if when.lasting is None and when.during is not None and when.during.part in _ENDS:
+        return When(during=when.during.model_copy(update={"part": _ENDS[when.during.part]}))
+    raise Refusal("say from when on it is to look like that", "then")
+
+
+_LOOKS = ("recolor", "restyle")
+_ENDS: dict[Part, Part] = {"while": "after", "until": "from", "until_end": "after"}
 
 
 def _waits_until(op: Fields) -> bool:

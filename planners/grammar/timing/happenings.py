@@ -82,6 +82,14 @@ _TO = ("to", "up to", "over to", "against", "as far as", "across to", "back to")
 _DONE = re.compile(
     r"(?:\b(?:is|has|are|have|gets)|'s) (?:all )?(?:done|finished|through) (?:with )?(?:its |his |the )?[a-z]+ing$"
 )
+_USUALLY = re.compile(r" (?:would |will |does )?(?:normally|usually|ordinarily) (?=[a-z])")
+_THEY_ALL = re.compile(
+    r"(?:all|both)(?: of (?:them|these|those)| (?:the )?(?:two|three|four|five))|they (?:have )?all|all of it|both"
+)
+_EVENT_OVER = re.compile(
+    r"^(?:the|its|his|her) (?:motion|movement|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|spin)"
+    r"(?: of (?P<who>.+?))? (?:is|has) (?:over|done|ended|finished|completed?)$"
+)
 _AT_TURN = re.compile(
     r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at) (?:its|his|her|the|that) "
     r"(?:turn|turning point|corner|bend|curve)$"
@@ -94,7 +102,9 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     """What a clause behind a conjunction tells of; None if the whole of it is not understood."""
     if _PEOPLE.match(said):
         return None
-    said = _DONE.sub("has stopped", said)
+    said = _USUALLY.sub(" ", _DONE.sub("has stopped", said))
+    if (over := _EVENT_OVER.match(said)) is not None:
+        said = f"{over['who'] or 'it'} has stopped"
     if (turn := _AT_TURN.match(said)) is not None and (whose := _who(turn["who"], thing)) is not None:
         return During(state="turning", of=whose, part=_part(word, _EVENT))
 
@@ -240,6 +250,8 @@ def _who(said: str, thing: Thing) -> Query | None:
     said = re.sub(r"^(?:only|just|exactly|right) ", "", said)
     if said in _PRONOUNS:
         return IT
+    if _THEY_ALL.fullmatch(said):
+        return thing("everything that moves")
     if not said or len(said.split()) > 7 or _PEOPLE.match(said):
         return None
     if (first := re.match(r"^(?:the )?(?:first|last|other) (?=\w)", said)) is not None:

@@ -57,6 +57,9 @@ REMARKS = re.compile(  # what goes without saying behind a time: "..., then back
     rf"falls?|spins?|turns?|runs?)(?: on)?|(?:let it |it )?(?:starts?|begins?) (?:to )?"
     rf"{any_of(MOTION, 'plain', 'ing')})|"
     rf"(?:down|up|on|off|away|round) (?:it|he|she) goes(?: again)?|"
+    rf"(?:(?:i|we|you|nobody|no one) )?(?:(?:do|does|will|should|must|can) )?(?:not|never) (?:ever )?(?:sees?|"
+    rf"be seen|shows?|comes?|returns?|reappears?|appears?)(?: (?:it|him|her|them))?"
+    rf"(?: (?:back|again|any ?more|ever|after that|later|up))*|"
     rf"(?:then )?(?:start|open|move|release|launch|restart) (?:it|him|her|them)(?: again| up)?|"
     rf"not (?:close|open|shut|move|fall|go|start)(?: again| any ?more)?|"
     rf"(?:(?:it|he|she|they) )?(?:(?:should|must|may|shall|does|do|will|can) )?(?:not|never)(?: ever)? "
@@ -76,10 +79,15 @@ BACK_WHEN = re.compile(
     r"left|is gone|ends?|does not|is past|has passed|moves? on|rolls? off)(?: it)?$"
 )
 NOISE = re.compile(
-    r"(?:^| )(?:lol|haha|done|pls|plz|please|thanks|thank you|dear|mate|ok|okay|you know|cheers|kindly|if you can|if "
+    r"(?:^| )(?:lol|haha|pls|plz|please|thanks|thank you|dear|mate|ok|okay|you know|cheers|kindly|if you can|if "
     r"possible|"
     r"can u|could u|would u|u|hmm+|um+|uh|er|btw|"
-    r"would you mind|would you|could you|honey|bro|dude|hey|hi|voila|ta da|tada|presto|bam|boom|whoosh)(?= |$)"
+    r"would you mind|would you|could you|honey|bro|dude|hey|hi|voila|ta da|tada|presto|bam|boom|whoosh)(?= |$)|"
+    r"(?<= [,.]) done(?= ?[,.!]|$)"
+)
+STAYS_SEEN = re.compile(  # what is not hidden; "until" tells when it is
+    r"\b(?:should|must|may|shall|can|does|do) not (?:disappear|vanish|be hidden|be removed|be deleted)\b"
+    r"(?!.*\b(?:until|till|before)\b)"
 )
 RANGE = re.compile(  # "2s-3s", "from 0-1"
     r"(?:from )?(?P<a>\d+(?:\.\d+)?) ?(?:s|secs?)? ?[-–] ?(?P<b>\d+(?:\.\d+)?) ?(?:s|secs?|seconds)\b|"

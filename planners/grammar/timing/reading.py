@@ -34,17 +34,18 @@ from .asides import told_of, without_comparisons
 from .clauses import AUXILIARIES
 from .command import Command, Fields
 from .commands import commands, loose_commands
-from .following import followed, says_again
+from .following import followed, goes_back, says_again
 from .happenings import IT, Happening
 from .manner import MOTION
 from .moments import Moment
 from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
+from .supposed.choosing import Offer, chosen
 from .supposed.kinds import COURSES, likely, marked
 from .supposed.names import with_nouns
 from .supposed.parts import TIMES, divided, leaves_out
-from .supposed.said import said_of
+from .supposed.said import Said, said_of
 from .supposed.wishes import wishes
 from .verbs import SENSES, any_of, forms, has_form
 from .whens import closes_later, inverse, settled, when_of
@@ -87,6 +88,8 @@ class TimeReader:
             return None
         if phrases.CONTRARY.search(said):
             raise Refusal("it cannot be both at the same time", said, verdict="impossible")
+        if phrases.STAYS_SEEN.search(said):
+            raise Refusal("it says what not to do, and asks for no change", said, verdict="not_an_edit", firm=True)
         said = self._unfronted(said)
         found = self._whole(said)
         if found is not None:
@@ -115,10 +118,10 @@ class TimeReader:
         enough, or if they would leave out anything that it names.
 
         Args:
-            least: probability of the kind.
+            least: probability of a kind that no word has to say.
         """
         words = _in_words(cleaned)
-        kinds = [(kind, p) for kind, p in likely(cleaned) if p >= least] if words.count(" ") < _LONGEST else []
+        kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
         if not kinds:
             return None
         spelled = _spelled(_spelt_out(words), _LONG_WORDS)
@@ -131,19 +134,24 @@ class TimeReader:
         wording = with_nouns(spelled).split(" ")
         if (by_marks := divided(wording, marked(wording), self.thing)) is not None:
             readings.insert(0, by_marks)
-        for kind, chance in kinds:
-            for text, happening in readings:
-                for wish in wishes(kind, text, chance):
-                    with suppress(Refusal, UserError, ValidationError):
-                        event = None if wish.timeless else happening
-                        if isinstance(wish.command, Command):
-                            found = self._made(wish.command, wish.moment, event)
-                        else:
-                            told = text.told and not wish.timeless
-                            found = self._command(wish.command, "", wish.moment, event, told)
-                        if found and not leaves_out(wording, found):
-                            return found
-        return None
+        offers = [Offer(kind, p, next(self._wished(kind, p, readings, wording), ())) for kind, p in kinds]
+        return chosen(offers, words, least)
+
+    def _wished(
+        self, kind: str, chance: float, readings: Sequence[tuple[Said, Happening | None]], wording: Sequence[str]
+    ) -> Iterator[tuple[Fields, ...]]:
+        """The operations of a kind of wish that leave out nothing that the words of an instruction name."""
+        for text, happening in readings:
+            for wish in wishes(kind, text, chance):
+                with suppress(Refusal, UserError, ValidationError):
+                    event = None if wish.timeless else happening
+                    if isinstance(wish.command, Command):
+                        found = self._made(wish.command, wish.moment, event)
+                    else:
+                        told = text.told and not wish.timeless
+                        found = self._command(wish.command, "", wish.moment, event, told)
+                    if found and not leaves_out(wording, found):
+                        yield found
 
     def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
         """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if
@@ -163,12 +171,19 @@ class TimeReader:
         if not ops:
             return False
         words = _in_words(cleaned).split(" ")
-        if leaves_out(words, ops):
+        if leaves_out(words, ops) or self._leaves_time_out(words, ops):
             return True
         if not any(op["op"] in _ONCE_FOR_ALL and op.get("when") is not None for op in ops):
             return False
         kinds = likely(cleaned)
         return bool(kinds) and kinds[0][0] in COURSES and kinds[0][1] >= _SAID_SO
+
+    def _leaves_time_out(self, words: Sequence[str], ops: Sequence[Fields]) -> bool:
+        """Whether no operation has a time, and a clause tells one by what a thing does: "before the robot comes"."""
+        if any(op.get("when") is not None or op["op"] not in _TIMELESS for op in ops):
+            return False
+        spans = (words[start:stop] for tag, start, stop in marked(words) if tag in TIMES)
+        return any(_CLAUSE.match(" ".join(said)) and any(map(is_known, said)) for said in spans)
 
     def _without_remarks(self, said: str, cleaned: str) -> tuple[Fields, ...] | None:
         """What is asked for beside the pieces that ask for nothing; None if that is not understood either."""
@@ -262,7 +277,7 @@ class TimeReader:
             found = self._whole(part)
             again = ops[-1]["op"] in ("recolor", "restyle") if ops else topic is not None
             if found is None and again:  # "red at 1 s and blue at 3 s", "that fan is too wild, half as quick would do"
-                found = self._whole(f"make it {part}")
+                found = self._whole(f"make it {part}") or self._colored(part)
             first = part.split(" ")[0]
             if found is None and ops and has_form(first, tuple(SENSES), "s"):
                 found = self._whole(f"it {part}")  # "it opens at 1 s and closes at 2 s"
@@ -277,6 +292,8 @@ class TimeReader:
                     found = tuple(self._understand(part))
                 except Refusal as error:
                     refusal = refusal or error
+            if found and ops and _AGAIN.search(part) and goes_back(ops[-1], found):
+                continue  # "then green again"
             if found and says_again(ops, found):
                 ops = [{**found[0], "target": ops[-1]["target"]}]  # "close the door. Start closing it at 3 s"
             else:
@@ -286,6 +303,13 @@ class TimeReader:
         if refusal is not None:
             raise refusal  # nothing is half done
         return tuple(ops)
+
+    def _colored(self, said: str) -> tuple[Fields, ...] | None:
+        """The operation of a colour alone: "then yellow"."""
+        with suppress(Refusal, UserError):
+            found = tuple(self._understand(f"make it {said}"))
+            return found if len(found) == 1 and found[0]["op"] == "recolor" and found[0]["target"] == IT else None
+        return None
 
     def _whole(self, said: str) -> tuple[Fields, ...] | None:
         for rest, moment, happening in self._readings(said):
@@ -434,12 +458,17 @@ class TimeReader:
             and all(op.get("change") in ("stop", "begin") for op in ops)
         ):  # "stop when it is turning" begins then
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
+        stops = bool(ops) and all(op.get("change") == "stop" for op in ops)
+        if happening is None and stops and moment.start == "middle" and any(map(_HALF_ITS_WAY.fullmatch, moment.said)):
+            happening = Happening(During(state="halfway", part="from"), "")
+            moment = replace(moment, start=None)  # half its own way, and not half the film
         if happening is not None and closes_later(ops, moment, happening):  # "when it was open for one second"
             moment = replace(moment, start=moment.lasting, lasting=None)
             during = happening.during.model_copy(update={"state": "fully_open", "part": "from"})
             happening = replace(happening, during=during)
-        waits = moment.lasting is not None and all(op.get("change") == "stop" for op in ops)
-        if happening is not None and waits and happening.during.part == "until":  # "pause for 1 s before it turns"
+        if (
+            happening is not None and stops and moment.lasting is not None and happening.during.part == "until"
+        ):  # "pause for 1 s before it turns"
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
         if moment.taken and moment.lasting is not None and all(op.get("change") == "speed" for op in ops):
             ops = [
@@ -517,6 +546,8 @@ class TimeReader:
 
 
 _TIME_FIRST = re.compile(r"(?:when|whenever|once|while|as soon as) (?:the|my|our|this|that|it|he|she|they) .* , ")
+_HALF_ITS_WAY = re.compile(r"(?:at )?(?:half ?way|midway)")
+_CLAUSE = re.compile(r"(?:when|whenever|once|while|until|till|before|after|as soon as|as) (?:the|that|this) ")
 _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
 _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
@@ -584,6 +615,8 @@ _THINGS = bag("sink mirror switch block swing slide paint light float lift step 
 
 _PART_OF_TIME = re.compile(r"\b(?:start|beginning|speed|motion|movement) of\b")
 _AT_A_TIME = re.compile(r"at (?!once\b)")
+_AGAIN = re.compile(r"\b(?:again|back|as (?:before|usual|normal|ever)|like before)\b")
+_NOT_SEEN = re.compile(r"\b(?:not|never) (?:ever )?(?:see|be seen)\b")
 _COMES_BACK = re.compile(r"\b(?:back|returns?|comes?|again|normal|reappears?|appears?|shows?)\b")
 _GOES_ON = re.compile(
     r"\b(?:opens?|goes?|go|moves?|rolls?|walks?|drives?|falls?|spins?|turns?|runs?|not|continues?|"
@@ -599,6 +632,8 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
     """
     if _A_NUMBER.search(remark):
         return False  # "starting at one second, done by three"
+    if _NOT_SEEN.search(remark):
+        return command.kind == "look" and not command.inverse
     if _COMES_BACK.search(remark):
         return command.kind == "look" and not command.inverse
     if re.search(rf"\b(?:keep|let|have) (?:it|him|her|them) {any_of(MOTION, 'ing')}", remark):
@@ -637,7 +672,7 @@ def _timely_words() -> frozenset[str]:
 _SPELLED_WORDS = bag(
     "the and should must while until after before between during when once then than second seconds twice times half "
     "speed faster slower later earlier backwards slowly quickly everything whole again only from with into "
-    "completely fully entirely"
+    "completely fully entirely late early"
 )
 _LONG_WORDS = frozenset(word for word in _SPELLED_WORDS if len(word) > 4)
 
@@ -785,4 +820,4 @@ def _plain_queries(value: object) -> Iterator[Fields]:
         yield {"text": value.text}
 
 
-_AFTERWARDS = re.compile(r"\b(?:afterwards?|after that|later)\b")
+_AFTERWARDS = re.compile(r"\b(?:afterwards?|after that|later|then|otherwise)\b")

@@ -51,7 +51,7 @@ SENSES: dict[str, str] = {
     "blink": "blink, flicker, strobe, flash",
     "do": "do, make, perform, complete",
     # its time
-    "stop": "stop, halt, freeze, pause, arrest, immobilize, immobilise, block, interrupt, stop moving, wait, "
+    "stop": "stop, halt, freeze, pause, die, arrest, immobilize, immobilise, block, interrupt, stop moving, wait, "
         "hold still, hold, hold on, cease, come to a stop, come to a halt, come to rest, come to a rest, "
         "come to a standstill, come to an end, settle, take a break, hang back, hold off, hang on, stand by, bring "
         "to a halt, bring to a stop, bring to a standstill, bring to rest, come to a complete stop, "

@@ -9,6 +9,10 @@ from .wording import CAUSING, COLOR, EVENT, ING, PASTS, PLAIN, POINT, Rules, S, 
 RULES: Rules = (
     # how it is written
     (r"\bthats\b", "that is"),
+    (r"\bt(?: ')?other (?=way)", "the other "),
+    (r"\b(?P<u>centimet(?:re|er)s?|met(?:re|er)s?|degrees?|seconds?)ll\b", r"\g<u> will"),
+    (r"^(?:no ,? )?not (?:the|my) [a-z ]+? but (?P<b>(?:the|my) [a-z]+ .+)$", r"\g<b>"),
+    (r"^(?:up)?on (?=(?:reaching|hitting|touching|arriving|stopping|landing|leaving)\b)", "after "),
     (r"\bdont\b", "do not"),
     (r"\bdoesnt\b", "does not"),
     (r"\bb4\b", "before"),

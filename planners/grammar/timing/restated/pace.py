@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from ..moments import DURATION
-from .wording import EVENT, ING, IT, PLAIN, POINT, SHARE, Rules, S, rate, slowed_to, with_unit
+from .wording import EVENT, ING, IT, NAMED, PLAIN, POINT, SHARE, Rules, S, rate, slowed_to, with_unit
 
 RULES: Rules = (
     # what is switched off
     (r"^(?:kill|cut) (?P<np>(?:the |that |this |my )?(?:[a-z]+ )?(?:fan|wheel|windmill|propeller|rotor|carousel|motor|"
      r"engine|machine))\b(?! (?:in|into|out|off)\b)", r"stop \g<np>"),
     # how fast
+    (r"(?: ,)? without (?:ever |any )?(?:stopping|pausing|a break|a pause|resting|breaks|pauses|interruptions?)\b", ""),
+    (rf"^(?P<np>{NAMED}) (?:(?:is|are|seems?|looks?|{S}) )(?:[a-z]+ )??too (?:fast|quick|quickly)(?: for (?:me|us|my "
+     r"(?:taste|liking|eyes)))?$", r"let \g<np> move slower"),
+    (rf"^(?P<np>{NAMED}) (?:(?:is|are|seems?|looks?|{S}) )(?:[a-z]+ )??too (?:slow|slowly|sluggish)(?: for (?:me|us|my "
+     r"(?:taste|liking|eyes)))?$", r"let \g<np> move faster"),
+    (rf"^(?:spin|rotate|whirl) (?P<np>{NAMED}) (?:in )?the (?:other|opposite|reverse) (?:way|direction)"
+     r"(?: round| around| about)?(?= ?(?:[,.]|$))", r"let \g<np> turn the other way round"),
     (r"(?: ,)? like (?=(?:in|over|for|about|at|around|half|twice|double) |\d)", " "),
     (r"\bgive (?P<np>(?:the |my )?[a-z ]+?) (?P<n>a|an|one|two|three|four|\d+) (?:full |single |complete |slow |"
      r"quick )?(?:twirl|pirouette|rotation|revolution|whirl|round)s?\b(?! (?:per|a|every|each|in a) )",

@@ -38,6 +38,10 @@ RULES: Rules = (
      r"(?: \. (?:leave|keep) it (?:open|out)(?: please)?)?",
      lambda m: f"do not close the {re.sub('^the ', '', m['np'])}"),
     # how a time is named
+    (r"\bopen (?:full|entirely|in full)(?= ?(?:,|$))", "fully open"),
+    (r"\b(?P<n>\d+) ?(?:st|nd|rd|th) second\b", r"\g<n> seconds"),
+    (r"\bfor the (?:period|time|while|stretch) (?:that |when |in which )?(?=(?:it|he|she|the [a-z]+(?: [a-z]+)?) (?:is|"
+     r"stays|moves|rolls|walks|falls)\b)", "while "),
     (r"\bafter (?P<x>it|he|she|(?:the|my) [a-z]+(?: [a-z]+)??) (?:has|have|is|'s) (?:been|stood|stayed) (?:fully "
      rf")?(?:open|out) for (?P<d>{DURATION})", r"\g<d> after \g<x> is fully open"),
     (r"\bfor (?:a|one|the first|the) sec(?:ond)? (?:right )?at the (?:very )?(?:start|beginning)\b",

@@ -16,6 +16,7 @@ PLAIN = any_of(MOTION, "plain")
 S = any_of(MOTION, "s")
 ING = any_of((*MOTION, "stop"), "ing")
 IT = "(?:it|he|she|they)"
+NAMED = r"(?:(?:the|that|this|my|our|all the) )?[a-z]+(?: [a-z]+){0,2}?"
 EVENT = "(?:motion|movement|animation|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|move)"
 BEGIN = (
     "(?:sets? (?:off|out)|starts?|begins?|moves?(?: off)?|goes|gets? (?:going|moving)|got (?:going|moving)|"

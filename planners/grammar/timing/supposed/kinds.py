@@ -18,19 +18,15 @@ COURSES = (  # kinds that are about how what is there moves by itself
     "begin", "speed", "duration", "pause", "halt", "still", "reverse", "stay", "order", "together", "repeat", "return",
     "longer",
 )  # fmt: skip
-LEAST = 0.3  # probability of a kind that is tried
-MOST = 2  # kinds that are tried
+LEAST = 0.08  # probability of a kind that is tried
+MOST = 4  # kinds that are tried
 
 
 def likely(said: str) -> list[tuple[str, float]]:
-    """The kinds of wish that an instruction may be of, with probabilities; none if it is likelier no such wish."""
-    found = list[tuple[str, float]]()
-    for kind, chance in classifier().kinds_of(said)[:MOST]:
-        if kind == NO_WISH:
-            break
-        if chance >= LEAST:
-            found.append((kind, chance))
-    return found
+    """The kinds of wish that an instruction may be of, with probabilities, the likeliest first; none if it is likelier
+    no such wish."""
+    found = [(kind, chance) for kind, chance in classifier().kinds_of(said)[:MOST] if chance >= LEAST]
+    return [] if found and found[0][0] == NO_WISH else found
 
 
 def marked(words: Sequence[str]) -> tuple[Span, ...]:

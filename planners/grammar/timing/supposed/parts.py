@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 from pydantic import BaseModel
 
@@ -15,6 +14,7 @@ from .....tools.when import During
 from ...learned.marks import Span
 from ...learned.seen import hues
 from ...tagging.spelling import is_word
+from ...tagging.words import bag
 from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS, ORDINALS
 from ..command import Fields
@@ -61,8 +61,11 @@ _HALFWAY = re.compile(
 _ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| in| point)*$")
 _FILM = re.compile(r"\b(?:film|clip|video|movie|scene|shot|time|animation|footage|sequence)\b")
 _BEFORE = re.compile(r"\b(?:not|never) (?:before|until|till|unless|if|when|while) \w+ \w+")  # that waits for something
+_UNLESS = re.compile(r"\b(?:except|unless|apart from|only if|if)\b(?! (?:you|possible|i|we)\b)")
 _AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
+_ANOTHER = re.compile(r"^(?:, )?(?:and |but )?then\b|\botherwise\b")
+_AS_IT_WAS = re.compile(r"\b(?:again|back|before|usual|normal|was)\b")
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 
 
@@ -84,11 +87,13 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         phrase = _LEADING.sub("", phrase)
         if (delay := _DELAY.match(phrase)) is not None and (seconds := seconds_of(delay["delay"])) is not None:
             phrase, moment = phrase[delay.end() :], replace(moment, start=seconds)
-        if (found := _moment(tag, phrase)) is not None:
-            if (both := _joined(moment, found)) is None:
-                return None
+        found, event = _moment(tag, phrase), None
+        if found is None:
+            event = _event(tag, phrase, thing)
+            found = _named_moment(tag, phrase, thing) if event is None else None
+        if found is not None and (both := _joined(moment, found)) is not None:
             moment = both
-        elif happening is None and (event := _event(tag, phrase, thing)) is not None:
+        elif event is not None and happening is None:
             happening = event
         else:
             return None
@@ -118,11 +123,13 @@ def _loses(tag: str, words: Sequence[str]) -> bool:
     said = " ".join(words).strip(" ,.;")
     if len(hues() & set(said.split())) > 1:
         return True  # "first blue, then green, and red for the finale"
-    if _BEFORE.search(said):
+    if _ANOTHER.search(said) and hues() & set(said.split()) and not _AS_IT_WAS.search(said):
+        return True  # "then yellow", "blue otherwise"
+    if _BEFORE.search(said) or _UNLESS.search(said):
         return True
     if tag == "not" and _CONTRAST.search(said):
         return False
-    if _AMOUNT.search(said):
+    if _AMOUNT.search(said) or any(word[0].isdigit() or (word in NUMBERS and word != "one") for word in said.split()):
         return True
     return TIMED.search(said) is not None or any(found["word"] != "as" for found in CONJUNCTION.finditer(said))
 
@@ -174,6 +181,7 @@ def _moment(tag: str, phrase: str) -> Moment | None:
         return None
     if tag == "to" and re.match(r"by (?:the )?(?:very )?end\b", phrase):
         return Moment(stop="end", said=(phrase,))
+    phrase = _WHOLE_SECONDS.sub("", phrase)
     rest, moment = cut(phrase)
     if moment != Moment() and not any(is_word(word) or is_known(word) for word in rest.strip(" ,.").split()):
         return moment
@@ -183,11 +191,24 @@ def _moment(tag: str, phrase: str) -> Moment | None:
     if _ALL.search(phrase):
         return Moment(always=True, said=(phrase,))
     bare = _BARE.match(phrase)
-    value: End | None = None if bare is None else _seconds(bare["value"])
-    if value is None and (phrase.split(" ")[0] in _EVEN_SO or (tag != "for" and not CONJUNCTION.match(phrase))):
-        value = next((end for pattern, end in _NAMED if pattern.search(phrase)), None)
-    if value is None:
+    value = None if bare is None else _seconds(bare["value"])
+    return None if value is None else _at(tag, phrase, value)
+
+
+def _named_moment(tag: str, phrase: str, thing: Thing) -> Moment | None:
+    """The start, the middle or the end of the film where words with a tag name it, None if they name none."""
+    if names_in(_FILM.sub("film", phrase), thing):
+        return None  # "until the fall of the book is over"
+    if _HALFWAY.match(phrase) and not _FILM.search(phrase) and not _ALONE.match(phrase):
         return None
+    if phrase.split(" ")[0] not in _EVEN_SO and (tag == "for" or CONJUNCTION.match(phrase)):
+        return None
+    value = next((end for pattern, end in _NAMED if pattern.search(phrase)), None)
+    return None if value is None else _at(tag, phrase, value)
+
+
+def _at(tag: str, phrase: str, value: End) -> Moment | None:
+    """A time as its tag has it: from then, until then, or for so long."""
     if tag == "for":
         return Moment(lasting=value, taken=True, said=(phrase,)) if isinstance(value, float) else None
     if tag == "from":
@@ -197,6 +218,7 @@ def _moment(tag: str, phrase: str) -> Moment | None:
     return None
 
 
+_WHOLE_SECONDS = re.compile(r"\b(?:whole|full|entire|good|solid|complete) (?=(?:seconds?|secs?)\b)")
 _EVEN_SO = ("until", "till", "after", "by", "before")
 
 
@@ -213,7 +235,8 @@ def _seconds(said: str) -> float | None:
 
 def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
     """The time told by what happens of words with a tag, None if they tell none."""
-    if (half := _HALFWAY.match(phrase)) is not None:
+    half = None if _FILM.search(phrase) or _ALONE.match(phrase) else _HALFWAY.match(phrase)
+    if half is not None:
         of = names_in(half["who"] or half["what"], thing)[:1]
         whose = thing(of[0]) if of and (half["who"] or half["way"].startswith((" through", " of"))) else None
         return Happening(During(state="halfway", of=whose or IT, part="until" if tag == "to" else "from"), phrase)
@@ -226,18 +249,28 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
 
 
 def leaves_out(words: Sequence[str], ops: Sequence[Fields]) -> bool:
-    """Whether a number beside a time, or a colour for later, that an instruction tells stands in no operation.
+    """Whether a number beside a time, or a colour, that an instruction tells stands in no operation.
 
-    What is marked as not wanted may be left out.
+    What is not wanted, and what comes back, may be left out.
     """
-    held = set(re.findall(r"[a-z]+", str(ops)))
-    later = {hue for hue, then in pairwise(words) if hue in hues() and then in _LATER_ON} - held
-    if later and not {"again", "back"} & set(words):
-        return True  # "blue before it opens and red afterwards"
+    if _loses_colors(words, ops):
+        return True
     return TIMED.search(" ".join(words)) is not None and _loses_numbers(words, ops)
 
 
-_LATER_ON = ("after", "afterward", "afterwards", "later", "thereafter")
+def _loses_colors(words: Sequence[str], ops: Sequence[Fields]) -> bool:
+    """Whether a look is for a time, and another colour that is told stands nowhere: "red while it rolls, else blue"."""
+    if not any(op["op"] in ("recolor", "restyle") and op.get("when") is not None for op in ops):
+        return False
+    held = set(re.findall(r"[a-z]+", str(ops)))
+    for at, word in enumerate(words):
+        around = {*words[max(0, at - 4) : at], *words[at + 1 : at + 3]}
+        if word in hues() and word not in held and not around & _NOT_WANTED:
+            return True
+    return False
+
+
+_NOT_WANTED = bag("again back not no never instead than rather too from usual normal longer was without ugly")
 
 
 def _loses_numbers(words: Sequence[str], ops: Sequence[Fields]) -> bool:
@@ -246,7 +279,10 @@ def _loses_numbers(words: Sequence[str], ops: Sequence[Fields]) -> bool:
     if missing and "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
         missing -= set(range(words.index("not"), words.index("but", words.index("not"))))
     if missing:
-        missing -= {at for tag, start, stop in marked(words) if tag == "not" for at in range(start, stop)}
+        unwanted = [(start, stop) for tag, start, stop in marked(words) if tag == "not"]
+        missing -= {
+            at for start, stop in unwanted if _CONTRAST.search(" ".join(words[start:stop])) for at in range(start, stop)
+        }
     return bool(missing)
 
 
@@ -260,6 +296,7 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
             continue
         told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
         seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
+        seconds |= word == "one" and at > 0 and words[at - 1] in _AT and not then.isalpha()  # "starting at one"
         if told != 1 or (seconds and word in ("1", "one")):
             rate = words[max(0, at - 1)] in ("every", "each", "per")
             among = exact if seconds and not rate else held
@@ -267,6 +304,7 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
                 yield at
 
 
+_AT = ("at", "by", "until", "till", "from", "before", "after")
 _NO_NUMBER = ("of", "ones", "quarters", "thirds", "quarter", "third")  # behind a part of something
 
 

@@ -15,7 +15,7 @@ from .names import named, with_moving
 _PRONOUN = re.compile(r"\b(?:it|he|she|him|her|they|them)\b")
 _AS_BEFORE = re.compile(  # ", then red again afterwards"
     r"(?: ,)? (?:and |then |but )*(?:(?:it |make it |let it |turn it |go |goes |back |should |is |to )*)(?:[a-z]+ )?"
-    r"(?:again|back|afterwards?|after that|as before|like before|as it was|normal(?: again)?)"
+    r"(?:again|back|afterwards?|after that|as before|like before|as it was|as (?:usual|normal|ever)|normal(?: again)?)"
     r"(?: (?:afterwards?|then))?$"
 )
 _IDLE = tuple(
@@ -63,6 +63,15 @@ class Said:
     def whose(self) -> Query:
         """What the first name means."""
         return self.thing(self.things[0]) or Query(last=True)
+
+    def joined(self) -> Said:
+        """The same, with the first two names as one if "and" joins them: "the table and the vase"."""
+        if len(self.things) < 2:
+            return self
+        both = f"{self.things[0]} and {self.things[1]}"
+        if not re.search(rf"(?<!\S){re.escape(both)}(?!\S)", self.text) or self.thing(both) is None:
+            return self
+        return replace(self, things=(both, *self.things[2:]))
 
     def until_then(self) -> Said:
         """The same, if a time is told, without words that things are as before afterwards: ", then red again"."""

@@ -20,6 +20,7 @@ from ..clauses import AUXILIARIES
 from ..command import Command, pace
 from ..moments import DURATION, End, Moment, seconds_of
 from ..verbs import SENSES, has_form
+from .choosing import says
 from .kinds import classifier
 from .names import MOVING
 from .said import Said
@@ -52,7 +53,7 @@ class Wish:
         moment: its time in numbers.
         things: how many things stand in it.
         holds: words of the instruction, other than names, that stand in it.
-        spent: seconds of the time in numbers that are no time of it.
+        spent: what the time in numbers tells that is no time of it.
         timeless: whether what happens at its time goes without saying.
     """
 
@@ -60,7 +61,7 @@ class Wish:
     moment: Moment
     things: int = 1
     holds: str = ""
-    spent: float | None = None
+    spent: End | None = None
     timeless: bool = False
 
 
@@ -84,6 +85,10 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
         return
     if kind in _STATIC and MOVING in said.things:
         return  # all, or what of it moves
+    if says(kind, said.idle) and not says(kind, said.text):
+        return  # "the door closes too late"
+    if kind not in ("order", "together"):
+        said = said.joined()
     if kind in ("recolor", "hide"):
         if kind == "hide" and _is_to_be_seen(said) and _BACK.search(f"{said.text} {said.idle}"):
             return  # "show it for a second, then bring it back" contradicts itself
@@ -140,6 +145,8 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order",
 }
+_THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
+_BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")
 _NEGATED = ("hide", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")
@@ -149,6 +156,12 @@ _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
 
 def _says_no_more(kind: str, said: Said, left: str) -> bool:
     """Whether no word that is `left` tells of another wish: "one second earlier, and slower"."""
+    if kind not in ("recolor", "hide") and "then" in said.idle and hues() & set(said.idle.split()):
+        return False  # "stop at 2 s, then roll it red again"
+    if (then := _THEN.search(said.idle)) is not None:
+        left = f"{left} {then['rest']}"  # "let it stand for a second, then shut it"
+    if kind == "move" and len(said.things) > 1:
+        left = _BACK_TO.sub(" ", left)
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY) or _WISHED.search(said.text):
         return False
     if kind not in _NEGATED and _NOT.search(_DISLIKES.sub(" ", _TOO_FAST.sub(" ", _TOO_SLOW.sub(" ", left)))):
@@ -187,8 +200,14 @@ _LENGTH = re.compile(
 )
 
 
+_A_COLORED = re.compile(r"(?:an? )(?P<hue>[a-z]+) (?P<noun>[a-z ]+)$")
+
+
 def _recolor(said: Said) -> Iterator[Wish]:
     hue = next((word for word in _COMPLAINED.sub(" ", said.beside).split() if word in hues()), None)
+    if hue is None and (found := _A_COLORED.match(said.things[0])) is not None and found["hue"] in hues():
+        noun = f"the {found['noun']}"  # "give me a red door"
+        yield Wish(Command(kind="look", text=f"make {noun} {found['hue']}"), said.moment, holds=found["hue"])
     several = [word for word in said.beside.split() if word in hues() and word != hue]
     if hue is not None and not several:
         shade = re.search(rf"\b(?:{_SHADE}) {hue}\b", said.text)
@@ -395,6 +414,7 @@ def _duration(said: Said) -> Iterator[Wish]:
 # -- rests -----------------------------------------------------------------------------------------------------------
 
 _STAYS = re.compile(r"\b(?:stay|remain|keep|leave|sit|stand|rest)(?:s|ing)?\b.* (?:on|in|at|by|where|put)\b")
+_KEPT = re.compile(r"\b(?:stay|remain|keep|leave|not|never)\b")
 _RESTS = re.compile(
     r"\b(?:not|never|no) (?:ever )?(?:to )?(?:fall|move|drop|roll|walk|turn|go|budge|spin)|\bstays? (?:put|where)\b|"
     r"\bsits? still\b"
@@ -435,8 +455,10 @@ def _stay(said: Said) -> Iterator[Wish]:
     moment = said.moment
     if _RESTS.search(said.text) and not said.event:
         yield from _still(said)
-    elif moment.start is None and moment.lasting is None and moment.stop in (None, "end"):
-        yield Wish(f"keep {said.things[0]} open", Moment(), timeless=True)
+    elif moment.lasting is None and moment.stop in (None, "end") and moment.start in (None, "end"):
+        if moment.start == "end" and not _KEPT.search(said.text):
+            return  # "it should be open at the end"
+        yield Wish(f"keep {said.things[0]} open", Moment(), spent="end", timeless=True)
 
 
 def _longer(said: Said) -> Iterator[Wish]:
@@ -473,6 +495,8 @@ def _amount(said: Said) -> Iterator[Wish]:
 
 
 def _opening(said: Said, verb: str) -> Iterator[Wish]:
+    if _TOO_LATE.search(said.text):
+        return  # by how much is not told
     if verb == "open" and (_LATER.search(said.text) or _EARLIER.search(said.text)):
         yield from _begin(said)
     elif said.moment.start != "end":
@@ -482,6 +506,7 @@ def _opening(said: Said, verb: str) -> Iterator[Wish]:
 # -- one after the other ---------------------------------------------------------------------------------------------
 
 _ENDS = re.compile(r"\b(?:freez\w+|stop\w*|halt\w*|still|paus\w+|rest\w*|end\w*|finish\w*)\b")
+_SPEEDS = re.compile(r"\b(?:slow|quick|fast|rapid)")
 _SEVERAL = re.compile(r"^(?:all|both|everything|these|those|the (?:two|three|four))\b|[^s]s$")
 
 
@@ -507,8 +532,8 @@ def _order(said: Said) -> Iterator[Wish]:
 
 
 def _together(said: Said) -> Iterator[Wish]:
-    if _ENDS.search(said.text):
-        return  # "freeze everything at 2.5"
+    if _ENDS.search(said.text) or any(map(_SPEEDS.search, said.moment.said)):
+        return  # "freeze everything at 2.5", "the door quickly and the drawer slowly"
     if len(said.things) > 1 or _SEVERAL.search(said.things[0]):
         who = " and ".join(said.things)
         yield Wish(f"let {who} start at the same time", said.moment, things=len(said.things))
