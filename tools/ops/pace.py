@@ -24,6 +24,7 @@ from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_most
 from ..timing.retiming import Warp, divided, movement, playing, with_tracks
 from ..timing.spans import Span, spans_of
+from ..when import During, When
 
 I64 = NDArray[np.int64]
 F64 = NDArray[np.float64]
@@ -31,6 +32,9 @@ F64 = NDArray[np.float64]
 _TURNS = 2.1 * math.pi  # radians from which a turn is one of many, whose speed is not how soon it ends
 _NO_TIME = 1e-3  # seconds
 _ON_THE_SPOT = 0.05  # metres: what goes less far takes no turn on its way
+_BESIDE = 0.02  # seconds between two movements that are not one
+_MOVEMENTS = ("opening", "closing", "falling", "turning")  # of which a thing may have several
+_WHILE_MOVING = When(during=During(state="moving"))
 _STRAIGHT = 0.05  # of its way: what strays less to its sides goes straight on
 
 
@@ -46,7 +50,8 @@ class Pace(TargetedOp):
     """Change when and how fast the target moves, of what moves already.
 
     "stop": it stands still in the time of `when`, and goes on behind it; without `when` at all times. "begin": its
-    movement begins at `when`, and takes as long as that lasts. "speed": `factor` times as fast. "later": by `seconds`,
+    movement begins at `when`, and takes as long as that lasts. While it opens, closes, falls or turns: that movement
+    alone. "speed": `factor` times as fast. "later": by `seconds`,
     negative is earlier. "reverse": played backwards in its own time; one that is then the same, in that of the scene.
     "return": it goes back the way it came. "go_on": it keeps its last speed until the end of `when`. "part": it goes
     only a `share` of its way, or a `distance`, and stands still there. "repeat": it does the same again and again,
@@ -113,7 +118,9 @@ class Pace(TargetedOp):
             raise InstructionError(
                 f"{self.target.describe()} does not move: say what it is to do, as 'move it to the sofa in 3 seconds'"
             )
-        spans = spans_of(self.when, scene, selection, context) if self.when is not None else []
+        when = When(during=self.when.during) if self.when is not None and self._of_one_movement else self.when
+        spans = spans_of(when, scene, selection, context) if when is not None else []
+        movements = spans_of(_WHILE_MOVING, scene, selection, context) if self._of_one_movement else []
         tracks, inside = divided(motion, ids)
         stop = motion.stop
         made = list(tracks)
@@ -136,7 +143,9 @@ class Pace(TargetedOp):
                 for i, track in zip(held, self._mirrored(scene, own, group, span), strict=True):
                     made[i] = track
                 continue
-            if self.change in ("part", "repeat", "back_and_forth"):
+            if self._of_one_movement:
+                warp, end = self._in_movement(spans[0], movements, span)
+            elif self.change in ("part", "repeat", "back_and_forth"):
                 warp, end = self._again(scene, own, group, span, spans)
             else:
                 warp, end = self._warp(motion, own, span, spans)
@@ -191,6 +200,39 @@ class Pace(TargetedOp):
             return Warp((first,), (first,), 1.0, self.factor), first + (high - first) / self.factor
         gained = first + (last - first) * self.factor
         return Warp((first, last), (first, gained), 1.0, 1.0), high + last - gained
+
+    @property
+    def _of_one_movement(self) -> bool:
+        """Whether only one of its movements is meant: "slower while it opens"."""
+        if self.change not in ("speed", "later", "begin") or self.when is None or self.when.during is None:
+            return False
+        told = self.when.during
+        return told.part == "while" and told.of is None and told.state in _MOVEMENTS and self.when.start is None
+
+    def _in_movement(self, part: Span, movements: list[Span], span: Span) -> tuple[Warp, float]:
+        """Which old time is shown when, where one movement gets another time; those behind it keep theirs if they
+        can."""
+        assert self.when is not None
+        low, high = part
+        before = max((b for _, b in movements if b <= low + _BESIDE), default=-math.inf)
+        behind = min((a for a, b in movements if b > high + _BESIDE), default=math.inf)
+        begin, lasting = low, high - low
+        if self.change == "later":
+            assert self.seconds is not None
+            begin = max(low + self.seconds, before + _NO_TIME)
+        elif self.when.lasting is not None:
+            lasting = self.when.lasting
+        elif self.factor is not None:
+            lasting /= self.factor
+        end = begin + lasting
+        new, old = [begin, end], [low, high]
+        if begin > low:
+            new, old = [low, *new], [low, *old]
+        elif begin < low and math.isfinite(before):
+            new, old = [before, *new], [before, *old]
+        if end < behind < math.inf:
+            return Warp((*new, behind), (*old, behind)), max(span[1], end)
+        return Warp(tuple(new), tuple(old)), span[1] + end - high
 
     def _again(self, scene: Scene, own: list[Track], group: I64, span: Span, spans: list[Span]) -> tuple[Warp, float]:
         """Which old time is shown when, of what goes a part of its way or goes it several times."""

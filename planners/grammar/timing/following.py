@@ -21,6 +21,8 @@ def followed(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
         and then["target"] in (IT, last["target"])
     ):
         return list(ops)  # "keep it closed until 3 s, then let it open"
+    if then and {**then, "target": last.get("target")} == last and then["target"] == IT:
+        return list(ops)  # "the fan goes the wrong way round. Turn it the other way"
     if _colors_again(last, then) and isinstance(last.get("when"), When):
         return [*ops, {**then, "when": _afterwards(last["when"])}]
     if last.get("change") == then.get("change") == "stop" and then.get("when") is None and _is_from(last):

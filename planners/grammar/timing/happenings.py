@@ -47,6 +47,7 @@ _LASTS = _Course("while", "while", "until", "after")  # "it is moving"
 _BEGINS = _Course("from", "from", "until", "from")
 _ENDED = _Course("after", "after", "until_end", "after")  # "it has moved"
 _SHUTS = _Course("after", "while", "until", "after")  # "it shuts"
+_HAS_SHUT = _Course("after", "after", "until_end", "after")
 _HOLDS = _Course("while", "while", "until", "from")  # "it is open"
 _LACKS = _Course("unless", "unless", "until_end", "after")  # "it is closed"
 _COMES = _Course("from", "while", "until", "from")  # "it hits the wall"
@@ -132,7 +133,7 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     """The state that a clause tells of."""
     sense, fields = clause.sense, manner.fields
     if sense == "close" and clause.form in ("s", "plain") and not clause.negated and manner.only("state", "back"):
-        return "closing", _SHUTS
+        return "closing", _HAS_SHUT if {"has", "have", "is"} & set(clause.aux) else _SHUTS
     at_rest = sense in ("be", "stay") and manner.state == "still" and manner.whom is not None
     if at_rest and manner.only("state", "at", "whom", "goal"):
         return "moving", _ENDED  # "it is lying still at the wall"

@@ -85,9 +85,9 @@ NOISE = re.compile(
     r"would you mind|would you|could you|honey|bro|dude|hey|hi|voila|ta da|tada|presto|bam|boom|whoosh)(?= |$)|"
     r"(?<= [,.]) done(?= ?[,.!]|$)"
 )
-STAYS_SEEN = re.compile(  # what is not hidden; "until" tells when it is
+STAYS_SEEN = re.compile(  # what is not hidden; "until" and "after" tell when it is
     r"\b(?:should|must|may|shall|can|does|do) not (?:disappear|vanish|be hidden|be removed|be deleted)\b"
-    r"(?!.*\b(?:until|till|before)\b)"
+    r"(?!.*\b(?:until|till|before|after|from)\b)"
 )
 RANGE = re.compile(  # "2s-3s", "from 0-1"
     r"(?:from )?(?P<a>\d+(?:\.\d+)?) ?(?:s|secs?)? ?[-–] ?(?P<b>\d+(?:\.\d+)?) ?(?:s|secs?|seconds)\b|"

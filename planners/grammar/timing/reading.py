@@ -48,7 +48,7 @@ from .supposed.parts import TIMES, divided, leaves_out
 from .supposed.said import Said, said_of
 from .supposed.wishes import wishes
 from .verbs import SENSES, any_of, forms, has_form
-from .whens import closes_later, inverse, settled, when_of
+from .whens import closes_later, inverse, of_one_movement, settled, when_of
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
 
@@ -151,7 +151,7 @@ class TimeReader:
                         told = text.told and not wish.timeless
                         found = self._command(wish.command, "", wish.moment, event, told)
                     if found and not leaves_out(wording, found):
-                        yield found
+                        yield of_one_movement(text.text, found) if event is None else found
 
     def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
         """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if
@@ -180,7 +180,7 @@ class TimeReader:
 
     def _leaves_time_out(self, words: Sequence[str], ops: Sequence[Fields]) -> bool:
         """Whether no operation has a time, and a clause tells one by what a thing does: "before the robot comes"."""
-        if any(op.get("when") is not None or op["op"] not in _TIMELESS for op in ops):
+        if any(op.get("when") is not None or op["op"] not in _LOOKS for op in ops):
             return False
         spans = (words[start:stop] for tag, start, stop in marked(words) if tag in TIMES)
         return any(_CLAUSE.match(" ".join(said)) and any(map(is_known, said)) for said in spans)
@@ -405,7 +405,7 @@ class TimeReader:
             with suppress(Refusal, UserError, ValidationError):
                 found = self._made(command, moment, happening)
                 if found:
-                    return found
+                    return found if happening is not None else of_one_movement(said, found)
         plain = Command(kind="look", text=said)
         if (told or moment.always) and _goes_without_saying(remark, plain, False):
             with suppress(Refusal, UserError, ValidationError):
@@ -550,6 +550,7 @@ _HALF_ITS_WAY = re.compile(r"(?:at )?(?:half ?way|midway)")
 _CLAUSE = re.compile(r"(?:when|whenever|once|while|until|till|before|after|as soon as|as) (?:the|that|this) ")
 _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
 _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
+_LOOKS = ("opacity", "recolor", "restyle")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 _SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 _LONGEST = 45  # words of an instruction with one wish
@@ -589,8 +590,12 @@ _STAMP = re.compile(
 )  # "0:02"
 
 
+_NO_NEED = re.compile(r"(?: ?,)? (?:and |there is )?no need to (?:wait|hurry|rush)\b[^,.;!]*", re.IGNORECASE)
+
+
 def _in_words(cleaned: str) -> str:
     """The words and marks of an instruction, with spaces between."""
+    cleaned = _NO_NEED.sub("", cleaned)
     stamped = _STAMP.sub(lambda m: f"{60 * int(m['minutes']) + int(m['seconds'])} s", cleaned)
     ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", stamped)
     return " ".join(w.text for w in split(ranged))

@@ -64,6 +64,36 @@ def closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) ->
     return not taken and all(op["op"] == "articulate" and op.get("change") == "close" for op in ops)
 
 
+def of_one_movement(said: str, ops: Sequence[Fields]) -> tuple[Fields, ...]:
+    """Operations with the movement of which words tell how long it takes, or how much later it is: "let the drawer
+    close slower" says nothing of how it opens."""
+    opens, closes = _OPENS.search(said) is not None, _CLOSES.search(said) is not None
+    if opens == closes:
+        return tuple(ops)
+    during = During(state="opening" if opens else "closing")
+    return tuple({**op, "when": _within(op, during)} if _is_paced(op) else op for op in ops)
+
+
+def _is_paced(op: Fields) -> bool:
+    """Whether an operation changes how long a door or a drawer takes, or how much later it moves."""
+    when = op.get("when")
+    if op["op"] != "pace" or not _PARTS_OF_ROOMS.search(op["target"].text):
+        return False
+    if op["change"] == "begin":
+        return isinstance(when, When) and when.lasting is not None and when.start is None and when.during is None
+    return op["change"] in ("speed", "later") and when is None
+
+
+def _within(op: Fields, during: During) -> When:
+    when = op.get("when")
+    return When(during=during, lasting=when.lasting if isinstance(when, When) else None)
+
+
+_OPENS = re.compile(r"\b(?:open(?:s|ing)?|out)\b")
+_CLOSES = re.compile(
+    r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back(?: in)?|(?:go|goes|slides?|comes?|going|sliding) in)\b"
+)
+_PARTS_OF_ROOMS = re.compile(r"\b(?:doors?|drawers?|gates?|lids?|hatch|flaps?|cupboards?|windows?)$")
 _FLIPPED: dict[Part, Part] = {
     "from": "until", "after": "until_end", "until": "from", "until_end": "after", "while": "unless", "unless": "while",
 }  # fmt: skip

@@ -23,7 +23,9 @@ _NO_THINGS = EVERYWHERE | bag(
     "opening once please children kids guests audience viewers boss client baby boy girl son daughter camera screen "
     "slow fast light dark red blue green yellow white black purple pink orange brown gray grey silver gold"
 )
-_BETWEEN = bag("to at on in into onto by of for with from and or but then so as until while when once after before")
+_BETWEEN = bag(
+    "to at on in into onto by of for with from and or but then so as until till while when once after before"
+)
 _LONGEST = 5  # words of a name
 _UNKNOWN = 3  # words of a name with "the" whose noun is not known
 _ONE = re.compile(

@@ -61,7 +61,7 @@ _HALFWAY = re.compile(
 _ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| in| point)*$")
 _FILM = re.compile(r"\b(?:film|clip|video|movie|scene|shot|time|animation|footage|sequence)\b")
 _BEFORE = re.compile(r"\b(?:not|never) (?:before|until|till|unless|if|when|while) \w+ \w+")  # that waits for something
-_UNLESS = re.compile(r"\b(?:except|unless|apart from|only if|if)\b(?! (?:you|possible|i|we)\b)")
+_UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
 _AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
 _ANOTHER = re.compile(r"^(?:, )?(?:and |but )?then\b|\botherwise\b")
@@ -77,11 +77,14 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         spans: the marks in them.
         thing: reads a name.
     """
-    moment, happening = Moment(), None
+    moment, happening, halves = Moment(), None, set[int]()
     for tag, start, stop in spans:
         if tag not in TIMES:
             continue
         phrase = " ".join(words[start:stop]).strip(" ,.;:")
+        if words[stop : stop + 3] == ["and", "a", "half"]:
+            phrase, start, stop = f"{phrase} and a half", start, stop + 3
+            halves.update(range(stop - 3, stop))
         if tag == "from" and _UNTIL.match(phrase):
             tag = "to"
         phrase = _LEADING.sub("", phrase)
@@ -102,6 +105,7 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     if any(tag in _IDLE and _loses(tag, words[start:stop]) for tag, start, stop in spans):
         return None
     left = {at for tag, start, stop in spans if tag in TIMES or tag in _IDLE for at in range(start, stop)}
+    left |= halves
     text = " ".join(word for at, word in enumerate(words) if at not in left).strip(" ,.;:!")
     text = with_moving(re.sub(r"(?: [,.;:!])+(?= [,.;:!])", "", text))
     if happening is None:
@@ -197,7 +201,7 @@ def _moment(tag: str, phrase: str) -> Moment | None:
 
 def _named_moment(tag: str, phrase: str, thing: Thing) -> Moment | None:
     """The start, the middle or the end of the film where words with a tag name it, None if they name none."""
-    if names_in(_FILM.sub("film", phrase), thing):
+    if any(is_known(name.split(" ")[-1]) for name in names_in(phrase, thing)):
         return None  # "until the fall of the book is over"
     if _HALFWAY.match(phrase) and not _FILM.search(phrase) and not _ALONE.match(phrase):
         return None
@@ -255,12 +259,13 @@ def leaves_out(words: Sequence[str], ops: Sequence[Fields]) -> bool:
     """
     if _loses_colors(words, ops):
         return True
-    return TIMED.search(" ".join(words)) is not None and _loses_numbers(words, ops)
+    said = " ".join(words)
+    return (TIMED.search(said) or _A_SECOND.search(said)) is not None and _loses_numbers(words, ops)
 
 
 def _loses_colors(words: Sequence[str], ops: Sequence[Fields]) -> bool:
     """Whether a look is for a time, and another colour that is told stands nowhere: "red while it rolls, else blue"."""
-    if not any(op["op"] in ("recolor", "restyle") and op.get("when") is not None for op in ops):
+    if not any(op["op"] == "recolor" and op.get("when") is not None for op in ops):
         return False
     held = set(re.findall(r"[a-z]+", str(ops)))
     for at, word in enumerate(words):
@@ -270,7 +275,7 @@ def _loses_colors(words: Sequence[str], ops: Sequence[Fields]) -> bool:
     return False
 
 
-_NOT_WANTED = bag("again back not no never instead than rather too from usual normal longer was without ugly")
+_NOT_WANTED = bag("again back not no never instead than rather too from usual normal longer was rest without ugly")
 
 
 def _loses_numbers(words: Sequence[str], ops: Sequence[Fields]) -> bool:
@@ -304,6 +309,7 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
                 yield at
 
 
+_A_SECOND = re.compile(r"\b(?:every|each|per|a) (?:second|sec)\b")
 _AT = ("at", "by", "until", "till", "from", "before", "after")
 _NO_NUMBER = ("of", "ones", "quarters", "thirds", "quarter", "third")  # behind a part of something
 

@@ -39,7 +39,8 @@ _EXCEPT = re.compile(r"\b(?:everything|all|every|both|things?)\b.*\b(?:but|excep
 _REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _TIMES_LEFT = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
-    rf"except|unless|if)\b|\bat the (?:very )?(?:end|start|beginning)\b|\b(?:once|after|before|as)\b "
+    rf"except|unless|if)\b|\bwhere (?:the|(?:it|he|she|they) (?!is\b|are\b|was\b|were\b|stood\b|used\b|came\b))|"
+    rf"\bat the (?:very )?(?:end|start|beginning)\b|\b(?:once|after|before|as)\b "
     rf"(?=(?:the|a|my|it|he|she|they|that|this)\b)|{DURATION}"
 )
 _COMPLAINED = re.compile(rf"\btoo (?:{HUES})\b")
@@ -337,6 +338,7 @@ _HASTE = re.compile(r"\b(?:faster|quicker|hurry|rush)\b")
 _FASTER = re.compile(r"\b(?:fast|faster|quick|quicker|quickly|hurry|speed .*up|rush|snappier|brisk|brisker|zip)\b")
 
 
+_SAME_SPEED = re.compile(r"\bsame (?:speed|pace|tempo|rate)\b")
 _MOVED_ON = re.compile(r"\b(?:shift|delay|postpone|move|later|earlier|sooner)\b")
 _TAKES = re.compile(
     r"\b(?:takes?|taking|lasts?|needs?|stretch(?:ed)?|spread|drag(?:ged)?|spends?|within|over|to|whole|full|in) "
@@ -344,8 +346,13 @@ _TAKES = re.compile(
 )
 
 
+def _is_of_a_part(said: Said) -> bool:
+    """Whether only one of the movements of something is meant, and it is no door or drawer that tells which."""
+    return _A_PART.search(said.text) is not None and _OPENS.search(said.things[0]) is None
+
+
 def _begin(said: Said) -> Iterator[Wish]:
-    if _A_PART.search(said.text):
+    if _is_of_a_part(said):
         return
     moment, sign = said.moment, _sign(said.text)
     if sign is not None:
@@ -353,6 +360,8 @@ def _begin(said: Said) -> Iterator[Wish]:
             yield Wish(pace(said.whose, "later", seconds=sign * seconds), Moment(), holds=words)
         if moment.lasting is not None and moment.start is None and moment.stop is None:
             yield Wish(pace(said.whose, "later", seconds=sign * moment.lasting), Moment(), spent=moment.lasting)
+    if _A_PART.search(said.text):
+        return  # "close it at 2 s" begins no other movement
     if moment.lasting is not None and moment.taken and isinstance(moment.start, float) and moment.stop is None:
         yield Wish(pace(said.whose, "begin"), _plainly(said))  # "start it at 2 s and finish in half a second"
     if said.told and moment.lasting is None:
@@ -370,7 +379,7 @@ def _sign(text: str) -> float | None:
 
 
 def _speed(said: Said) -> Iterator[Wish]:
-    if _A_PART.search(said.text) or _A_STRETCH.search(said.text):
+    if _is_of_a_part(said) or _A_STRETCH.search(said.text) or _SAME_SPEED.search(said.text):
         return
     plain = _TOO_SLOW.sub("faster", _TOO_FAST.sub("slower", said.beside))
     if (often := _OFTEN.search(said.beside)) is not None and "slow" not in plain:
@@ -396,7 +405,7 @@ def _speed(said: Said) -> Iterator[Wish]:
 
 def _duration(said: Said) -> Iterator[Wish]:
     moment = said.moment
-    if _A_PART.search(said.text):
+    if _is_of_a_part(said):
         return
     done = isinstance(moment.stop, float) and moment.start is None and moment.lasting is None
     if done and _MOVED_ON.search(said.text) is None:
@@ -495,6 +504,9 @@ def _amount(said: Said) -> Iterator[Wish]:
 
 
 def _opening(said: Said, verb: str) -> Iterator[Wish]:
+    if verb == "open" and isinstance(said.moment.start, float) and _TOO_LATE.search(said.idle):
+        yield from _begin(said)
+        return
     if _TOO_LATE.search(said.text):
         return  # by how much is not told
     if verb == "open" and (_LATER.search(said.text) or _EARLIER.search(said.text)):
