@@ -28,6 +28,7 @@ from ...gaussians.motion.at import at
 from ...gaussians.motion.courses import Course, course_of
 from ...gaussians.motion.holding import Span
 from ...gaussians.scene import Scene
+from ...gaussians.world.words import singular
 from ..harness import Metric
 from . import rooms
 from .written import cases
@@ -42,6 +43,7 @@ BESIDE = 0.4  # metres: gap to what something goes to
 _LAST = 5.0  # seconds: the end of the rooms
 _SAMPLES = tuple(np.arange(0.05, _LAST, 0.1))  # seconds: times at which looks are compared
 _SEEN = 0.01  # opacity of what is to be seen
+_NUMBER = "group "
 _MOVED = 0.03  # metres: what nobody spoke of may differ by this
 
 
@@ -69,9 +71,20 @@ class _Effect:
     before: Scene
     after: Scene
 
-    def group(self, name: str) -> int:
-        """The group that a case names: the words of its label, with a colour or its place in a stack."""
+    def names(self, name: str) -> list[str]:
+        """The things that a case names: each of several by its number, "all chairs"."""
         assert self.before.language is not None
+        noun = name.split()[-1]
+        if singular(noun) == noun or any(noun in g.label for g in self.before.language.groups):
+            return [name]
+        fits = [g for g in self.before.language.groups if g.level == "object" and singular(noun) in g.label.split()]
+        return [f"{_NUMBER}{g.id}" for g in fits]
+
+    def group(self, name: str) -> int:
+        """The group that a case names: the words of its label, with a colour or its place in a stack; or its number."""
+        assert self.before.language is not None
+        if name.startswith(_NUMBER):
+            return int(name.removeprefix(_NUMBER))
         words, table = name.split(), self.before.language.groups
         fits = [g for g in table if g.level == "object" and set(g.label.split()) & set(words) and words[-1] in g.label]
         if len(fits) > 1 and words[0] in _RANKS:
@@ -138,7 +151,8 @@ def _wrong(expect: dict[str, Any], effect: _Effect) -> str:
         still = [expect.get("start") or 0.0, expect.get("stop") or _LAST]
         expect = {k: v for k, v in expect.items() if k not in ("start", "stop")} | {"frozen": still}
     kind = expect["kind"]
-    named = expect["thing"] if isinstance(expect["thing"], list) else [expect["thing"]]
+    listed = expect["thing"] if isinstance(expect["thing"], list) else [expect["thing"]]
+    named = [name for thing in listed for name in effect.names(thing)]
     if kind == "refuse":
         return "something was done"
     checks = {"remove": _removed, "hide": _hidden, "look": _looks, "static": _looks}

@@ -87,6 +87,13 @@ _USUALLY = re.compile(r" (?:would |will |does )?(?:normally|usually|ordinarily) 
 _THEY_ALL = re.compile(
     r"(?:all|both)(?: of (?:them|these|those)| (?:the )?(?:two|three|four|five))|they (?:have )?all|all of it|both"
 )
+_HALF = re.compile(
+    r"^(?P<who>.+?) (?:is|has come|has gone|comes|gets|goes|has) half(?: ?way)? "
+    r"(?:open|out|closed|shut|in|up|down|done|through|there)$"
+)
+_DRAWN = re.compile(
+    r"^(?P<who>(?:.+ )?drawer|it) is (?:going|coming|sliding|moving|pulling|gliding) (?:back )?(?P<way>out|in)$"
+)
 _EVENT_OVER = re.compile(
     r"^(?:the|its|his|her) (?:motion|movement|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|spin)"
     r"(?: of (?P<who>.+?))? (?:is|has) (?:over|done|ended|finished|completed?)$"
@@ -106,6 +113,10 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     said = _USUALLY.sub(" ", _DONE.sub("has stopped", said))
     if (over := _EVENT_OVER.match(said)) is not None:
         said = f"{over['who'] or 'it'} has stopped"
+    if (half := _HALF.match(said)) is not None and (whose := _who(half["who"], thing)) is not None:
+        return During(state="halfway", of=whose, part="until" if re.fullmatch(_UNTIL, word) else "from")
+    if (way := _DRAWN.match(said)) is not None and (whose := _who(way["who"], thing)) is not None:
+        return During(state="opening" if way["way"] == "out" else "closing", of=whose, part=_part(word, _LASTS))
     if (turn := _AT_TURN.match(said)) is not None and (whose := _who(turn["who"], thing)) is not None:
         return During(state="turning", of=whose, part=_part(word, _EVENT))
 

@@ -186,7 +186,7 @@ REMARK = re.compile(
 )
 # Words that no name of a thing holds, begins with, or ends with.
 NEVER = AUXILIARIES - bag("s 's first simply all both") | bag(
-    "let make when while until i you we instead not at by than no"
+    "let make when while until i you we instead not at by than no own"
 )
 NEVER_FIRST = bag(
     "to in at on of for with and or up down out off from into by as so faster slower fast slow back half stop begin , "

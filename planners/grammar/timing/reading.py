@@ -93,14 +93,14 @@ class TimeReader:
         said = self._unfronted(said)
         found = self._whole(said)
         if found is not None:
-            return found
+            return of_one_movement(said, found)
         refusal: Refusal | None = None
         try:
             guess = next(self._guesses(said), None)
         except Refusal as error:
             guess, refusal = None, error
         if guess is not None:
-            return None if self._is_timeless(guess, cleaned) else guess
+            return None if self._is_timeless(guess, cleaned) else of_one_movement(said, guess)
         if (found := self._without_remarks(said, cleaned)) is not None:
             return found
         if refusal is not None:
@@ -151,7 +151,7 @@ class TimeReader:
                         told = text.told and not wish.timeless
                         found = self._command(wish.command, "", wish.moment, event, told)
                     if found and not leaves_out(wording, found):
-                        yield of_one_movement(text.text, found) if event is None else found
+                        yield of_one_movement(" ".join(wording), found)
 
     def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
         """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if
@@ -173,7 +173,7 @@ class TimeReader:
         words = _in_words(cleaned).split(" ")
         if leaves_out(words, ops) or self._leaves_time_out(words, ops):
             return True
-        if not any(op["op"] in _ONCE_FOR_ALL and op.get("when") is not None for op in ops):
+        if not any(op["op"] in _ONCE_FOR_ALL and (op.get("when") is not None or op["op"] == "scale") for op in ops):
             return False
         kinds = likely(cleaned)
         return bool(kinds) and kinds[0][0] in COURSES and kinds[0][1] >= _SAID_SO
@@ -224,6 +224,7 @@ class TimeReader:
             or phrases.NEVER & set(words)
             or words[0] in phrases.NEVER_FIRST
             or words[-1] in phrases.NEVER_LAST
+            or words[-1] in ("second", "seconds", "secs")
         ):
             return None
         if _PART_OF_TIME.search(phrase) or _SECONDS.search(phrase) or (len(words) > 1 and _is_verb(words[0])):
@@ -405,7 +406,7 @@ class TimeReader:
             with suppress(Refusal, UserError, ValidationError):
                 found = self._made(command, moment, happening)
                 if found:
-                    return found if happening is not None else of_one_movement(said, found)
+                    return found
         plain = Command(kind="look", text=said)
         if (told or moment.always) and _goes_without_saying(remark, plain, False):
             with suppress(Refusal, UserError, ValidationError):
@@ -435,6 +436,10 @@ class TimeReader:
             kind = "path" if ways else kind
         if command.timeless:
             moment = Moment()
+        if happening is not None and happening.during.part in ("until", "until_end") and moment.stop is not None:
+            return None
+        if happening is not None and happening.during.part == "while" and moment.always and kind == "look":
+            happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
         if command.every is not None:
             lasting = command.blinks * command.every if command.blinks else moment.lasting
             moment = replace(moment, lasting=lasting, taken=False, slowly=False)

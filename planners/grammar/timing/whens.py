@@ -67,6 +67,8 @@ def closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) ->
 def of_one_movement(said: str, ops: Sequence[Fields]) -> tuple[Fields, ...]:
     """Operations with the movement of which words tell how long it takes, or how much later it is: "let the drawer
     close slower" says nothing of how it opens."""
+    if len(ops) != 1:
+        return tuple(ops)
     opens, closes = _OPENS.search(said) is not None, _CLOSES.search(said) is not None
     if opens == closes:
         return tuple(ops)

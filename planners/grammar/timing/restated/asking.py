@@ -9,6 +9,8 @@ from .wording import CAUSING, COLOR, EVENT, ING, PASTS, PLAIN, POINT, Rules, S, 
 RULES: Rules = (
     # how it is written
     (r"\bthats\b", "that is"),
+    (r"\bin ?-?point\b", "start"),
+    (r"(?<=seconds) ha(?:s|ve) (?:gone|passed|elapsed)(?: by)?\b", ""),
     (r"\bt(?: ')?other (?=way)", "the other "),
     (r"\b(?P<u>centimet(?:re|er)s?|met(?:re|er)s?|degrees?|seconds?)ll\b", r"\g<u> will"),
     (r"^(?:no ,? )?not (?:the|my) [a-z ]+? but (?P<b>(?:the|my) [a-z]+ .+)$", r"\g<b>"),

@@ -10,6 +10,12 @@ RULES: Rules = (
     (r"^(?:kill|cut) (?P<np>(?:the |that |this |my )?(?:[a-z]+ )?(?:fan|wheel|windmill|propeller|rotor|carousel|motor|"
      r"engine|machine))\b(?! (?:in|into|out|off)\b)", r"stop \g<np>"),
     # how fast
+    (r"(?: ,)? (?:and )?(?:(?:keep(?:ing)?|with|at) )?(?:the|its|his)? ?same (?:duration|length|speed|pace|timing|"
+     r"tempo)(?: as (?:now|before))?$", ""),
+    (rf"^(?:move|shift|push|put|set|delay) (?P<np>{NAMED}) 's (?:start|beginning|begin) to (?P<d>{POINT})$",
+     lambda m: f"start {m['np']} at {with_unit(m['d'])}"),
+    (r"(?P<a>\bstops? (?:at|after|when|once) .+?)(?: ,)? and (?:not|never) (?:go|walk|roll|move|continue|reach|carry|"
+     r"come|get|drive)\b[^,.]*$", r"\g<a>"),
     (r"(?: ,)? without (?:ever |any )?(?:stopping|pausing|a break|a pause|resting|breaks|pauses|interruptions?)\b", ""),
     (rf"^(?P<np>{NAMED}) (?:(?:is|are|seems?|looks?|{S}) )(?:[a-z]+ )??too (?:fast|quick|quickly)(?: for (?:me|us|my "
      r"(?:taste|liking|eyes)))?$", r"let \g<np> move slower"),

@@ -21,6 +21,7 @@ _NO_THINGS = EVERYWHERE | bag(
     "way bit speed motion movement turn turns circle frame place spot direction half rest mood eyes eye point stop "
     "pace work job whole look view scene thing things same part middle air sky effect go walk fall roll ride trip "
     "opening once please children kids guests audience viewers boss client baby boy girl son daughter camera screen "
+    "drop swing tumble flight animation layer action gravity "
     "slow fast light dark red blue green yellow white black purple pink orange brown gray grey silver gold"
 )
 _BETWEEN = bag(

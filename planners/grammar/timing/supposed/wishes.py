@@ -216,7 +216,13 @@ def _recolor(said: Said) -> Iterator[Wish]:
         yield Wish(Command(kind="look", text=text), said.moment, holds=hue)
 
 
+_ENTERS_LATER = re.compile(r"\bnot\b[^,.]*[,.].*\b(?:appears?|spawns?|pops?|shows?|reveal(?:s|ed)?|comes?|fades?)\b")
+
+
 def _hide(said: Said) -> Iterator[Wish]:
+    if isinstance(said.moment.start, float) and said.moment.stop is None and _ENTERS_LATER.search(said.text):
+        yield Wish(f"hide {said.things[0]}", replace(said.moment, start=None, stop=said.moment.start))
+        return
     yield Wish(f"{'show' if _is_to_be_seen(said) else 'hide'} {said.things[0]}", said.moment)
 
 
@@ -425,7 +431,8 @@ def _duration(said: Said) -> Iterator[Wish]:
 _STAYS = re.compile(r"\b(?:stay|remain|keep|leave|sit|stand|rest)(?:s|ing)?\b.* (?:on|in|at|by|where|put)\b")
 _KEPT = re.compile(r"\b(?:stay|remain|keep|leave|not|never)\b")
 _RESTS = re.compile(
-    r"\b(?:not|never|no) (?:ever )?(?:to )?(?:fall|move|drop|roll|walk|turn|go|budge|spin)|\bstays? (?:put|where)\b|"
+    r"\b(?:not|never|no) (?:ever )?(?:(?:let|have|want) (?:[a-z]+ ){1,3}?)?"
+    r"(?:to )?(?:fall|move|drop|roll|walk|turn|go|budge|spin)|\bstays? (?:put|where)\b|"
     r"\bsits? still\b"
 )
 
@@ -540,7 +547,12 @@ def _order(said: Said) -> Iterator[Wish]:
         between = said.beside.split("|")[1]
         for word, (later, sooner) in {"after": (one, other), "before": (other, one)}.items():
             if word in between.split():
-                yield Wish(f"let {later} start after {sooner} has stopped", Moment(), things=2, holds=word)
+                yield Wish(f"let {_the(later)} start after {_the(sooner)} has stopped", Moment(), things=2, holds=word)
+
+
+def _the(name: str) -> str:
+    """A name with its article."""
+    return name if name.split(" ")[0] in ("the", "all", "both", "my", "our", "every") else f"the {name}"
 
 
 def _together(said: Said) -> Iterator[Wish]:
