@@ -199,7 +199,8 @@ def _names_things(ops: Sequence[Fields], previous: str | None) -> bool:
     """Whether every name in operations is made of known nouns, and "it" can mean something: "stop the ball dead at 2 s"
     is not about a dead ball."""
     before = previous is not None or (bool(ops) and not any(query.last for query in _targets(ops[0])))
-    return before and all(_is_known_name(query.text) for op in ops for query in _targets(op))
+    whole = [op for op in ops if op.get("change") == "stop" and op["target"].text == "everything"]
+    return before and all(_is_known_name(query.text) for op in ops if op not in whole for query in _targets(op))
 
 
 def _operations(cleaned: str) -> Sequence[Fields]:

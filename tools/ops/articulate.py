@@ -15,7 +15,7 @@ from torch import Tensor
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.motion.at import at
-from ...gaussians.motion.motion import Track, carried, poses
+from ...gaussians.motion.motion import Motion, Track, carried, poses
 from ...gaussians.rotations import axis_rotation
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either
@@ -26,7 +26,7 @@ from ..operation import Affine, Context, Length, Outcome, TargetedOp
 from ..placement.bodies import Body, bodies_of
 from ..receipt import Check, at_most
 from ..timing.hinges import Opening, opening_of
-from ..timing.retiming import angles_at, movement, with_tracks
+from ..timing.retiming import Warp, angles_at, movement, playing, with_tracks
 from ..timing.spans import length_of, spans_of
 from ..transform import turn
 from ..when import When
@@ -36,6 +36,8 @@ F64 = NDArray[np.float64]
 _TAKES = 1.5  # seconds, where nobody says how long
 _LEAST = 0.1  # seconds
 _SAME = 1e-6
+_GRID = 100  # times a second at which it is looked whether something moves
+_OPEN = 0.02  # of the way: what is as near to open is open
 
 
 class Articulate(TargetedOp):
@@ -123,6 +125,10 @@ class Articulate(TargetedOp):
                 start, end = span[0], span[0] + end - start  # it opens by itself, and this is how long it takes
             now = float(angles_at(own, np.array([start]))[0])
             goal = self._goal(most, slides, scene)
+            if self.change == "open" and abs(goal - now) < _OPEN * abs(most) and self.when.start is not None:
+                made, end = _opening_at(own, motion, most, start)
+                tracks = [made if t is own else t for t in motion.tracks]
+                return with_tracks(scene, tracks, max(stop, end)), (f"it opens by itself, now from {start:.3g} s",)
             if self.when.stop is None and self.when.lasting is None:  # as fast as it opens by itself
                 end = start + max(_taken(own) * abs(goal - now) / abs(most), _LEAST)
             before = [t for t in own.times if t < start - _SAME]
@@ -211,6 +217,27 @@ class Articulate(TargetedOp):
                     point = track.pivot + along * track.axis
                     worst = max(worst, float(np.abs(turns @ point + shifts - point).max(initial=0.0)))
         return at_most("hinge stays", worst, 1e-6, "units", f"its hinge moves by {worst:.2g} units")
+
+
+def _opening_at(own: Track, motion: Motion, most: float, start: float) -> tuple[Track, float]:
+    """A track that opens by itself, with its opening at another time; what it does behind that keeps its time if it
+    can. And when it ends.
+
+    Args:
+        most: angle or distance of wide open.
+        start: seconds.
+    """
+    times = np.linspace(motion.start, motion.stop, max(round((motion.stop - motion.start) * _GRID), 2))
+    share = angles_at(own, times) / most
+    moves = np.flatnonzero(np.abs(np.diff(share)) > _SAME)
+    low, high = float(times[moves[0]]), float(times[int(np.argmax(share > 1 - _OPEN / 2))])
+    end = start + high - low
+    again = moves[(times[moves] > high) & (share[moves] > 1 - _OPEN / 2)]
+    behind = float(times[again[-1]]) if len(again) else math.inf
+    held = [(low, low)] if start > low else []
+    kept = [(behind, behind)] if end < behind < math.inf else []
+    new, old = zip(*held, (start, low), (end, high), *kept, strict=True)
+    return playing(own, Warp(new, old)), max(end, motion.stop)
 
 
 def _taken(own: Track) -> float:

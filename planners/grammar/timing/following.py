@@ -25,8 +25,8 @@ def followed(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
         return list(ops)  # "the fan goes the wrong way round. Turn it the other way"
     if _colors_again(last, then) and isinstance(last.get("when"), When):
         return [*ops, {**then, "when": _afterwards(last["when"])}]
-    if last.get("change") == then.get("change") == "stop" and then.get("when") is None and _is_from(last):
-        return list(ops)  # "freeze it at 2 s and do not let it move again"
+    if last.get("change") == then.get("change") == "stop" and then.get("when") is None and then["target"] == IT:
+        return list(ops)  # "freeze it at 2 s and do not let it move again", "... for 1 s, then let it finish"
     hidden = last.get("op") in ("opacity", "delete") and _is_from(last)
     if hidden and then.get("change") == "return" and isinstance(then.get("when"), When) and then["target"] == IT:
         if then["when"].start is None or then["when"].during is not None:

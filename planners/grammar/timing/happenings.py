@@ -92,7 +92,7 @@ _HALF = re.compile(
     r"(?:open|out|closed|shut|in|up|down|done|through|there)$"
 )
 _DRAWN = re.compile(
-    r"^(?P<who>(?:.+ )?drawer|it) is (?:going|coming|sliding|moving|pulling|gliding) (?:back )?(?P<way>out|in)$"
+    r"^(?P<who>(?:.+ )?drawer|it) (?:is|'s) (?:going|coming|sliding|moving|pulling|gliding) (?:back )?(?P<way>out|in)$"
 )
 _EVENT_OVER = re.compile(
     r"^(?:the|its|his|her) (?:motion|movement|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|spin)"
@@ -144,7 +144,7 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     """The state that a clause tells of."""
     sense, fields = clause.sense, manner.fields
     if sense == "close" and clause.form in ("s", "plain") and not clause.negated and manner.only("state", "back"):
-        return "closing", _HAS_SHUT if {"has", "have", "is"} & set(clause.aux) else _SHUTS
+        return "closing", _HAS_SHUT if {"has", "have", "is", "'s"} & set(clause.aux) else _SHUTS
     at_rest = sense in ("be", "stay") and manner.state == "still" and manner.whom is not None
     if at_rest and manner.only("state", "at", "whom", "goal"):
         return "moving", _ENDED  # "it is lying still at the wall"
@@ -162,7 +162,8 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
         return ("closing" if sense == "close" else "moving"), _ENDED
     if sense in ("be", "stay", "look", "stop") and fields == {"state"}:
         if manner.state == "open":
-            fully = _FULLY.search(" ".join(clause.tail)) is not None or "out" in clause.tail
+            stands = clause.verb is not None and clause.verb.first == "stand"
+            fully = stands or _FULLY.search(" ".join(clause.tail)) is not None or "out" in clause.tail
             return ("fully_open" if fully else "open"), _HOLDS
         states: dict[str, tuple[str, _Course]] = {
             "closed": ("open", _LACKS),

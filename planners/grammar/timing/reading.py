@@ -173,7 +173,8 @@ class TimeReader:
         words = _in_words(cleaned).split(" ")
         if leaves_out(words, ops) or self._leaves_time_out(words, ops):
             return True
-        if not any(op["op"] in _ONCE_FOR_ALL and (op.get("when") is not None or op["op"] == "scale") for op in ops):
+        paced = not _PACES.isdisjoint(words)
+        if not any(op["op"] in _ONCE_FOR_ALL and (op.get("when") is not None or paced) for op in ops):
             return False
         kinds = likely(cleaned)
         return bool(kinds) and kinds[0][0] in COURSES and kinds[0][1] >= _SAID_SO
@@ -358,6 +359,8 @@ class TimeReader:
             return None  # "too slow" asks for the contrary
         for rest, moment, happening in self._readings(said):
             told, found = moment.told or happening is not None, list[tuple[Fields, ...]]()
+            if happening is None and moment.told and _CLAUSE.match(rest):
+                continue  # "when it comes out the chair should vanish, and return at 3 s"
             if happening is not None and happening.said.startswith("before ") and phrases.RIDDING.match(rest):
                 continue
             for command, when in loose_commands(_bare(rest), self.thing, moment, told):
@@ -376,14 +379,18 @@ class TimeReader:
         seen = set[str]()
         for text in dict.fromkeys((shorter, said)):
             for rest, moment in dict.fromkeys((moments.cut(text), (text, Moment()))):
+                cuttable = False
                 for left, happening in happenings.cut(rest, self.thing):
+                    cuttable = True
+                    if any(True for _ in happenings.cut(left, self.thing)):
+                        continue  # "as it opens, hide it, and bring it back when it is open"
                     if flashes and happening.during.part == "from":
                         during = happening.during.model_copy(update={"part": "while"})
                         happening = replace(happening, during=during)
                     if left not in seen:
                         seen.add(left)
                         yield left, moment, happening
-                if rest not in seen:
+                if rest not in seen and not (cuttable and moment.told):
                     seen.add(rest)
                     yield rest, moment, None
 
@@ -555,6 +562,7 @@ _HALF_ITS_WAY = re.compile(r"(?:at )?(?:half ?way|midway)")
 _CLAUSE = re.compile(r"(?:when|whenever|once|while|until|till|before|after|as soon as|as) (?:the|that|this) ")
 _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
 _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
+_PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
 _LOOKS = ("opacity", "recolor", "restyle")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 _SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one

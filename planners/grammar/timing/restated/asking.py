@@ -9,6 +9,8 @@ from .wording import CAUSING, COLOR, EVENT, ING, PASTS, PLAIN, POINT, Rules, S, 
 RULES: Rules = (
     # how it is written
     (r"\bthats\b", "that is"),
+    (r"\bas (?P<x>(?:the|it|he|she) [^,]*?)(?: ,)? (?:and )?(?:hold|keep|stays?|leave) (?:that|it|so|there|like that)"
+     r"(?: that way| so| like that)? (?:till|until|to) the (?:very )?end$", r"when \g<x>"),
     (r"\bin ?-?point\b", "start"),
     (r"(?<=seconds) ha(?:s|ve) (?:gone|passed|elapsed)(?: by)?\b", ""),
     (r"\bt(?: ')?other (?=way)", "the other "),

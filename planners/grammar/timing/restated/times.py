@@ -39,7 +39,7 @@ RULES: Rules = (
      lambda m: f"do not close the {re.sub('^the ', '', m['np'])}"),
     # how a time is named
     (rf"(?P<w>\b(?:waits?|holds?|pauses?|stays?)\b.*? (?:till|until) .+?)(?: ,)? before {IT} (?:sets? off|{BEGIN}|{S})"
-     r"(?: (?:down|off|back|in|out|to move|moving))*$", r"\g<w>"),
+     r"(?: (?:down|off|out|to move|moving))*$", r"\g<w>"),
     (r"\bopen (?:full|entirely|in full)(?= ?(?:,|$))", "fully open"),
     (r"\b(?P<n>\d+) ?(?:st|nd|rd|th) second\b", r"\g<n> seconds"),
     (r"\bfor the (?:period|time|while|stretch) (?:that |when |in which )?(?=(?:it|he|she|the [a-z]+(?: [a-z]+)?) (?:is|"

@@ -171,10 +171,13 @@ def _says_no_more(kind: str, said: Said, left: str) -> bool:
     return manner is None or manner["verb"] in AUXILIARIES or has_form(manner["verb"], tuple(SENSES), "plain", "s")
 
 
+_POINT_BEFORE = re.compile(r"\b(?:at|from|until|till|before)(?: (?:right|about|around|exactly|the))* $")
+
+
 def _durations(text: str) -> Iterator[tuple[float, str]]:
     """The durations in a text: seconds, and the words."""
     for span in re.finditer(DURATION, text):
-        if (seconds := seconds_of(span[0])) is not None:
+        if (seconds := seconds_of(span[0])) is not None and not _POINT_BEFORE.search(text[: span.start()]):
             yield seconds, span[0]
 
 

@@ -35,7 +35,8 @@ at some time: at any (stage|juncture|instant) | at some (stage|juncture|instant)
     spot | (~hold|~keep|~maintain|~stand) [on to] ITS (place|position|ground|spot) | ~stay (unmoved|where it \
     was|exactly where it is|out of it) | ~bide ITS time | ~linger | ~hang (on|around) | ~sit tight | ~stay as it is
 motionless: [left] [completely|entirely|totally] (undisturbed|untouched|unmoved) | left alone
-~start to move: ~leave [ITS] (state of rest|resting (place|position)|rest) | ~spring (into|to) (motion|action|life|movement) | (~set|~put) (itself|himself|themselves) in \
+~start to move: ~leave [ITS] (state of rest|resting (place|position)|rest) | \
+    ~spring (into|to) (motion|action|life|movement) | (~set|~put) (itself|himself|themselves) in \
     motion | (~come|~burst) to life | ~get [itself] (under way|off the mark|into motion) | ~make ITS first \
     [visible|actual] (move|movement|motion) | ~take ITS first step | ~give way | ~break into (motion|movement) | \
     ~kick into (gear|motion) | (START|~set out on) (its|the|his|her) [little|whole] \
@@ -91,12 +92,15 @@ _AROUND = r"""
  , if any(?:thing|one|body)?(?: at all)? ,(?= ) =>
 ^(what|which|which \w+) , if any(?:thing)? , => \1
 ^(?:it is|is it) (?=(?:which|what|when|where|how)\b) =>
-^(?:(?:i |we )?(?:need|want|log|mark|note|give(?: me| us)?|show(?: me| us)?|get(?: me| us)?|tell(?: me| us)?) )?(?:the \
-)?(?:exact )?(?:time|second|moment|instant|timestamp|timecode)(?: (?:when|that|at which))?(?= (?:the|our|that) [a-z]+(?: \
-[a-z]+)? (?:hits|reaches|starts|stops|begins|ends|comes|gets|arrives|leaves|touches|lands|falls|opens|closes|turns|moves|\
-halts)\b) => when
+^(?:(?:i |we )?(?:need|want|log|mark|note|give(?: me| us)?|show(?: me| us)?|get(?: me| us)?|tell(?: me| us)?) )?(?:\
+the )?(?:exact )?(?:time|second|moment|instant|timestamp|timecode)(?: (?:when|that|at which))?(?= (?:the|our|that) \
+[a-z]+(?: [a-z]+)? (?:hits|reaches|starts|stops|begins|ends|comes|gets|arrives|leaves|touches|lands|falls|opens|closes|\
+turns|moves|halts)\b) => when
+^(?:at|in) (\w+(?:\.\d+)?) seconds? , has (.+?) (?:already|yet) (.+)$ => has \2 \3 by \1 seconds
+^has (.+?) (?:already|yet) (.+) at (\w+(?:\.\d+)?) seconds?$ => has \1 \2 by \3 seconds
+\bfull (?:spins|laps|circles|rounds|rotations|circuits) => full turns
  ,? (?:ladies and gentlemen|folks|guys|everybody|everyone|my friends?|people)$ =>
-^(?:from (?:the )?first frame of movement to (?:the )?last ,|from first to last frame of movement ,) how long => how long
+^(?:from (?:the )?first frame of movement to (?:the )?last|from first to last frame of movement) , how long => how long
 ^(.+) , how long (does it (?:run|take|last)) from first frame of movement to (?:the )?last$ => how long does \1 take
 ^(\w+(?:\.\d+)?) seconds? on the clock , (.+)$ => \2 at \1 seconds
 \bin second (\d+(?:\.\d+)?) => at \1 seconds
