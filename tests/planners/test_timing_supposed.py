@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from scenewright.planners.grammar.planner import SUPPOSED, GrammarPlanner
+from scenewright.planners.grammar.timing.supposed.choosing import Offer, chosen
 from scenewright.planners.grammar.timing.supposed.kinds import classifier, likely, marked
 from scenewright.training import timed_wishes, wording
 
@@ -186,3 +187,81 @@ def test_what_comes_back_was_hidden() -> None:
 def test_a_share_in_percent_is_in_the_plan() -> None:
     (op,) = planned("make the ball 30 percent slower after 1 second")
     assert op["factor"] == pytest.approx(0.7)
+
+
+@pytest.mark.parametrize(
+    ("text", "plainly"),
+    [  # kinds that are not the likeliest, but that a word says
+        (
+            "I would like the ball to wait till two seconds have gone before it sets off",
+            "keep the ball still until 2 s",
+        ),
+        ("so the mirror, hide the mirror from two to four seconds", "hide the mirror from 2 to 4 s"),
+        ("car shouldnt be there at first, make it spawn at 3 seconds", "hide the car until 3 s"),
+    ],
+)
+def test_a_less_likely_kind_is_taken_where_a_word_says_it(text: str, plainly: str) -> None:
+    assert planned(text) == planned(plainly) != []
+
+
+def test_offers_are_chosen_by_chance_and_by_words() -> None:
+    said, likelier = ({"op": "pace", "change": "stop"},), ({"op": "pace", "change": "begin"},)
+    offers = [Offer("begin", 0.2, likelier), Offer("halt", 0.15, said), Offer("none", 0.1)]
+    assert chosen(offers, "freeze it at 2 s", 0.0) == said
+    assert chosen(offers, "begin it at 2 s", 0.0) == likelier
+    assert chosen(offers, "it at 2 s", 0.0) is None
+    assert chosen([Offer("begin", 0.5, likelier), *offers[1:]], "it at 2 s", 0.0) == likelier
+    assert chosen([Offer("begin", 0.5, likelier), *offers[1:]], "it at 2 s", 0.85) is None
+    assert chosen([Offer("none", 0.4), *offers[:2]], "freeze it at 2 s", 0.0) is None
+
+
+def test_one_colour_after_another_has_the_time_after_it() -> None:
+    for text, stop in (
+        ("make the ball green until 2 s, then yellow", 2.0),
+        ("paint it green for 1 s, then yellow", 1.0),
+    ):
+        green, yellow = planned(text)
+        assert (green["color"], yellow["color"], yellow["when"]) == ("green", "yellow", {"start": stop})
+    assert planned("make the ball red for the first 2 seconds then green again") == planned(
+        "make the ball red until 2 s"
+    )
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "make the ball red while it rolls, it should stay blue otherwise",
+        "make the ball green before the robot comes over",
+        "the ball should not disappear at 2 s",
+        "let the door open quickly and the drawer slowly",
+        "the door closes too late",
+        "As the door begins to open, let the plant disappear, and bring it back when the door is fully open.",
+        "hide the vase from 1 to 2 s, except in the mirror",
+    ],
+)
+def test_half_of_a_wish_is_not_done(text: str) -> None:
+    assert planned(text) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "change", "state"),
+    [
+        ("could u have the drawer come out slower, take 2 seconds over it", "begin", "opening"),
+        ("the drawer should close twice as fast", "speed", "closing"),
+        ("let the drawer close one second earlier", "later", "closing"),
+    ],
+)
+def test_one_of_two_movements_is_meant(text: str, change: str, state: str) -> None:
+    (op,) = planned(text)
+    assert (op["change"], op["when"]["during"]["state"]) == (change, state)
+
+
+def test_times_by_what_things_do() -> None:
+    (op,) = planned("make the door stop for a second when it is half open")
+    assert op["when"] == {"lasting": 1.0, "during": {"state": "halfway", "part": "from"}}
+    (op,) = planned("let the robot wait halfway for one second")
+    assert op["when"]["during"]["state"] == "halfway"
+    (op,) = planned("make the ball red until the fall of the book is over")
+    assert op["when"]["during"] == {"state": "moving", "of": {"text": "book"}, "part": "until_end"}
+    (op,) = planned("make the wardrobe green while the drawer is going out")
+    assert op["when"]["during"] == {"state": "opening", "of": {"text": "drawer"}}

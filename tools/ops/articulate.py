@@ -237,7 +237,8 @@ def _opening_at(own: Track, motion: Motion, most: float, start: float) -> tuple[
     held = [(low, low)] if start > low else []
     kept = [(behind, behind)] if end < behind < math.inf else []
     new, old = zip(*held, (start, low), (end, high), *kept, strict=True)
-    return playing(own, Warp(new, old)), max(end, motion.stop)
+    last = float(times[moves[-1] + 1])
+    return playing(own, Warp(new, old)), last if kept else last + end - high
 
 
 def _taken(own: Track) -> float:

@@ -430,3 +430,44 @@ def test_a_movement_once_more_does_not_hide_the_first(corner: Scene, context: Co
     data = {"op": "pace", "target": A_CHAIR, "change": "repeat", "times": 1, "when": {"start": 3.0}}
     spans = movements(course_of(done(scene, data, context).scene, CHAIR))
     assert [tuple(round(t, 1) for t in span) for span in spans] == [(0.5, 1.0), (3.0, 3.5)]
+
+
+@pytest.fixture
+def drawn(corner: Scene) -> Scene:
+    """The corner, in which the chair slides away from .5 to 1 s and back from 2 to 3 s, as a drawer does; 0 to 4 s."""
+    ids = corner.cloud.ids[corner.cloud.group == CHAIR].numpy()
+    track = Track.slide(ids, (0.5, 1.0, 2.0, 3.0), (0.0, 0.4, 0.4, 0.0), (1.0, 0.0, 0.0), smooth=False)
+    return corner.replace(motion=Motion((track,), (), (), 0.0, 4.0))
+
+
+@pytest.mark.parametrize(
+    ("fields", "spans"),
+    [
+        ({"change": "speed", "factor": 0.5, "during": "opening"}, [(0.5, 1.5), (2.0, 3.0)]),
+        ({"change": "speed", "factor": 2.0, "during": "closing"}, [(0.5, 1.0), (2.0, 2.5)]),
+        ({"change": "begin", "lasting": 0.25, "during": "opening"}, [(0.5, 0.75), (2.0, 3.0)]),
+        ({"change": "later", "seconds": 0.5, "during": "closing"}, [(0.5, 1.0), (2.5, 3.5)]),
+        ({"change": "later", "seconds": -0.5, "during": "closing"}, [(0.5, 1.0), (1.5, 2.5)]),
+        ({"change": "speed", "factor": 0.25, "during": "opening"}, [(0.5, 2.5), (3.5, 4.5)]),  # the rest has to wait
+    ],
+)
+def test_one_of_several_movements_gets_another_pace(
+    drawn: Scene, context: Context, fields: Json, spans: list[tuple[float, float]]
+) -> None:
+    own = {k: v for k, v in fields.items() if k not in ("during", "lasting")}
+    when = {"during": {"state": fields["during"]}, **{k: v for k, v in fields.items() if k == "lasting"}}
+    made = done(drawn, {"op": "pace", "target": A_CHAIR, **own, "when": when}, context).scene
+    found = movements(course_of(made, CHAIR))
+    assert np.allclose(found, spans, atol=0.06)
+    assert middle(made, 0.0) == pytest.approx(middle(drawn, 0.0), abs=1e-6)
+    rest = (spans[0][1] + spans[1][0]) / 2
+    assert middle(made, rest) == pytest.approx(middle(drawn, 1.5), abs=1e-3)
+
+
+@pytest.mark.parametrize(("start", "spans"), [(1.2, [(1.2, 1.7), (2.0, 3.0)]), (1.8, [(1.8, 2.3), (3.3, 4.3)])])
+def test_what_opens_by_itself_opens_at_another_time(
+    drawn: Scene, context: Context, start: float, spans: list[tuple[float, float]]
+) -> None:
+    data = {"op": "articulate", "target": A_CHAIR, "change": "open", "when": {"start": start}}
+    made = done(drawn, data, context).scene
+    assert np.allclose(movements(course_of(made, CHAIR)), spans, atol=0.06)

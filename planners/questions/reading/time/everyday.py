@@ -96,9 +96,11 @@ _AROUND = r"""
 the )?(?:exact )?(?:time|second|moment|instant|timestamp|timecode)(?: (?:when|that|at which))?(?= (?:the|our|that) \
 [a-z]+(?: [a-z]+)? (?:hits|reaches|starts|stops|begins|ends|comes|gets|arrives|leaves|touches|lands|falls|opens|closes|\
 turns|moves|halts)\b) => when
-^(?:at|in) (\w+(?:\.\d+)?) seconds? , has (.+?) (?:already|yet) (.+)$ => has \2 \3 by \1 seconds
+^(?:at |in )?(\w+(?:\.\d+)?) seconds?(?: in)? , has (.+?) (?:already|yet) (.+)$ => has \2 \3 by \1 seconds
 ^has (.+?) (?:already|yet) (.+) at (\w+(?:\.\d+)?) seconds?$ => has \1 \2 by \3 seconds
 \bfull (?:spins|laps|circles|rounds|rotations|circuits) => full turns
+^(how many full turns (?:does|did|has) .+?) (?:gets? in|puts? in|fits? in|manages?|completes?)\b => \1 make
+^(?:once|after|when) (?:it|he|she|the \w+(?: \w+)?) has turned , (how (?:far|many meters)\b.+)$ => \1 after the turn
  ,? (?:ladies and gentlemen|folks|guys|everybody|everyone|my friends?|people)$ =>
 ^(?:from (?:the )?first frame of movement to (?:the )?last|from first to last frame of movement) , how long => how long
 ^(.+) , how long (does it (?:run|take|last)) from first frame of movement to (?:the )?last$ => how long does \1 take
