@@ -13,7 +13,7 @@ from functools import partial
 from .....gaussians import late_re as re
 from ...learned.seen import hues
 from ...tagging.spelling import is_word
-from ...vocabulary.nouns import is_known
+from ...vocabulary.nouns import EVERYWHERE, is_known
 from ...vocabulary.quantities import NUMBERS
 from ..asides import HUES
 from ..clauses import AUXILIARIES
@@ -73,7 +73,7 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
         chance: the probability of the kind.
     """
     made = _KINDS.get(kind)
-    if made is None or not said.things:
+    if made is None or not said.things or said.things[0].split(" ")[-1] in EVERYWHERE:
         return
     if chance < SURE and not _is_any_word(_GREETING.sub("", said.text).split(" ")[0]):
         return  # a verb that is no word may ask for anything
