@@ -26,7 +26,7 @@ from ..operation import Affine, Context, Length, Outcome, TargetedOp
 from ..placement.bodies import Body, bodies_of
 from ..receipt import Check, at_most
 from ..timing.hinges import Opening, opening_of
-from ..timing.retiming import Warp, angles_at, movement, playing, with_tracks
+from ..timing.retiming import angles_at, moved, movement, playing, with_tracks
 from ..timing.spans import length_of, spans_of
 from ..transform import turn
 from ..when import When
@@ -234,11 +234,9 @@ def _opening_at(own: Track, motion: Motion, most: float, start: float) -> tuple[
     end = start + high - low
     again = moves[(times[moves] > high) & (share[moves] > 1 - _OPEN / 2)]
     behind = float(times[again[-1]]) if len(again) else math.inf
-    held = [(low, low)] if start > low else []
-    kept = [(behind, behind)] if end < behind < math.inf else []
-    new, old = zip(*held, (start, low), (end, high), *kept, strict=True)
     last = float(times[moves[-1] + 1])
-    return playing(own, Warp(new, old)), last if kept else last + end - high
+    made = playing(own, moved((low, high), (start, end), -math.inf, behind))
+    return made, last if end < behind < math.inf else last + end - high
 
 
 def _taken(own: Track) -> float:

@@ -22,7 +22,7 @@ from ..checks import count_matches
 from ..operation import Context, Length, Outcome, TargetedOp
 from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_most
-from ..timing.retiming import Warp, divided, movement, playing, with_tracks
+from ..timing.retiming import Warp, divided, moved, movement, playing, with_tracks
 from ..timing.spans import Span, spans_of
 from ..when import During, When
 
@@ -225,14 +225,8 @@ class Pace(TargetedOp):
         elif self.factor is not None:
             lasting /= self.factor
         end = begin + lasting
-        new, old = [begin, end], [low, high]
-        if begin > low:
-            new, old = [low, *new], [low, *old]
-        elif begin < low and math.isfinite(before):
-            new, old = [before, *new], [before, *old]
-        if end < behind < math.inf:
-            return Warp((*new, behind), (*old, behind)), max(span[1], end)
-        return Warp(tuple(new), tuple(old)), span[1] + end - high
+        stop = max(span[1], end) if end < behind < math.inf else span[1] + end - high
+        return moved(part, (begin, end), before, behind), stop
 
     def _again(self, scene: Scene, own: list[Track], group: I64, span: Span, spans: list[Span]) -> tuple[Warp, float]:
         """Which old time is shown when, of what goes a part of its way or goes it several times."""

@@ -70,6 +70,26 @@ class Warp:
         return float(rates[0]) if np.ptp(rates) < 1e-9 and abs(rates[0]) > _SAME else None
 
 
+def moved(part: tuple[float, float], to: tuple[float, float], before: float, behind: float) -> Warp:
+    """One of several movements at another time: it waits where it begins, and what comes behind keeps its time if it
+    can.
+
+    Args:
+        part, to: when it begins and ends, and when it is to, seconds.
+        before: when the movement before it ends; negative infinity: there is none.
+        behind: when the one behind it begins; infinity: there is none.
+    """
+    knots = [(to[0], part[0]), (to[1], part[1])]
+    if to[0] > part[0]:
+        knots.insert(0, (part[0], part[0]))
+    elif to[0] < part[0] and np.isfinite(before):
+        knots.insert(0, (before, before))
+    if to[1] < behind < np.inf:
+        knots.append((behind, behind))
+    new, old = zip(*knots, strict=True)
+    return Warp(new, old)
+
+
 def playing(track: Track, warp: Warp) -> Track:
     """A track that shows at each time what it showed at the mapped time; its start may not be at rest."""
     times, values = _keys(track, warp)

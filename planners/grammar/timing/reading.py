@@ -181,7 +181,8 @@ class TimeReader:
 
     def _leaves_time_out(self, words: Sequence[str], ops: Sequence[Fields]) -> bool:
         """Whether no operation has a time, and a clause tells one by what a thing does: "before the robot comes"."""
-        if any(op.get("when") is not None or op["op"] not in _LOOKS for op in ops):
+        looks = all(op.get("when") is None and op["op"] in _LOOKS for op in ops)
+        if not looks or not _CLAUSE.search(" ".join(words)):
             return False
         spans = (words[start:stop] for tag, start, stop in marked(words) if tag in TIMES)
         return any(_CLAUSE.match(" ".join(said)) and any(map(is_known, said)) for said in spans)
@@ -194,7 +195,7 @@ class TimeReader:
             with suppress(Refusal):
                 found = self._whole(shorter) or next(self._guesses(shorter), None)
                 if found is not None and not self._is_timeless(found, shorter):
-                    return None if leaves_out(words, found) else found
+                    return None if leaves_out(words, found) else of_one_movement(shorter, found)
                 if found is None and self._is_plain(shorter) and not self._is_plain(cleaned):
                     return tuple(self._understand(shorter))
         return None
@@ -559,7 +560,7 @@ class TimeReader:
 
 _TIME_FIRST = re.compile(r"(?:when|whenever|once|while|as soon as) (?:the|my|our|this|that|it|he|she|they) .* , ")
 _HALF_ITS_WAY = re.compile(r"(?:at )?(?:half ?way|midway)")
-_CLAUSE = re.compile(r"(?:when|whenever|once|while|until|till|before|after|as soon as|as) (?:the|that|this) ")
+_CLAUSE = re.compile(r"\b(?:when|whenever|once|while|until|till|before|after|as soon as|as) (?:the|that|this) ")
 _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
 _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
 _PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
@@ -650,9 +651,7 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
     """
     if _A_NUMBER.search(remark):
         return False  # "starting at one second, done by three"
-    if _NOT_SEEN.search(remark):
-        return command.kind == "look" and not command.inverse
-    if _COMES_BACK.search(remark):
+    if _NOT_SEEN.search(remark) or _COMES_BACK.search(remark):
         return command.kind == "look" and not command.inverse
     if re.search(rf"\b(?:keep|let|have) (?:it|him|her|them) {any_of(MOTION, 'ing')}", remark):
         return {op.get("change") for op in command.ops} == {"go_on"}

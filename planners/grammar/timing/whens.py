@@ -8,6 +8,7 @@ from dataclasses import replace
 from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....tools.when import During, Part, When
+from ..vocabulary.nouns import is_opened
 from .command import Fields
 from .happenings import IT, Happening
 from .moments import BRIEF, LITTLE_BY_LITTLE, SLOW, End, Moment
@@ -67,35 +68,28 @@ def closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) ->
 def of_one_movement(said: str, ops: Sequence[Fields]) -> tuple[Fields, ...]:
     """Operations with the movement of which words tell how long it takes, or how much later it is: "let the drawer
     close slower" says nothing of how it opens."""
-    if len(ops) != 1:
-        return tuple(ops)
     opens, closes = _OPENS.search(said) is not None, _CLOSES.search(said) is not None
-    if opens == closes:
+    if len(ops) != 1 or opens == closes or not _is_paced(ops[0]):
         return tuple(ops)
+    when = ops[0].get("when") or When()
     during = During(state="opening" if opens else "closing")
-    return tuple({**op, "when": _within(op, during)} if _is_paced(op) else op for op in ops)
+    return ({**ops[0], "when": When(during=during, lasting=when.lasting)},)
 
 
 def _is_paced(op: Fields) -> bool:
     """Whether an operation changes how long a door or a drawer takes, or how much later it moves."""
     when = op.get("when")
-    if op["op"] != "pace" or not _PARTS_OF_ROOMS.search(op["target"].text):
+    if op["op"] != "pace" or not is_opened(op["target"].text):
         return False
     if op["change"] == "begin":
         return isinstance(when, When) and when.lasting is not None and when.start is None and when.during is None
     return op["change"] in ("speed", "later") and when is None
 
 
-def _within(op: Fields, during: During) -> When:
-    when = op.get("when")
-    return When(during=during, lasting=when.lasting if isinstance(when, When) else None)
-
-
 _OPENS = re.compile(r"\b(?:open(?:s|ing)?|out)\b")
 _CLOSES = re.compile(
     r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back(?: in)?|(?:go|goes|slides?|comes?|going|sliding) in)\b"
 )
-_PARTS_OF_ROOMS = re.compile(r"\b(?:doors?|drawers?|gates?|lids?|hatch|flaps?|cupboards?|windows?)$")
 _FLIPPED: dict[Part, Part] = {
     "from": "until", "after": "until_end", "until": "from", "until_end": "after", "while": "unless", "unless": "while",
 }  # fmt: skip

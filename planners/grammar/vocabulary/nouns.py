@@ -27,6 +27,14 @@ _THINGS = bag(
 )
 
 
+_OPENED = bag("door drawer gate lid window hatch flap curtain cupboard")
+
+
+def is_opened(phrase: str) -> bool:
+    """Whether a name is of something that opens and closes."""
+    return singular(phrase.split(" ")[-1]) in _OPENED
+
+
 @cache
 def everyday() -> frozenset[str]:
     """Everyday nouns: the head nouns of kinds, and words that name no kind."""

@@ -16,8 +16,8 @@ from ..moments import TIMED
 from .kinds import NO_WISH
 
 LIKELY = 0.3  # probability from which one of the two likeliest kinds is taken without a word that says it
-SHARE = 0.5  # of the probability of all kinds that make a command, or are no wish: from it another one is taken
-UNTIMED = 0.32  # the same of an instruction that tells no time
+UNTIMED = 0.32  # the least probability of any kind that is taken where no time is told
+SHARE = 0.5  # of the probability of all rivals, which a word says or which are no wish: from it another one is taken
 _FIRST = 2
 _BY_WORDS = {  # words of which one at least says that a wish is of a kind
     "recolor": r"colou?r\w*|paint\w*|turn\w*|go(?:es)?|become\w*|be|make|made|in|tint\w*|dye\w*",

@@ -77,14 +77,11 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         spans: the marks in them.
         thing: reads a name.
     """
-    moment, happening, halves = Moment(), None, set[int]()
+    moment, happening, spans = Moment(), None, [_with_half(words, span) for span in spans]
     for tag, start, stop in spans:
         if tag not in TIMES:
             continue
         phrase = " ".join(words[start:stop]).strip(" ,.;:")
-        if words[stop : stop + 3] == ["and", "a", "half"]:
-            phrase, start, stop = f"{phrase} and a half", start, stop + 3
-            halves.update(range(stop - 3, stop))
         if tag == "from" and _UNTIL.match(phrase):
             tag = "to"
         phrase = _LEADING.sub("", phrase)
@@ -105,7 +102,6 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     if any(tag in _IDLE and _loses(tag, words[start:stop]) for tag, start, stop in spans):
         return None
     left = {at for tag, start, stop in spans if tag in TIMES or tag in _IDLE for at in range(start, stop)}
-    left |= halves
     text = " ".join(word for at, word in enumerate(words) if at not in left).strip(" ,.;:!")
     text = with_moving(re.sub(r"(?: [,.;:!])+(?= [,.;:!])", "", text))
     if happening is None:
@@ -120,6 +116,13 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     goals = tuple(name for name in goals if name not in things)
     idle = " ".join(" ".join(words[start:stop]) for tag, start, stop in spans if tag in _IDLE)
     return Said(text, (*things, *goals), moment, happening is not None, thing, goals, idle), happening
+
+
+def _with_half(words: Sequence[str], span: Span) -> Span:
+    """A mark of a time with the half behind it: "[at one second] and a half"."""
+    tag, start, stop = span
+    half = tag in TIMES and list(words[stop : stop + 3]) == ["and", "a", "half"]
+    return (tag, start, stop + 3) if half else span
 
 
 def _loses(tag: str, words: Sequence[str]) -> bool:
@@ -181,7 +184,7 @@ def _joined(one: Moment, other: Moment) -> Moment | None:
 
 def _moment(tag: str, phrase: str) -> Moment | None:
     """The time in numbers that words with a tag tell, None if they tell none."""
-    if _HALFWAY.match(phrase) and not _FILM.search(phrase) and not _ALONE.match(phrase):
+    if _half_its_way(phrase) is not None:
         return None
     if tag == "to" and re.match(r"by (?:the )?(?:very )?end\b", phrase):
         return Moment(stop="end", said=(phrase,))
@@ -203,8 +206,6 @@ def _named_moment(tag: str, phrase: str, thing: Thing) -> Moment | None:
     """The start, the middle or the end of the film where words with a tag name it, None if they name none."""
     if any(is_known(name.split(" ")[-1]) for name in names_in(phrase, thing)):
         return None  # "until the fall of the book is over"
-    if _HALFWAY.match(phrase) and not _FILM.search(phrase) and not _ALONE.match(phrase):
-        return None
     if phrase.split(" ")[0] not in _EVEN_SO and (tag == "for" or CONJUNCTION.match(phrase)):
         return None
     value = next((end for pattern, end in _NAMED if pattern.search(phrase)), None)
@@ -237,10 +238,14 @@ def _seconds(said: str) -> float | None:
     return found
 
 
+def _half_its_way(phrase: str) -> re.Match[str] | None:
+    """The words for half the way of something; None for others, and for half the film."""
+    return None if _FILM.search(phrase) or _ALONE.match(phrase) else _HALFWAY.match(phrase)
+
+
 def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
     """The time told by what happens of words with a tag, None if they tell none."""
-    half = None if _FILM.search(phrase) or _ALONE.match(phrase) else _HALFWAY.match(phrase)
-    if half is not None:
+    if (half := _half_its_way(phrase)) is not None:
         of = names_in(half["who"] or half["what"], thing)[:1]
         whose = thing(of[0]) if of and (half["who"] or half["way"].startswith((" through", " of"))) else None
         return Happening(During(state="halfway", of=whose or IT, part="until" if tag == "to" else "from"), phrase)

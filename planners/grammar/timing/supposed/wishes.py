@@ -13,7 +13,7 @@ from functools import partial
 from .....gaussians import late_re as re
 from ...learned.seen import hues
 from ...tagging.spelling import is_word
-from ...vocabulary.nouns import EVERYWHERE, is_known
+from ...vocabulary.nouns import EVERYWHERE, is_known, is_opened
 from ...vocabulary.quantities import NUMBERS
 from ..asides import HUES
 from ..clauses import AUXILIARIES
@@ -357,7 +357,7 @@ _TAKES = re.compile(
 
 def _is_of_a_part(said: Said) -> bool:
     """Whether only one of the movements of something is meant, and it is no door or drawer that tells which."""
-    return _A_PART.search(said.text) is not None and _OPENS.search(said.things[0]) is None
+    return _A_PART.search(said.text) is not None and not is_opened(said.things[0])
 
 
 def _begin(said: Said) -> Iterator[Wish]:
@@ -496,12 +496,11 @@ _SHARES = tuple(
         (r"\b(?:a|one) quarter\b", "a quarter of the way", "a quarter of the way"),
     )
 )
-_OPENS = re.compile(r"\b(?:doors?|drawers?|gates?|lids?|windows?|hatch|flaps?|curtains?|cupboards?)$")
 
 
 def _amount(said: Said) -> Iterator[Wish]:
     thing = said.things[0]
-    opens = _OPENS.search(thing) is not None
+    opens = is_opened(thing)
     if (found := _DEGREES.search(said.text)) is not None:
         yield Wish(f"open {thing} by {found[0]}", said.moment, holds=found[0])
     elif (found := _LENGTH.search(said.text)) is not None:
