@@ -16,6 +16,7 @@ from scenewright.gaussians.motion.fitting.bodies import Body, Line, moved, place
 from scenewright.gaussians.motion.fitting.covering import uncovered
 from scenewright.gaussians.motion.fitting.footage import Footage
 from scenewright.gaussians.motion.fitting.rolling import rolled, rolling
+from scenewright.gaussians.motion.fitting.seeds import seeds
 from scenewright.gaussians.motion.fitting.sharing import shared
 from scenewright.gaussians.motion.fitting.simplify import track_of
 from scenewright.gaussians.motion.fitting.start import changing, start_points
@@ -260,6 +261,20 @@ def test_what_is_of_another_colour_for_long_may_have_moved():
     assert len(found) == 2 and all(f[4:7, 5:8].all() and f.sum() <= 25 for f in found)
     frames[4:6] = frames[:2]  # now one frame of seven is of another colour
     assert not np.any(changing(Footage.of(frames, [0.1 * (k // 2) for k in range(16)])))
+
+
+def test_what_touches_but_leaves_at_other_times_is_another_thing():
+    footage = Footage.of([shot(x) for x in (0.0, 1.0) for _ in range(10)], [*range(10), *range(10)])
+    pixel = footage.radius / footage.cameras[0].fx
+    means = np.zeros((40, 3), np.float32)
+    means[:, 0] = 2 * pixel * np.arange(40)
+    none = np.zeros((40, 1), np.float32)
+    flags = np.tile(np.arange(10) >= 1, (40, 1))
+    (one,) = seeds((means, none, none, none[:, 0], none[:, None]), footage, flags)
+    assert len(one) == 40
+    flags[20:] = np.arange(10) >= 3  # 7 of 9 times
+    found = seeds((means, none, none, none[:, 0], none[:, None]), footage, flags)
+    assert sorted(rows.tolist() for rows in found) == [list(range(20)), list(range(20, 40))]
 
 
 def test_first_frames_without_depth_are_refused_in_words():
