@@ -126,8 +126,7 @@ class _Film:
         footage, settings = self._footage, self._settings
         steps = settings.steps and max(1, round(START * settings.steps))
         schedule = Schedule(steps, settings.seconds and START * settings.seconds, settings.coarse)
-        first = [footage.shots[i] for i in footage.first]
-        start = trainer(first, self._photos, settings.max_gaussians, schedule, self._rng)
+        start = trainer(footage, self._photos, settings.max_gaussians, schedule, self._rng)
         while start.progress < 1:
             self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
         labelled, bodies, tried = self._bodies(start.parameters)

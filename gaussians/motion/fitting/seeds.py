@@ -24,7 +24,7 @@ Flags = NDArray[np.bool_]
 SEEN = 0.2  # of the largest weight of a Gaussian in any picture, from which a picture counts as showing it
 GONE = 0.75  # share of a Gaussian's weight on changed pixels, over the pictures that show it, from which it is gone
 FAINT = 0.15  # opacity below which a Gaussian says nothing
-ALIKE = 0.75  # overlap of the times at which two neighbours are gone, from which they are of one thing
+ALIKE = 0.8  # overlap of the times at which two neighbours are gone, from which they are of one thing
 NEAR = 5.0  # pixels, at the distance of the cameras' radius: as near are Gaussians that touch
 LEAST = 12  # Gaussians of the smallest thing
 

@@ -1,9 +1,12 @@
-"""The scene at its start: Gaussians trained on the first frame of every camera (`start_scene`)."""
+"""The scene at its start: Gaussians trained on the first frame of every camera (`trainer`)."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...cloud import GaussianCloud
@@ -14,35 +17,60 @@ from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
 from ...fit.train import Schedule, Shot, Trainer
 from ...harmonics import color_to_dc
-from .stereo import points_of
+from .covering import uncovered
+from .footage import Footage
+from .stereo import Points, points_of
 
-SPACING = 2.0  # pixels, at the distance of the cameras' radius, between two points to start from
+I64 = NDArray[np.int64]
+
+SPACING = 2.0  # pixels, at the distance of the cameras' radius, between two points that are confirmed
+FINER = 0.5  # of that, where something may move
+LONG = 0.25  # share of the times at which a pixel is of another colour, from which something may have gone from there
 PIXELS = 12  # pixels of the first frames for each Gaussian
+CONFIRMED = 0.85  # share of the Gaussians at points that are confirmed; the others cover what these leave bare
+PICTURES = 8  # of fewer pictures, only what is confirmed: too few see what is wrong
+BLOCKS = range(4, 13)  # pixels, side of the blocks that are covered: the first that keeps within the number
+WIDEST = 0.07  # of the cameras' radius: a standard deviation
 OPACITY = 0.6
 ROOM = 1.1  # times the number of points: greatest number of Gaussians
 
 
-def start_points(shots: list[Shot], radius: float, most: int, rng: np.random.Generator) -> GaussianCloud:
-    """Gaussians at points whose depth pictures agree on; the best confirmed first, `most` at most.
+def start_points(
+    shots: list[Shot], radius: float, most: int, rng: np.random.Generator, changing: Sequence[NDArray[np.bool_]] = ()
+) -> GaussianCloud:  # fmt: skip
+    """Gaussians at points whose depth pictures agree on, the best confirmed first; wide ones at what these leave bare.
+
+    Args:
+        most: Gaussians.
+        changing: `[H, W]` of each picture, where its colour is another one at later times: there may be something that
+            moves, whose points are nearer to each other and come first.
 
     Raises:
         UserError: pictures agree on the depth of fewer than two points.
     """
-    found = points_of([s.camera for s in shots], [s.colors for s in shots], radius)
-    order = rng.permutation(len(found.means))
-    order = order[np.argsort(-np.minimum(found.agreed[order], 4), kind="stable")]
-    order = order[found.agreed[order] >= 1]
-    cells = np.floor(found.means[order] / (SPACING * radius / shots[0].camera.fx)).astype(np.int64)
-    _, first = np.unique(cells, axis=0, return_index=True)
-    rows = order[np.sort(first)][: min(most, len(found.means) // PIXELS)]
-    if len(rows) < 2:  # no distance to another one tells their size
+    cameras = [s.camera for s in shots]
+    found = points_of(cameras, [s.colors for s in shots], radius)
+    budget = min(most, len(found.means) // PIXELS)
+    spacing = SPACING * radius / cameras[0].fx
+    share = CONFIRMED if len(shots) >= PICTURES else 1.0
+    moves = np.concatenate([c.reshape(-1) for c in changing]) if changing else np.zeros(len(found.means), bool)
+    best = _confirmed(found, spacing, moves, rng)[: round(share * budget)]
+    more, block = best[:0], 0
+    if share < 1:
+        for block in BLOCKS:
+            more = uncovered(found, cameras, best, spacing, block)
+            if len(best) + len(more) <= budget:
+                break
+    rows = np.concatenate([best, more])[:budget]
+    if len(best) < 2:  # no distance to another one tells their size
         raise UserError(
             "the first frames of the film agree on no depths: check the poses, let the views of the cameras overlap, "
             "or give surveyed points"
         )
     means = found.means[rows]
     away, _ = cKDTree(means).query(means, k=min(4, len(means)))
-    sizes = np.clip(np.sqrt((away[:, 1:] ** 2).mean(axis=1)), 1e-6 * radius, 0.1 * radius) * 0.7
+    widths = np.r_[np.full(len(best), WIDEST * radius), block * found.sizes[rows[len(best) :]]]
+    sizes = np.clip(0.7 * np.sqrt((away[:, 1:] ** 2).mean(axis=1)), 1e-6 * radius, widths)
     count = len(means)
     return GaussianCloud.create(
         torch.from_numpy(means).float(), torch.tensor([[1.0, 0.0, 0.0, 0.0]]).repeat(count, 1),
@@ -51,9 +79,33 @@ def start_points(shots: list[Shot], radius: float, most: int, rng: np.random.Gen
     )  # fmt: skip
 
 
-def trainer(shots: list[Shot], photos: Photos, most: int, schedule: Schedule, rng: np.random.Generator) -> Trainer:
+def _confirmed(found: Points, spacing: float, moves: NDArray[np.bool_], rng: np.random.Generator) -> I64:
+    """Rows of confirmed points, one in each cell of a grid (scene units): those that may move, in finer cells, before
+    the others, and of these the best confirmed first."""
+    order = rng.permutation(len(found.means))
+    order = order[np.lexsort((-np.minimum(found.agreed[order], 4), ~moves[order]))]
+    order = order[(found.agreed >= np.maximum(found.denied, 1))[order]]
+    cells = np.floor(found.means[order] / np.where(moves[order], FINER * spacing, spacing)[:, None]).astype(np.int64)
+    _, first = np.unique(np.c_[cells, moves[order]], axis=0, return_index=True)
+    return order[np.sort(first)]
+
+
+def trainer(footage: Footage, photos: Photos, most: int, schedule: Schedule, rng: np.random.Generator) -> Trainer:
     """A training on the first frames: from surveyed points where the capture has them, else from their own stereo."""
-    surveyed = len(photos.points.means) > 0
-    cloud = initial_cloud(photos, most, rng) if surveyed else start_points(shots, photos.extent, most, rng)
+    shots = [footage.shots[i] for i in footage.first]
+    if len(photos.points.means):
+        cloud = initial_cloud(photos, most, rng)
+    else:
+        cloud = start_points(shots, photos.extent, most, rng, changing(footage))
     budget = min(most, int(ROOM * len(cloud)) + 1)
     return Trainer(shots, Parameters.of(cloud), MCMCStrategy(budget, rng), photos.extent, schedule, rng)
+
+
+def changing(footage: Footage) -> list[NDArray[np.bool_]]:
+    """`[H, W]` of each camera, the pixels whose colour is not that of the first time for long."""
+    found = []
+    for c, first in enumerate(footage.first):
+        own = [i for i in np.flatnonzero(footage.who == c) if i != first]
+        often = np.sum([footage.changed(int(i), int(first)) for i in own], axis=0)
+        found.append(np.asarray(often >= LONG * len(own), dtype=bool))
+    return found

@@ -2,8 +2,8 @@
 
 For each picture: the cost of a pixel at each of a number of depths is how much its colour differs from where the
 nearest cameras see that point (plane sweep; Collins 1996). Costs are summed along paths in four directions with a
-penalty for changes of depth (Hirschmueller 2008), so that plain walls take the depth of their borders. Depths that
-other pictures confirm come first.
+penalty for changes of depth (Hirschmueller 2008), so that plain walls take the depth of their borders. Each depth is
+then compared with those of the other pictures, which confirm it or look through it.
 """
 
 from __future__ import annotations
@@ -20,13 +20,17 @@ from ...compiled import exact
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
 
-DEPTHS = 72  # depths that are tried, evenly spaced in inverse depth
+APART = 1.0  # pixels of the nearest cameras between two depths that are tried, evenly spaced in inverse depth
+FEWEST, MOST = 72, 256  # depths that are tried
+COSTS = 2**27  # of a picture at most (4 bytes each): fewer depths are tried of large pictures
 NEIGHBOURS = 4  # cameras that a picture is compared with
 NEAREST, FARTHEST = 0.12, 4.0  # depths that are tried, of the radius of the cameras
 WORST = 0.2  # difference of colour beyond which it does not matter, and that of what no other camera sees
 BEND, JUMP = 0.02, 0.12  # penalties of a change by one depth, and of a larger one
 AGREE = 0.04  # of the depth: as near another picture's depth must be to confirm one
+BEHIND = 0.08  # of the depth: as far behind a point another picture's confirmed depth must be to deny it
 
 f4 = np.float32
 
@@ -39,13 +43,17 @@ class Points:
         means: `[N, 3]` world.
         colors: `[N, 3]` in [0, 1].
         sizes: `[N]` scene units, the side of a pixel at the point.
+        depths: `[N]` from the camera of its picture.
         agreed: `[N]` how many other pictures confirm its depth.
+        denied: `[N]` how many other pictures look through it: their depth there is confirmed, and behind it.
     """
 
     means: F64
     colors: F64
     sizes: F64
-    agreed: NDArray[np.int64]
+    depths: F64
+    agreed: I64
+    denied: I64
 
 
 def points_of(cameras: Sequence[Camera], photos: Sequence[F32], radius: float) -> Points:
@@ -55,16 +63,21 @@ def points_of(cameras: Sequence[Camera], photos: Sequence[F32], radius: float) -
         photos: `[H, W, 3]` in [0, 1], one for each camera.
         radius: of the cameras around their middle, scene units.
     """
-    found = [_depth(i, cameras, photos, radius) for i in range(len(cameras))]
-    means, colors, sizes, agreed = [], [], [], []
-    for i, (camera, photo) in enumerate(zip(cameras, photos, strict=True)):
-        world = unprojected(camera, found[i])
-        means.append(world)
-        colors.append(photo.reshape(-1, 3))
-        sizes.append(found[i].reshape(-1) / camera.fx)
-        agreed.append(sum(_confirms(world, cameras[k], found[k]) for k in range(len(cameras)) if k != i))
-    return Points(np.concatenate(means), np.concatenate(colors).astype(np.float64), np.concatenate(sizes),
-                  np.concatenate(agreed))  # fmt: skip
+    count = len(cameras)
+    depths = [_depth(i, cameras, photos, radius) for i in range(count)]
+    means = [unprojected(camera, depth) for camera, depth in zip(cameras, depths, strict=True)]
+    agreed, denied = ([np.zeros(len(m), np.int64) for m in means] for _ in range(2))
+    for i in range(count):
+        for k in set(range(count)) - {i}:
+            agreed[i] += _confirms(means[i], cameras[k], depths[k])
+    sure = [(a > 0).reshape(d.shape) for a, d in zip(agreed, depths, strict=True)]
+    for i in range(count):
+        for k in set(range(count)) - {i}:
+            denied[i] += _denies(means[i], cameras[k], depths[k], sure[k])
+    colors = np.concatenate([photo.reshape(-1, 3) for photo in photos]).astype(np.float64)
+    sizes = np.concatenate([d.reshape(-1) / camera.fx for camera, d in zip(cameras, depths, strict=True)])
+    each = np.concatenate([d.reshape(-1) for d in depths])
+    return Points(np.concatenate(means), colors, sizes, each, np.concatenate(agreed), np.concatenate(denied))
 
 
 def unprojected(camera: Camera, depth: F64) -> F64:
@@ -79,9 +92,9 @@ def _depth(own: int, cameras: Sequence[Camera], photos: Sequence[F32], radius: f
     """Depth `[H, W]` of one picture."""
     camera, photo = cameras[own], photos[own]
     others = _nearest(own, cameras)
-    inverse = np.linspace(1 / (NEAREST * radius), 1 / (FARTHEST * radius), DEPTHS)
+    inverse = _inverse_depths(camera, [cameras[k] for k in others], radius)
     maps = np.stack([_mapping(camera, cameras[k]) for k in others]).astype(np.float32)
-    costs = np.empty((camera.height, camera.width, DEPTHS), np.float32)
+    costs = np.empty((camera.height, camera.width, len(inverse)), np.float32)
     pictures = np.stack([np.ascontiguousarray(photos[k], np.float32) for k in others])
     count = compiled.workers()
     compiled.run(
@@ -95,14 +108,22 @@ def _depth(own: int, cameras: Sequence[Camera], photos: Sequence[F32], radius: f
                 view, out, picture = view.swapaxes(0, 1), out.swapaxes(0, 1), picture.swapaxes(0, 1)
             if flipped:
                 view, out, picture = view[:, ::-1], out[:, ::-1], picture[:, ::-1]
-            compiled.run(_along, count, view, out, picture, np.zeros((count, DEPTHS), np.float32))
+            compiled.run(_along, count, view, out, picture, np.zeros((count, len(inverse)), np.float32))
     best = total.argmin(axis=2)
     return np.asarray(1 / _between(total, best, inverse))
 
 
+def _inverse_depths(camera: Camera, others: Sequence[Camera], radius: float) -> F64:
+    """`[D]` the inverse depths that are tried of a picture, from the nearest to the farthest."""
+    nearest, farthest = 1 / (NEAREST * radius), 1 / (FARTHEST * radius)
+    aside = max((float(np.linalg.norm(c.position - camera.position)) * c.fx for c in others), default=0.0)
+    most = max(FEWEST, min(MOST, COSTS // (camera.width * camera.height)))
+    return np.linspace(nearest, farthest, int(np.clip(aside * (nearest - farthest) / APART, FEWEST, most)))
+
+
 def _between(total: F32, best: NDArray[np.int64], inverse: F64) -> F64:
     """Inverse depths `[H, W]` at the lowest point of a parabola through the best depth and the two beside it."""
-    inner = np.clip(best, 1, DEPTHS - 2)
+    inner = np.clip(best, 1, len(inverse) - 2)
     low, mid, high = (np.take_along_axis(total, inner[..., None] + k, 2)[..., 0].astype(np.float64) for k in (-1, 0, 1))
     bend = low - 2 * mid + high
     shift = np.where(bend > 1e-9, 0.5 * (low - high) / np.maximum(bend, 1e-9), 0.0)
@@ -131,12 +152,24 @@ def _mapping(camera: Camera, other: Camera) -> F64:
     return np.concatenate([turn, (inner(other) @ between[:3, 3])[:, None]], axis=1)
 
 
-def _confirms(world: F64, camera: Camera, depth: F64) -> NDArray[np.int64]:
-    """`[N]` 1 where a camera's own depth is that of the point."""
+def _confirms(world: F64, camera: Camera, depth: F64) -> NDArray[np.bool_]:
+    """`[N]` whether a camera's own depth is that of the point."""
+    inside, x, y, z = _pixels(world, camera)
+    return np.asarray(inside & (np.abs(depth[y, x] - z) < AGREE * z))
+
+
+def _denies(world: F64, camera: Camera, depth: F64, sure: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """`[N]` whether a camera's own depth is sure and behind the point."""
+    inside, x, y, z = _pixels(world, camera)
+    return np.asarray(inside & sure[y, x] & (z < depth[y, x] * (1 - BEHIND)))
+
+
+def _pixels(world: F64, camera: Camera) -> tuple[NDArray[np.bool_], I64, I64, F64]:
+    """`[N]` whether a camera sees the place of a point, column and row of its pixel, and its depth."""
     pixels, z = camera.project(world)
     inside = camera.contains(pixels, z)
     x, y = np.clip(pixels.astype(np.int64).T, 0, [[camera.width - 1], [camera.height - 1]])
-    return np.asarray(inside & (np.abs(depth[y, x] - z) < AGREE * z), dtype=np.int64)
+    return inside, x, y, z
 
 
 @exact

@@ -13,11 +13,14 @@ from scenewright.gaussians.harmonics import SH_C0
 from scenewright.gaussians.motion import keys
 from scenewright.gaussians.motion.fitting.axes import line_of
 from scenewright.gaussians.motion.fitting.bodies import Body, Line, moved, placed, pose_gradient, turned
+from scenewright.gaussians.motion.fitting.covering import uncovered
 from scenewright.gaussians.motion.fitting.footage import Footage
 from scenewright.gaussians.motion.fitting.rolling import rolled, rolling
+from scenewright.gaussians.motion.fitting.seeds import seeds
 from scenewright.gaussians.motion.fitting.sharing import shared
 from scenewright.gaussians.motion.fitting.simplify import track_of
-from scenewright.gaussians.motion.fitting.start import start_points
+from scenewright.gaussians.motion.fitting.start import changing, start_points
+from scenewright.gaussians.motion.fitting.stereo import Points, points_of, unprojected
 from scenewright.gaussians.motion.fitting.tracking import Tracker
 from scenewright.gaussians.render.cpu import gradient
 
@@ -194,6 +197,84 @@ def test_the_turns_of_what_rolls_are_told_by_its_way_and_those_of_what_does_not_
         assert (found is not None) == rolls
         if found is not None:
             assert np.degrees(2 * np.arccos(np.clip(np.abs((found.quats * quats).sum(axis=1)), 0, 1))).max() < 20
+
+
+def wall() -> tuple[list[Camera], list[np.ndarray]]:
+    """Four pictures `[48, 64, 3]` of a wall at y = 0 with smooth colours, from 3 before it."""
+    rng, photos = np.random.default_rng(8), []
+    waves = rng.uniform(-12, 12, (2, 12))
+    cameras = [Camera.look_at((a, -3.0, 1.0), (a / 2, 0, 0.8), (0, 0, 1), 64, 48, 50) for a in (-0.6, -0.2, 0.2, 0.6)]
+    for c in cameras:
+        rays = unprojected(c, np.ones((48, 64))) - c.position
+        at = c.position + rays * (3 / rays[:, 1:2])
+        colors = 0.5 + 0.12 * np.sin(at[:, [0, 2]] @ waves).reshape(-1, 4, 3).sum(axis=1)
+        photos.append(colors.clip(0, 1).reshape(48, 64, 3).astype(np.float32))
+    return cameras, photos
+
+
+def test_pictures_confirm_the_depth_of_a_wall_and_look_through_what_is_wrongly_before_it():
+    cameras, photos = wall()
+    rng = np.random.default_rng(9)
+    photos[0][10:34, 20:44] = rng.uniform(0, 1, (24, 24, 3))  # what no other camera sees
+    found = points_of(cameras, photos, 1.5)
+    off = np.abs(found.means[:, 1]).reshape(4, 48, 64)
+    assert np.median(off[1:]) < 0.04  # scene units; cameras are 3 away
+    before, denied = found.means[:, 1] < -0.4, found.denied > found.agreed
+    wrong = before.reshape(off.shape)[0, 12:32, 22:42]
+    assert wrong.sum() > 100 and denied.reshape(off.shape)[0, 12:32, 22:42][wrong].mean() > 0.9
+    assert denied[~before].mean() < 0.02
+
+
+def test_points_are_added_where_a_picture_shows_what_no_point_covers():
+    cameras = [Camera.look_at((a, -3.0, 1.0), (a, 0, 1), (0, 0, 1), 64, 48, 50) for a in (0.0, 0.8)]
+    depth = np.full((48, 64), 3.0)
+    means = np.concatenate([unprojected(c, depth) for c in cameras])
+    count = len(means)
+    agreed, denied = np.zeros((2, count), np.int64)
+    denied[10 * 64 : 20 * 64] = 1
+    sizes = np.full(count, 3.0 / cameras[0].fx)
+    found = Points(means, np.full((count, 3), 0.5), sizes, np.full(count, 3.0), agreed, denied)
+    chosen = np.flatnonzero((np.arange(count) < 48 * 64) & (means[:, 0] < 0))  # the left half of the first picture
+    added = uncovered(found, cameras, chosen, 3.0 / cameras[0].fx, 4)
+    assert (means[added, 0] > -0.01).all() and (denied[added] == 0).all()
+    first, second = added[added < 48 * 64], added[added >= 48 * 64]
+    assert len(first) == 8 * 10  # of 8 by 12 blocks, without those that lie wholly in what is looked through
+    assert (means[second, 0] > means[: 48 * 64, 0].max() - 0.1).mean() > 0.6  # what only the second shows
+    assert len(uncovered(found, cameras, np.concatenate([chosen, added]), 12.0 / cameras[0].fx, 4)) < 10
+
+
+def test_points_are_nearer_to_each_other_where_something_may_move():
+    cameras, photos = wall()
+    shots = [Shot(c, (255 * p).round().astype(np.uint8)) for c, p in zip(cameras, photos, strict=True)]
+    left = []
+    for c in cameras:
+        rays = unprojected(c, np.ones((48, 64))) - c.position
+        left.append((c.position + rays * (3 / rays[:, 1:2]))[:, 0].reshape(48, 64) < 0)
+    even, finer = (start_points(shots, 1.5, 9000, np.random.default_rng(0), moves).means for moves in ((), left))
+    before, after = (float((means[:, 0] < 0).float().mean()) for means in (even, finer))
+    assert abs(before - 0.5) < 0.1 and after > 0.65
+
+
+def test_what_is_of_another_colour_for_long_may_have_moved():
+    frames = [shot(x, value) for value in (100, 200, 200, 100, 100, 100, 100, 100) for x in (0.0, 1.0)]
+    found = changing(Footage.of(frames, [0.1 * (k // 2) for k in range(16)]))
+    assert len(found) == 2 and all(f[4:7, 5:8].all() and f.sum() <= 25 for f in found)
+    frames[4:6] = frames[:2]  # now one frame of seven is of another colour
+    assert not np.any(changing(Footage.of(frames, [0.1 * (k // 2) for k in range(16)])))
+
+
+def test_what_touches_but_leaves_at_other_times_is_another_thing():
+    footage = Footage.of([shot(x) for x in (0.0, 1.0) for _ in range(10)], [*range(10), *range(10)])
+    pixel = footage.radius / footage.cameras[0].fx
+    means = np.zeros((40, 3), np.float32)
+    means[:, 0] = 2 * pixel * np.arange(40)
+    none = np.zeros((40, 1), np.float32)
+    flags = np.tile(np.arange(10) >= 1, (40, 1))
+    (one,) = seeds((means, none, none, none[:, 0], none[:, None]), footage, flags)
+    assert len(one) == 40
+    flags[20:] = np.arange(10) >= 3  # 7 of 9 times
+    found = seeds((means, none, none, none[:, 0], none[:, None]), footage, flags)
+    assert sorted(rows.tolist() for rows in found) == [list(range(20)), list(range(20, 40))]
 
 
 def test_first_frames_without_depth_are_refused_in_words():
