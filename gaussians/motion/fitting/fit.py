@@ -35,7 +35,7 @@ from ..motion import Motion, Residual, Track
 from .axes import line_of
 from .bodies import Body, Columns, Labelled
 from .footage import Footage
-from .rolling import rolled
+from .rolling import Ball
 from .seeds import LEAST, Flags, gone, halves, seeds
 from .sharing import shared
 from .simplify import track_of
@@ -215,8 +215,18 @@ class _Film:
             line = line_of(tracker, body)
             if line is None:
                 tracker.mend(body)
-                body = rolled(tracker, body) or body
+                body = self._rolled(labelled, k + 1, body)
             bodies[k] = body if line is None else body.on(line)
+
+    def _rolled(self, labelled: Labelled, number: int, body: Body) -> Body:
+        """A body as it is, or, if it is a ball that rolls, with its turns and the Gaussians of all its surface."""
+        columns, rows = labelled.columns(), np.flatnonzero(labelled.labels == number)
+        ball = Ball.of(columns[0][rows].astype(np.float64), columns[3][rows].astype(np.float64))
+        rolled = None if ball is None else ball.rolled(body, self._footage)
+        if ball is None or rolled is None:
+            return body
+        ball.filled(labelled, number, rolled, self._footage)
+        return rolled
 
     def _sort_out(self, labelled: Labelled, bodies: list[Body]) -> None:
         """Let a body stand still, or join another, where that explains the frames about as well as its own path while

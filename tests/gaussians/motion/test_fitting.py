@@ -4,18 +4,30 @@ import json
 
 import numpy as np
 import pytest
+import torch
 
 from scenewright.gaussians.camera import Camera
+from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError, UserError
 from scenewright.gaussians.files.captures.capture import read_capture
+from scenewright.gaussians.fit.parameters import Parameters
 from scenewright.gaussians.fit.train import Shot
 from scenewright.gaussians.harmonics import SH_C0
 from scenewright.gaussians.motion import keys
 from scenewright.gaussians.motion.fitting.axes import line_of
-from scenewright.gaussians.motion.fitting.bodies import Body, Line, moved, placed, pose_gradient, turned
+from scenewright.gaussians.motion.fitting.bodies import (
+    Body,
+    Columns,
+    Labelled,
+    Line,
+    moved,
+    placed,
+    pose_gradient,
+    turned,
+)
 from scenewright.gaussians.motion.fitting.covering import uncovered
 from scenewright.gaussians.motion.fitting.footage import Footage
-from scenewright.gaussians.motion.fitting.rolling import rolled, rolling
+from scenewright.gaussians.motion.fitting.rolling import Ball, rolling, sphere
 from scenewright.gaussians.motion.fitting.seeds import seeds
 from scenewright.gaussians.motion.fitting.sharing import shared
 from scenewright.gaussians.motion.fitting.simplify import track_of
@@ -167,10 +179,10 @@ def test_a_rough_path_of_a_door_is_put_on_its_hinge_and_a_free_one_stays_free(sw
     assert line_of(tracker, loose) is None
 
 
-def test_the_turns_of_what_rolls_are_told_by_its_way_and_those_of_what_does_not_are_its_own():
+def rolling_film(rolls: bool) -> tuple[Footage, Body, Columns, np.ndarray]:
+    """Frames of a ball of radius 0.15 whose octants have colours, on a floor, and its path; by rolling, or sliding."""
     rng, times = np.random.default_rng(6), np.linspace(0, 1, 9)
-    ball = rng.normal(size=(160, 3))
-    ball *= 0.15 / np.linalg.norm(ball, axis=1, keepdims=True)
+    ball = 0.15 * sphere(160)
     x, y = np.meshgrid(np.linspace(-1.2, 1.2, 19), np.linspace(-1.2, 1.2, 19))
     floor = np.stack([x, y, np.full_like(x, -0.15)], axis=-1).reshape(-1, 3)
     means, count = np.concatenate([ball, floor]).astype(np.float32), len(ball) + len(floor)
@@ -182,21 +194,57 @@ def test_the_turns_of_what_rolls_are_told_by_its_way_and_those_of_what_does_not_
     )  # fmt: skip
     labels = np.r_[np.ones(len(ball)), np.zeros(len(floor))].astype(np.int32)
     offsets = np.stack([0.14 * np.arange(9), 0.08 * np.sin(np.arange(9)), np.zeros(9)], axis=1)
-    cameras = [Camera.look_at((a, -2.0, 1.2), (0.5, 0, 0), (0, 0, 1), 40, 32, 60) for a in (-0.8, 0.5, 1.8)]
-    for quats, rolls in ((rolling(offsets, np.array([0, 0, 1.0]), 0.15), True),
-                         (np.tile([1.0, 0, 0, 0], (9, 1)), False)):  # fmt: skip
-        body, shots, seconds = Body(np.zeros(3), quats, offsets), [], []
-        for t in range(9):
-            for at in cameras:
-                drawn = gradient.draw(placed(columns, labels, [body], t), at, (0.0, 0.0, 0.0)).rgb
-                shots.append(Shot(at, (drawn.clip(0, 1) * 255).round().astype(np.uint8), times[t]))
-                seconds.append(times[t])
-        tracker = Tracker(columns, np.flatnonzero(labels), labels == 0, Footage.of(shots, seconds), 0)
-        own = Body(tracker.pivot, np.tile([1.0, 0, 0, 0], (9, 1)), body.seen_from(tracker.pivot).offsets)
-        found = rolled(tracker, own)
-        assert (found is not None) == rolls
-        if found is not None:
-            assert np.degrees(2 * np.arccos(np.clip(np.abs((found.quats * quats).sum(axis=1)), 0, 1))).max() < 20
+    still = np.tile([1.0, 0, 0, 0], (9, 1))
+    body = Body(np.zeros(3), rolling(offsets, np.array([0, 0, 1.0]), 0.15) if rolls else still, offsets)
+    shots, seconds = [], []
+    for t in range(9):
+        for x in (-0.8, 0.5, 1.8):
+            at = Camera.look_at((x, -2.0, 1.2), (0.5, 0, 0), (0, 0, 1), 40, 32, 60)
+            drawn = gradient.draw(placed(columns, labels, [body], t), at, (0.0, 0.0, 0.0)).rgb
+            shots.append(Shot(at, (drawn.clip(0, 1) * 255).round().astype(np.uint8), times[t]))
+            seconds.append(times[t])
+    return Footage.of(shots, seconds), body, columns, labels
+
+
+@pytest.mark.parametrize("rolls", [True, False])
+def test_the_turns_of_what_rolls_are_told_by_its_way_and_those_of_what_does_not_are_its_own(rolls):
+    footage, body, columns, labels = rolling_film(rolls)
+    seen = columns[0][labels == 1]
+    seen = seen[seen @ [0, -1, 0.6] > 0].astype(np.float64)  # what the cameras see at the start
+    ball = Ball.of(seen, np.ones(len(seen)))
+    assert ball is not None and np.linalg.norm(ball.centre) < 0.01 and abs(ball.radius - 0.15) < 0.01
+    pivot = seen.mean(axis=0)
+    own = Body(pivot, np.tile([1.0, 0, 0, 0], (9, 1)), body.seen_from(pivot).offsets)
+    own.offsets -= keys.matrices(body.quats) @ pivot - pivot  # where it would be without turning
+    found = ball.rolled(own, footage)
+    assert (found is not None) == rolls
+    if found is not None:
+        assert np.degrees(2 * np.arccos(np.clip(np.abs((found.quats * body.quats).sum(axis=1)), 0, 1))).max() < 20
+
+
+def test_what_of_a_ball_is_not_seen_at_the_start_gets_the_colours_of_later_frames():
+    footage, body, columns, labels = rolling_film(True)
+    front = (labels == 0) | (columns[0] @ [0, -1, 0.6] > 0)
+    cloud = GaussianCloud.create(*(torch.from_numpy(c[front].copy()) for c in columns))
+    labelled = Labelled.labelled(Parameters.of(cloud), labels[front])
+    before = len(labelled)
+    Ball(np.zeros(3), 0.15).filled(labelled, 1, body, footage)
+    added = labelled.columns()[0][before:]
+    assert len(added) > 20 and (labelled.labels[before:] == 1).all()
+    assert np.abs(np.linalg.norm(added, axis=1) - 0.15).max() < 1e-4 and (added @ [0, -1, 0.6] < 0.05).all()
+    true = columns[4][:160, 0][np.argmax(added @ columns[0][:160].T, axis=1)]
+    off = np.abs(labelled.columns()[4][before:, 0] - true) * SH_C0
+    assert np.median(off) < 0.1  # of colours in [0, 1]
+
+
+def test_a_plane_and_a_box_are_no_balls():
+    rng = np.random.default_rng(3)
+    x, y = rng.uniform(-1, 1, (2, 200))
+    long = np.stack([3 * rng.uniform(-1, 1, 200), x, np.where(y > 0, 0.1, -0.1)], axis=1)
+    assert Ball.of(long, np.ones(200)) is None
+    plane = np.stack([x, y, np.ones(200)], axis=1)
+    found = Ball.of(plane, np.ones(200))
+    assert found is None or found.radius > 3  # so large that it does not go far for its size
 
 
 def wall() -> tuple[list[Camera], list[np.ndarray]]:
