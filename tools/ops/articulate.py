@@ -129,7 +129,12 @@ class Articulate(TargetedOp):
                 made, end = _opening_at(own, motion, most, start)
                 tracks = [made if t is own else t for t in motion.tracks]
                 return with_tracks(scene, tracks, max(stop, end)), (f"it opens by itself, now from {start:.3g} s",)
-            if self.when.stop is None and self.when.lasting is None:  # as fast as it opens by itself
+            closing = _closing(own, motion, goal) if self.change == "close" else None
+            if closing is not None and closing[0] < start and not self._has_end:
+                made, end = _closing_at(own, closing, start)
+                tracks = [made if t is own else t for t in motion.tracks]
+                return with_tracks(scene, tracks, max(stop, end)), (f"it closes by itself, now from {start:.3g} s",)
+            if not self._has_end:  # as fast as it opens by itself
                 end = start + max(_taken(own) * abs(goal - now) / abs(most), _LEAST)
             before = [t for t in own.times if t < start - _SAME]
             dense = np.unique(np.round([*before, *np.arange(before[-1], start, 1 / 30)], 9)) if before else np.zeros(0)
@@ -141,6 +146,11 @@ class Articulate(TargetedOp):
             stop = max(stop, end)
         tracks = [made if t is own else t for t in motion.tracks]
         return with_tracks(scene, tracks, stop), (told,)
+
+    @property
+    def _has_end(self) -> bool:
+        """Whether is said when it is done, or how long it takes."""
+        return self.when is not None and (self.when.stop is not None or self.when.lasting is not None)
 
     @property
     def _only_lasts(self) -> bool:
@@ -237,6 +247,22 @@ def _opening_at(own: Track, motion: Motion, most: float, start: float) -> tuple[
     last = float(times[moves[-1] + 1])
     made = playing(own, moved((low, high), (start, end), -math.inf, behind))
     return made, last if end < behind < math.inf else last + end - high
+
+
+def _closing(own: Track, motion: Motion, goal: float) -> tuple[float, float] | None:
+    """When a track that opens by itself begins to close, and when it is at a goal then; None if it never closes."""
+    times = np.linspace(motion.start, motion.stop, max(round((motion.stop - motion.start) * _GRID), 2))
+    angles = np.abs(angles_at(own, times))
+    widest = float(angles.max())
+    low = int(np.flatnonzero(angles > (1 - _OPEN / 2) * widest)[-1])
+    there = np.flatnonzero(angles[low:] <= abs(goal) + _OPEN / 2 * widest)
+    return (float(times[low]), float(times[low + there[0]])) if len(there) else None
+
+
+def _closing_at(own: Track, closing: tuple[float, float], start: float) -> tuple[Track, float]:
+    """A track that closes by itself, with its closing at a later time; until then it stays open. And when it ends."""
+    end = start + closing[1] - closing[0]
+    return playing(own, moved(closing, (start, end), -math.inf, math.inf)), end
 
 
 def _taken(own: Track) -> float:

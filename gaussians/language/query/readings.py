@@ -154,8 +154,9 @@ def _by_given_names(field: LanguageField, text: str, meant: frozenset[str], scor
         if not unseen and not g.named_by:
             continue
         own = label_matches(g.label, text)
-        other = worded and g.named_by != "" and not own and kinds.of(g.label) is kinds.of(text)
-        known = g.label_score >= OWN_NAME and (g.label in meant or own) and not other
+        same = kinds.of(text) is not None and kinds.of(g.label) is kinds.of(text)
+        other = worded and g.named_by != "" and not own and same
+        known = g.label_score >= OWN_NAME and (g.label in meant or own or (same and not worded)) and not other
         if unseen or known or other or _another_kind(g.label, text):
             scores[g.id] = float(known)
     return scores

@@ -6,8 +6,12 @@ with the names of things in the scene instead (`misspelled_name`, called by labe
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Sequence
 from functools import cache
+from importlib.util import find_spec
+from itertools import islice
+from pathlib import Path
 
 from ....gaussians import color as colors
 from ....gaussians.language.encoders.vocabulary import Vocabulary
@@ -26,6 +30,8 @@ _BEHIND_NOUN = bag(
     ". , ; ! and or but then to from on onto in into at by near next under behind beside with over above below "
     "between left right up down forward backward"
 )
+
+_COMMON = 8000  # merges of CLIP's encoding whose words are never taken for errors
 
 # Correct words that people use about rooms and that are one letter away from a word of the vocabulary.
 _CORRECT_WORDS = bag(
@@ -60,7 +66,7 @@ def correct_spelling(words: Sequence[Word], freely: bool = False) -> tuple[tuple
 def _correction(texts: Sequence[str], i: int) -> str:
     """The correction of an unknown word; "" if the word is known or may be a noun, or if several words are as near."""
     text = texts[i]
-    if is_word(text) or _noun_expected(texts, i):
+    if is_word(text) or _noun_expected(texts, i) or is_common(text):
         return ""
     near = likely_slips(text, _verbs()) if _verb_expected(texts, i) else likely_slips(text, _closed_words())
     near = frozenset(w for w in near if not text.startswith(w))  # "nicer" is a form of nice, not an error
@@ -72,7 +78,7 @@ def _correction(texts: Sequence[str], i: int) -> str:
 def _free_correction(texts: Sequence[str], i: int) -> str:
     """The most probable word of the closed vocabulary for an unknown word; a verb where one is expected."""
     text = texts[i]
-    if is_word(text):
+    if is_word(text) or is_common(text):
         return ""
     near = best_slip(text, _verbs() if _verb_expected(texts, i) else _closed_words())
     return "" if near and text.startswith(near) else near
@@ -113,6 +119,22 @@ def misspelled_name(text: str, there: frozenset[str]) -> str:
 def is_word(text: str) -> bool:
     """Whether a word is taken to be spelt correctly."""
     return any(text in words() for words in (_listed_words, _closed_words, _verbs, _plurals))
+
+
+def is_common(text: str) -> bool:
+    """Whether a word is so common in captions of pictures that it is meant as it stands: "team" is not teal."""
+    return text in _captions()
+
+
+@cache
+def _captions() -> frozenset[str]:
+    """The most common words of the captions that CLIP learned from: the first merges of its byte-pair encoding."""
+    spec = find_spec("open_clip")
+    if spec is None or not spec.submodule_search_locations:
+        return frozenset()
+    with gzip.open(Path(spec.submodule_search_locations[0]) / "bpe_simple_vocab_16e6.txt.gz", "rt") as file:
+        merges = ["".join(line.split()) for line in islice(file, 1, 1 + _COMMON)]
+    return frozenset(word.removesuffix("</w>") for word in merges if word.endswith("</w>"))
 
 
 @cache

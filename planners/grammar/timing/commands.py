@@ -345,7 +345,9 @@ def _begun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
     moves = moves and (manner.whom is None or (sense == "fall" and _on_floor(manner)))
     drops = sense == "fall" and clause.ordered and not manner.fields
     lasts = clause.sense in ("be", "do") and clause.aspect == "event" and moment.taken and not manner.fields
-    if starts or moves or drops or lasts:
+    if starts and manner.doing == "close" and _is_openable(target, clause):
+        yield Command(({"op": "articulate", "target": target, "change": "close"},), needs=True)
+    elif starts or moves or drops or lasts:
         yield pace(target, "begin", needs=True)
 
 

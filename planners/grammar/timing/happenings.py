@@ -99,7 +99,8 @@ _EVENT_OVER = re.compile(
     r"(?: of (?P<who>.+?))? (?:is|has) (?:over|done|ended|finished|completed?)$"
 )
 _AT_TURN = re.compile(
-    r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at) (?:its|his|her|the|that) "
+    r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at|turns|rounds|goes (?:a)?round|has "
+    r"turned|has rounded|has reached) (?:its|his|her|the|that) "
     r"(?:turn|turning point|corner|bend|curve)$"
 )
 _FULLY = re.compile(r"\b(?:full|fully|completely|all the way|wide|entirely|totally)\b")

@@ -442,6 +442,8 @@ class TimeReader:
             if re.search(r"\b(?:off|out|on)$", command.text) and any(op["op"] in ("delete", "relight") for op in ops):
                 return None  # "the light should go out"
             kind = "path" if ways else kind
+        if moment.told or happening is not None:
+            ops = [_on_its_way(op) for op in ops]
         if command.timeless:
             moment = Moment()
         if happening is not None and happening.during.part in ("until", "until_end") and moment.stop is not None:
@@ -570,6 +572,14 @@ _SAID_SO = 0.5  # probability from which a kind of wish speaks against operation
 _LONGEST = 45  # words of an instruction with one wish
 _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b")
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
+
+
+def _on_its_way(op: Fields) -> Fields:
+    """What is put next to a thing at a time goes there: it stops where it is beside it, and looks for no free place."""
+    place = op.get("place") if op["op"] == "move" else None
+    if not isinstance(place, dict) or place.get("relation") != "next_to" or len(place.get("anchors", ())) != 1:
+        return op
+    return {**{k: v for k, v in op.items() if k != "place"}, "toward": place["anchors"][0]}
 
 
 def _with_delay(rest: str, moment: Moment, happening: Happening | None) -> tuple[str, Moment, Happening | None]:

@@ -39,6 +39,27 @@ REWORDED = tuple(
         ),
         (r"no one", "nobody"),
         (
+            rf"(?P<c>{_HUE})(?: ,)? (?:instead of|rather than|and not) (?:the |its |this |that )?(?:old |dull |boring |"
+            rf"ugly |usual |current |present )*(?:{_HUE})(?: it is| now)?",
+            r"\g<c>",
+        ),
+        (
+            r"(?:for|through|throughout|during) the (?:whole|entire|full|complete) (?:story|show|piece|thing|sequence)"
+            r"(?: of it)?",
+            "for good",
+        ),
+        (
+            r"(?:clear|take|get|strike|sweep|pull)s? (?P<np>(?:the|all|my|these|those|both) [a-z ]+?|it|them) (?:off|"
+            r"from|out of) the (?:set|stage|scene)(?: (?:altogether|completely|entirely))?",
+            r"remove \g<np>",
+        ),
+        (
+            r"(?:i|we) (?:would like|want|would prefer|need|would love) (?P<np>(?:the|all|my|these|those|both) "
+            r"[a-z ]+?) (?:taken|removed|cleared|cut)(?: out of| off| from)(?: the (?:set|stage|scene|picture|"
+            r"frame|shot|image|film))?(?: (?:altogether|completely|entirely))?",
+            r"remove \g<np>",
+        ),
+        (
             r", (?:just )?all (?:of (?:them|those|these) )?(?:but|except|except for|apart from|bar|save) (?=(?:the|"
             r"that|this|my|one))",
             "except ",

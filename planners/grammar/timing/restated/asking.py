@@ -8,6 +8,10 @@ from .wording import CAUSING, COLOR, EVENT, ING, PASTS, PLAIN, POINT, Rules, S, 
 
 RULES: Rules = (
     # how it is written
+    (r" [.!?;] (?:it|he|she|they) (?:does|do) not (?:need|have) to [a-z ]+$", ""),
+    (rf"\b(?:only )?(?:when|once|after) (?P<d>{DURATION}) (?:ha(?:s|ve) (?:passed|gone|elapsed)|(?:is|are) (?:over|up|"
+     r"gone|past))(?: by)?\b", r"at \g<d>"),
+    (r"(?: ,)? please$", ""),
     (r"\bthats\b", "that is"),
     (r"\bas (?P<x>(?:the|it|he|she) [^,]*?)(?: ,)? (?:and )?(?:hold|keep|stays?|leave) (?:that|it|so|there|like that)"
      r"(?: that way| so| like that)? (?:till|until|to) the (?:very )?end$", r"when \g<x>"),
@@ -54,6 +58,46 @@ RULES: Rules = (
     (r"\b(?:take|takes|get|have|keep|leave|move|put)s? (?P<np>(?:the|all the|my) [a-z ]+?|it|them) out of (?:the "
      r")?(?:view|sight|shot|frame|picture|image|way of the camera)\b(?: (?:altogether|completely|entirely))?",
      r"hide \g<np>"),
+    (r"^please (?=(?:the|my|all|every) )", ""),
+    (r"\bought to\b", "should"),
+    (r"\barriv(?P<s>es?|ing) to (?=the |my |its )", r"arriv\g<s> at "),
+    (r"^hide (?P<np>.+?) from (?:us|me|everyone|everybody|sight|view|the (?:camera|audience|viewers?))\b",
+     r"hide \g<np>"),
+    (r"\b(?:clear|take|get|strike|sweep|pull|bring)s? (?P<np>(?:the|all|my|these|those|both) [a-z ]+?|it|them) (?:off|"
+     r"from|out of) the (?:set|stage|scene)\b(?: (?:altogether|completely|entirely))?", r"remove \g<np>"),
+    (r"^(?:i|we) (?:would like|want|would prefer|need|would love) (?P<np>(?:the|all|my|these|those|both) [a-z ]+?) "
+     r"(?:taken|removed|cleared|cut)(?: out of| off| from)(?: the (?:set|stage|scene|picture|frame|shot|image|film))?"
+     r"(?: (?:altogether|completely|entirely))?$", r"remove \g<np>"),
+    (r"^take (?P<np>the [a-z ]+?) out (?=(?:from|between|for|until|till) )", r"hide \g<np> "),
+    (r"\b(?:do|doing) (?P<np>it|him|her|them) (?=(?:light |dark |bright )?(?:"
+     rf"{COLOR})(?: |$))", r"make \g<np> "),
+    (rf"\b(?P<c>{COLOR}) as (?:a|an|the) (?!(?:second|minute|whole)\b)[a-z]+\b", r"\g<c>"),
+    (rf"\b(?P<c>{COLOR})(?: ,)? (?:instead of|rather than|and not|not) (?:the |its |this |that )?(?:old |dull |boring |"
+     rf"ugly |usual |current |present )*(?:{COLOR})(?: it is| now| as now)?(?= ?(?:[,.]|at |from |when |for |$))",
+     r"\g<c>"),
+    (r"(?: ,)? (?:as )?(?:quick|quickly|fast|soon) as (?:you|he|she|they|it) (?:can|could|likes?)$", ""),
+    (r"\b(?P<n>a|per|each|every|half a|one) sec\b", r"\g<n> second"),
+    (r"\b(?:the )?drawer (?P<w>should |must |to |can |could )?emerge(?P<s>s?)\b", r"the drawer \g<w>come\g<s> out"),
+    (r"^(?:i|we) would like if (?P<np>(?:the|my) [a-z ]+?) (?P<v>[a-z]+)s (?=[a-z0-9])", r"i want \g<np> to \g<v> "),
+    (rf"\b(?:needs?|take|takes|use|uses) (?:just |only )?(?P<d>{DURATION}) for (?:his|her|its|the) (?:whole |entire |"
+     r"full )?(?:walk|way|trip|journey|route|path|roll|ride)\b", r"take \g<d>"),
+    (r"\b(?P<w>leave|keep)(?P<np> (?:the |my )?[a-z ]+?) (?:hanging|standing|gaping|sitting) open\b",
+     r"\g<w>\g<np> open"),
+    (r"^(?:(?:i|we) |you )?do not need (?P<np>the [a-z]+) (?:(?:to be|to open|open) )?(?:that|so|this) (?:wide|far|"
+     r"open|high)(?: open)? , (?P<d>(?:\d+|[a-z]+) (?:degrees?|deg|°)) (?:will do|is enough|is plenty|would do|"
+     r"suffices?|is fine)$", r"open \g<np> by \g<d>"),
+    (r"^offset (?P<np>(?:the|my) [a-z ]+?)(?: layer| clip| track| animation)? (?:by )?(?P<d>.+ (?:later|earlier|"
+     r"sooner))$", r"start \g<np> \g<d>"),
+    (r"\b(?P<v>reverse|delay|start|stop|freeze|pause|rewind) (?P<np>the [a-z]+(?: [a-z]+)?) (?:animation|layer|clip|"
+     r"track)\b", r"\g<v> \g<np>"),
+    (r"\bpause for (?:breath|air|thought|effect)\b", "pause"),
+    (r"\b(?P<w>lingers?|loiters?|tarry|hangs? (?:around|about|on)|stays? (?:put|up)|holds? on|sits? tight)(?: up| down|"
+     r" over)?(?: there| here)?(?: (?:on|in|at) (?:the|its) [a-z]+)? (?=(?:until|till) )", "wait "),
+    (rf"^(?P<x>.*\bthe (?:{COLOR}) (?P<n>[a-z]+?)s? .*?\bthen )the (?P<c>{COLOR})$", r"\g<x>the \g<c> one"),
+    (r"\b(?:make|do|take|perform|turn)(?P<s>s?) (?:one|a|a single|1) (?:(?:slow|quick|full|complete|single|whole|"
+     r"gentle|lazy|big)[ ,]+)+(?:turn|rotation|spin|revolution|twirl|pirouette)\b", r"spin\g<s> once"),
+    (r"^(?:only )?(?:send|let|have|make|roll)?s? ?(?P<np>the [a-z ]+?) (?:(?:go|goes|roll|rolls|travel|travels|move|"
+     r"moves|get) )?(?:only )?half as far(?: as (?:it does )?now)?$", r"let \g<np> go only half the way"),
     (r"\b(?:in|for|during) this version\b", ""),
     (r"^(?:(?:oh|ah|well|so|right|hello|hi|okay|ok|now|um|uh|perhaps|maybe|actually|hmm|and then|and|but) (?:[,!.] "
      r")*)+(?=\S)", ""),

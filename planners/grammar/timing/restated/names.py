@@ -36,6 +36,9 @@ RULES: Rules = (
      r"[a-z]+)?(?= ?(?:[,.]|$))", r"\g<d>"),
     (r"\b(?P<v>(?:drive|roll|move|walk|go|come|slide|run|fly|hop)s?)(?: up| over)? and (?:then )?(?:stop|park|halt|"
      r"wait|stand|stay)s? (?=(?:beside|next to|by|near|in front of|behind|at|on) )", r"\g<v> "),
+    (r"(?P<v>\b(?:drive|roll|move|walk|go|come|slide|run|fly|hop)s? (?:[a-z]+ )*?(?:\d+(?:\.\d+)?|one|two|three|half a)"
+     r" ?(?:cm|m|met(?:re|er)s?|centimet(?:re|er)s?))(?: ,)? and (?:then )?(?:stop|park|halt|wait|stand|stay|rest)s?"
+     r"(?: there| still| here)?$", r"\g<v>"),
     # which
     (rf"\bthe (?:whole|entire|complete|full) (?P<e>{EVENT}|action) (?=of the )", r"the \g<e> "),
     (r"\bthe (?:whole |entire )?(?P<x>[a-z]+(?: [a-z]+)?) action\b", r"the \g<x> motion"),

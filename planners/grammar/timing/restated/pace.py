@@ -48,8 +48,8 @@ RULES: Rules = (
      r")?(?:to|at) (?P<f>half|a third|a quarter|double|twice|triple) (?:of )?(?:its|the|his|her) speed\b",
      r"play \g<x> at \g<f> speed"),
     (r"\b(?P<n>two|three|four|five|\d+) times (?:as )?slow(?:er|ly)?\b", r"\g<n> times slower"),
-    (r"(?: ,| and)?(?: let us)? say (?=(?:over|in|at|by|for|about|around|half|twice|double|a |an |\d|one|two|three|"
-     r"four|five|ten) ?)", " "),
+    (r"(?: ,| and)?(?: let us)? say (?=(?:right |exactly )?(?:over|in|at|by|for|about|around|half|twice|double|a |an |"
+     r"\d|one|two|three|four|five|ten) ?)", " "),
     (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {IT} (?:(?:does|do|is|are|did) )?(?:at present|at "
      r"the moment|right now|currently|so far)\b", r"\g<a>"),
     (rf"^(?P<f>{SHARE}) (?:speed|pace|tempo) (?:on|for) (?P<x>.+)$", r"play \g<x> at \g<f> speed"),
@@ -106,6 +106,10 @@ RULES: Rules = (
     # how, in passing
     (r"(?: ,)? (?:as (?:though|if)|like) (?:he |she |it )?(?:is |was |were )?(?!(?:no|any|some|every)thing)"
      r"[a-z]+ing(?: [a-z]+)?(?= ?(?:[,.]|and\b|$))", ""),
+    (r"(?: ,)? as (?:if|though) (?:the|its|his|this|that|my) [a-z ]+? (?:was|were|is|had|has|would)\b[^.]*$", ""),
+    (r"^(?:crank|speed|rev|gear|wind)(?: up)? (?P<np>(?:the|that|this|my) [a-z]+(?: [a-z]+)?)(?: up)?(?: ,| to)+ (?P<r>"
+     r"(?:one|two|three|four|half a|\d+(?:\.\d+)?) (?:turns?|rounds?|revolutions?) (?:a|per|each|every) (?:second|"
+     r"minute))$", r"spin \g<np> at \g<r>"),
     (r"(?: ,)? (?:nicely|neatly|dramatically|elegantly|gracefully|majestically|mysteriously|magically|happily|sadly|"
      r"proudly|obediently|politely|dutifully|cheerfully|spookily|silently|quietly|on its own|all by itself|by itself|"
      r"for (?:me|us|you)|spinny|in style|like magic)(?= |$)", ""),

@@ -40,6 +40,25 @@ RULES: Rules = (
     # how a time is named
     (rf"(?P<w>\b(?:waits?|holds?|pauses?|stays?)\b.*? (?:till|until) .+?)(?: ,)? before {IT} (?:sets? off|{BEGIN}|{S})"
      r"(?: (?:down|off|out|to move|moving))*$", r"\g<w>"),
+    (r"\b(?P<w>when|once|until|till|as soon as|after) (?:at last|finally|eventually|at long last) ", r"\g<w> "),
+    (r"^(?P<x>.*\b(?:pause|wait|stop|halt|freeze)s?\b.*? (?:for|at|when) .*?)(?: ,)? (?:and |then )+(?:go|goes|walk|"
+     r"walks|continues?|carry|carries|moves?|heads?|rolls?) (?:on|onwards?)(?: (?:to|toward|towards|into) (?:the|its|"
+     r"his) [a-z]+)?$", r"\g<x>"),
+    (r"\b(?:at|in) the (?:exact |very )?middle of the (?:film|clip|video|movie|shot|scene|sequence)\b",
+     "halfway through the film"),
+    (r"\b(?:for|through|throughout|during) the (?:whole|entire|full|complete) (?:story|show|piece|thing|sequence|"
+     r"length|duration|run)\b(?: of (?:it|the film))?", "for the whole film"),
+    (r"\b(?:from (?:the )?(?:beginning|start) (?:to|until|till) (?:the )?(?:end|finish))\b", "from start to finish"),
+    (r"\b(?:right |straight )?from the (?:off|outset|get ?-? ?go|word go)\b", "from the start"),
+    (rf"\b(?:through|throughout|in|during|over|for) the (?:opening|initial) (?P<d>{DURATION})",
+     r"for the first \g<d>"),
+    (rf" , (?:for |only |just |exactly )*(?P<d>{DURATION}) long\b", r" for \g<d>"),
+    (rf"^at (?P<a>{POINT}) (?:can |could |should |let |please |, )*(?P<x>(?:the|my) .+? (?:spin|turn|rotate|move|roll|"
+     rf"slide|go)s?\b.*?)(?: ,)? and (?:then )?(?:finish|end|be finished|be done)(?:es|s)? (?:at|by) (?P<b>{POINT})$",
+     lambda m: f"let {m['x']}{from_to(m)}"),
+    (rf"^(?:make |turn |paint |colou?r |let )?(?P<x>(?:the |my )?[a-z]+(?: [a-z]+)??) (?:to |into |go )?(?P<c>{COLOR}) "
+     rf"at (?P<a>{POINT})(?: ,| and| then)+ (?:it |goes |go )*back to (?:its|the|his|her) (?:own |normal |usual |old |"
+     rf"first |original |former )+(?:colou?r |self |look |one )?(?:again )?at (?P<b>{POINT})$", colored),
     (r"\bopen (?:full|entirely|in full)(?= ?(?:,|$))", "fully open"),
     (r"\b(?P<n>\d+) ?(?:st|nd|rd|th) second\b", r"\g<n> seconds"),
     (r"\bfor the (?:period|time|while|stretch) (?:that |when |in which )?(?=(?:it|he|she|the [a-z]+(?: [a-z]+)?) (?:is|"
@@ -63,14 +82,29 @@ RULES: Rules = (
     (rf"^(?P<np>(?:the |my )?[a-z ]+?) (?:(?:need|needs|should|must|may|has) )?(?:to )?(?:only )?(?:{PLAIN}|{S}) "
      r"(?:only )?(?:as far as|up to|until|to) the (?:point|spot|place) where (?:it|he|she) turns\b",
      r"\g<np> should stop when it turns"),
+    (r"\b(?:let|make|have) (?:it|him|her|them|(?:the|my) [a-z ]+?) (?:stand|wait|stay|rest|hang)(?: open| there| "
+     r"out)? (?:a bit|a while|a little|a little while|a moment|for a bit|for a while|for a moment)(?: ,)? and "
+     r"(?:then )?", ""),
+    (r"\b(?P<w>start(?:s|ing)? closing) (?:(?:a bit|a little|much|far) )?(?:sooner|earlier|later)(?: ,)? (?=(?:right "
+     r"|exactly |already )?(?:at|from) )", r"\g<w> "),
+    (r"\bmid ?-? ?(?:fall|air|flight|swing|walk|roll|way|turn)\b(?! (?:between|up|down|through))", "halfway"),
+    (r"(?: ,)? (?:and )?(?:then )?let (?:gravity|physics|nature) [a-z ]+$", ""),
+    (r"^(?P<x>(?:hide|paint|make|turn|stop|freeze) .+? from [a-z0-9. ]+? (?:to|until|till) [a-z0-9. ]+?)(?: ,)? "
+     r"(?:and )?(?:then )?(?:bring|put|give|get) (?:it|him|her|them) back(?: (?:after(?:wards?)?|then|again|after that))?$",
+     r"\g<x>"),
+    (rf"(?:^|(?<=[.,;] ))(?:let |make |have )?(?P<np>(?:the |my )?[a-z ]+?) waits? (?:until|till|untill) (?P<d>{POINT}) "
+     r"before (?:it |he |she )?(?:starts? |begins? )?(?:to )?(?:(?:(?:slid(?:es?|ing)|swing(?:s|ing)?|go(?:es|ing)?|"
+     r"mov(?:es?|ing)|com(?:es?|ing)) (?:back in|shut|in|closed|back))|clos(?:es?|ing)|shut(?:s|ting)?)(?: again)?$",
+     r"close \g<np> at \g<d>"),
     (rf"\b(?P<w>waits?) (?:until|till|untill) (?P<d>{POINT}) before (?:it|he|she|they) (?:{S}|{PLAIN}|starts?|"
      r"begins?)\b", r"\g<w> until \g<d>"),
     (rf"\b(?P<v>starts?|begins?) (?:at|after|from) (?P<a>{POINT}) and (?:then )?(?:work|run|turn|go|last|spin|move|"
      rf"keep going)s? (?:until|till|to|up to) (?P<b>{POINT})", lambda m: f"{m['v']}{from_to(m)}"),
     (r"\b(?P<v>(?:freez|stop|paus|halt)(?:es?|s|ing)? .+?) , (?:and )?(?:then )?(?:hold|wait|pause|stay|rest)s?(?: "
      rf"(?:it|him|her|there|still|for))* (?P<d>{DURATION})", r"\g<v> for \g<d>"),
-    (r"\b(?P<w>start|begin)(?P<s>s|ing)? (?:to )?(?:slid(?:e|ing)|swing(?:ing)?|go(?:ing)?|mov(?:e|ing)|com(?:e|ing)|"
-     r"roll(?:ing)?) (?:shut|closed|back in|in|back)\b", "close"),
+    (r"\b(?P<w>start|begin)(?P<s>s|ing|ning)? (?:to )?(?:slid(?:e|ing)|swing(?:ing)?|go(?:ing)?|mov(?:e|ing)|com(?:e|"
+     r"ing)|roll(?:ing)?) (?:shut|closed|back in|in|back)\b(?: again)?", r"\g<w>\g<s> closing"),
+    (r"\b(?P<w>starts?|begins?|starting|beginning) (?:to )?(?:close|shut)(?: again)?(?= |$)", r"\g<w> closing"),
     (r"(?: ,)? (?:only|just) (?:in|for|during|at) (?:this|that) (?:moment|time|part|bit)\b", ""),
     (r"^(?P<x>do not let .+? [a-z]+) (?:, |and )+(?:just |simply )*(?:keep|leave|let) (?:it|them|him|her)(?: stay| "
      r"be)? (?:up|down|over|right|there|where|on|in|at)\b[a-z ]*$", r"\g<x>"),
@@ -84,8 +118,9 @@ RULES: Rules = (
     (r"\b(?:spread|stretched|drawn|spread out|drawn out|stretched out) over (?=[a-z0-9])", "over "),
     (r"\b(?:at (?:the|his|her|its) corner|(?:at|in) (?:the|his|her|its) (?:turning point|turning|turn|bend|curve))\b",
      "when it turns"),
-    (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:goes|carries|moves|walks|rolls|continues|proceeds|heads|"
-     r"drives) ?(?:on|onwards?|off)?(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
+    (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:is )?(?:go(?:es|ing)|carr(?:ies|ying)|mov(?:es|ing)|walk"
+     r"(?:s|ing)|roll(?:s|ing)|continu(?:es|ing)|proceed(?:s|ing)|head(?:s|ing)|driv(?:es|ing)) ?(?:on|onwards?|off)?"
+     r"(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
     (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:(?:must|should|has to|shall|can) )?(?:stays?|remains?|keeps?|is "
      r"left) (?:so|that way|like that|there|still|gone|hidden|put|where it is)(?: (?:until|till|to) the (?:very "
      r")?end(?: of [a-z ]+)?)$", ""),
