@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
-from ....gaussians.world.words import plural
+from ....gaussians.world.words import plural, singular
 from ....tools.when import ALONE, During, Part
 from . import manner as manners
 from .clauses import Clause, owner, told
@@ -149,11 +149,18 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     at_rest = sense in ("be", "stay") and manner.state == "still" and manner.whom is not None
     if at_rest and manner.only("state", "at", "whom", "goal"):
         return "moving", _ENDED  # "it is lying still at the wall"
-    ended = clause.form == "past" and bool({"has", "have", "is", "are", "was", "were", "had"} & set(clause.aux))
+    told = set(clause.aux)
+    ended = clause.form == "past" and bool({"has", "have", "is", "are", "was", "were", "had"} & told)
+    ended |= clause.form == "plain" and bool({"has", "have", "had"} & told)  # "it has come out"
     place = _RELATED.get(manner.at) if manner.whom is not None else None
     only_place = manner.only("goal", "at", "whom")
     if sense == "start" and manner.doing in ("open", "close") and manner.only("doing"):
         return ("opening" if manner.doing == "open" else "closing"), _BEGINS
+    if ended and sense in MOTION and sense not in ("open", "close") and manner.only("state", "back"):
+        if manner.state == "open":
+            return "fully_open", _COMES  # "it has come all the way out"
+        if manner.state == "closed":
+            return "closing", _HAS_SHUT
     slides = manner.doing == "move" and manner.state in ("open", "closed") and manner.only("doing", "state", "back")
     if sense == "start" and slides:  # "it starts sliding back in"
         return ("opening" if manner.state == "open" else "closing"), _BEGINS
@@ -257,6 +264,11 @@ def _part(word: str, course: _Course) -> Part:
     return course.through
 
 
+_ONE_OF = re.compile(
+    r"^(?:the )?(?P<rank>first|last)(?: one)? of (?:the|those|these|all|all the)(?: two| three| four)? (?P<noun>[a-z]+)$"
+)
+
+
 def _who(said: str, thing: Thing) -> Query | None:
     said = re.sub(
         r" (?:itself|finally|then|just|both|all|also|actually|again|already|there|completely)$", "", said.strip()
@@ -268,6 +280,7 @@ def _who(said: str, thing: Thing) -> Query | None:
         return thing("everything that moves")
     if not said or len(said.split()) > 7 or _PEOPLE.match(said):
         return None
+    said = _ONE_OF.sub(lambda m: f"the {m['rank']} {singular(m['noun'])}", said)
     if (first := re.match(r"^(?:the )?(?:first|last|other) (?=\w)", said)) is not None:
         noun = said[first.end() :]
         if noun != "one" and "last" in first[0] and (one := thing(f"the {noun} that moves last")) is not None:

@@ -19,6 +19,7 @@ TIME_WORDS = re.compile(
     r"earlier|"
     r"sooner|slowly|gradually|halfway|way back|(?:half|double) speed|(?:whole|entire|full|complete) (?:time|clip|"
     r"film|video|scene|shot|movie|thing)|middle of the (?:film|clip|video|movie|shot)|half as far|"
+    r"on the [a-z]+ [a-z]+ing|"
     r"all the time|way through|pace|tempo|always|permanently|throughout|"
     r"forever|other way|crazy|let|last|beginning|clip|do|does|doing|from \d\S* (?:to|until|till)|between \d|direction|"
     r"speed|moving|moves|that move|not|never|out|back|quick(?:er|ly)?|twice|as fast)\b"

@@ -400,7 +400,8 @@ class TimeReader:
     ) -> tuple[Fields, ...] | None:
         if not said or (happening is None and _TIME_FIRST.match(said)):
             return None
-        if happening is not None and not moment.empty and moment.lasting is None and moment.stop is not None:
+        begins = happening is not None and happening.during.part in ("from", "after")
+        if happening is not None and not begins and moment.stop is not None and moment.lasting is None:
             return None
         ends = happening is not None and happening.during.part in ("until", "until_end")
         if ends and moment.start is not None and any(map(_AT_A_TIME.match, moment.said)):

@@ -44,7 +44,8 @@ def when_of(moment: Moment, during: During | None, kind: str, op: Fields) -> Whe
     elif lasting is None and moment.stop is None:
         lasting = SLOW if moment.slowly else BRIEF if moment.quickly and kind == "path" else None
     stop: End | None = None if lasting is not None else moment.stop
-    if kind == "path" and isinstance(start, float) and start < 0 and lasting is None and stop is None:
+    goes = kind == "path" or op.get("turns") is not None
+    if goes and isinstance(start, float) and start < 0 and lasting is None and stop is None:
         stop = "end"  # "in the last two seconds" is there at the end
     ends = during is not None and during.part in ("from", "after") and moment.always
     if kind == "path" and ends and stop is None and lasting is None:
@@ -68,6 +69,8 @@ def closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) ->
 def of_one_movement(said: str, ops: Sequence[Fields]) -> tuple[Fields, ...]:
     """Operations with the movement of which words tell how long it takes, or how much later it is: "let the drawer
     close slower" says nothing of how it opens."""
+    if _BOTH.search(said):
+        return tuple(ops)
     opens, closes = _OPENS.search(said) is not None, _CLOSES.search(said) is not None
     if len(ops) != 1 or opens == closes or not _is_paced(ops[0]):
         return tuple(ops)
@@ -86,6 +89,7 @@ def _is_paced(op: Fields) -> bool:
     return op["change"] in ("speed", "later") and when is None
 
 
+_BOTH = re.compile(r"\b(?:in and out|out and in|both|opening and closing|open and close)\b")
 _OPENS = re.compile(r"\b(?:open(?:s|ing)?|out)\b")
 _CLOSES = re.compile(
     r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back(?: in)?|(?:go|goes|slides?|comes?|going|sliding) in)\b"

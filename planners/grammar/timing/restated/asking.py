@@ -4,14 +4,31 @@ from __future__ import annotations
 
 from ..moments import DURATION
 from ..verbs import SENSES, any_of
-from .wording import CAUSING, COLOR, EVENT, ING, PASTS, PLAIN, POINT, Rules, S, plain_of, wished
+from .wording import CAUSING, COLOR, EVENT, ING, NUMBER, PASTS, PLAIN, POINT, Rules, S, plain_of, wished
 
 RULES: Rules = (
     # how it is written
-    (r" [.!?;] (?:it|he|she|they) (?:does|do) not (?:need|have) to [a-z ]+$", ""),
+    (r"(?: ,)* [.!?;] (?:it|he|she|they) (?:does|do) not (?:need|have) to [a-z ]+$", ""),
     (rf"\b(?:only )?(?:when|once|after) (?P<d>{DURATION}) (?:ha(?:s|ve) (?:passed|gone|elapsed)|(?:is|are) (?:over|up|"
      r"gone|past))(?: by)?\b", r"at \g<d>"),
     (r"(?: ,)? please$", ""),
+    (rf"\bseconds? (?P<a>{NUMBER}) (?:through|thru|to|till|until|-|–) (?P<b>{NUMBER})\b",
+     r"from \g<a> to \g<b> seconds"),
+    (r"^(?:bye bye|bye|goodbye|farewell|so long) (?P<np>[a-z]+(?: [a-z]+)?) [.,!] (?P<v>make|let|have|hide|remove) it"
+     r"\b",
+     r"\g<v> the \g<np>"),
+    (r" , (?:peekaboo|boo|voila|tada|ta da|bam|boom|poof|whoosh|surprise|hooray|yay|hurrah|cheers|abracadabra|presto)$",
+     ""),
+    (r"^(?:up)?on (?P<np>(?:the|my) [a-z]+) (?P<v>[a-z]+ing)\b", lambda m: f"when {m['np']} {plain_of(m['v'])}s"),
+    (rf"\b(?:snap|switch|change|flip|set|fade|jump) (?P<np>(?:the|my) [a-z ]+?|it) (?:over )?to (?P<c>{COLOR})\b",
+     r"turn \g<np> \g<c>"),
+    (rf"(?: ,)? and (?:then )?(?:{COLOR}|normal|itself) again(?: (?:after (?:that|this)|afterwards|then|later))?$", ""),
+    (r"(?: ,)? (?:and )?then (?:it|he|she) (?:(?:can|may|should|is to|shall) )?(?:roll|walk|go|move|drive|slide|fall|"
+     r"continue)s? on(?:wards)?(?: to (?:the|its) [a-z]+)?$", ""),
+    (rf" , (?:in )?(?P<d>{DURATION}) (?:tops|max|maximum|at most|at the most|no more)$", r" in \g<d>"),
+    (r"(?: ,)? (?:from )?start to finish$", " from start to finish"),
+    (rf"\b(?P<w>for|in|during|over) (?:the |my |its )?(?:closing|final|concluding) (?P<d>{DURATION})",
+     r"\g<w> the last \g<d>"),
     (r"\bthats\b", "that is"),
     (r"\bas (?P<x>(?:the|it|he|she) [^,]*?)(?: ,)? (?:and )?(?:hold|keep|stays?|leave) (?:that|it|so|there|like that)"
      r"(?: that way| so| like that)? (?:till|until|to) the (?:very )?end$", r"when \g<x>"),
@@ -88,7 +105,8 @@ RULES: Rules = (
      r"suffices?|is fine)$", r"open \g<np> by \g<d>"),
     (r"^offset (?P<np>(?:the|my) [a-z ]+?)(?: layer| clip| track| animation)? (?:by )?(?P<d>.+ (?:later|earlier|"
      r"sooner))$", r"start \g<np> \g<d>"),
-    (r"\b(?P<v>reverse|delay|start|stop|freeze|pause|rewind) (?P<np>the [a-z]+(?: [a-z]+)?) (?:animation|layer|clip|"
+    (r"\b(?P<v>reverse|delay|start|stop|freeze|pause|rewind) (?P<np>the (?!whole|entire|full|complete)"
+     r"[a-z]+(?: [a-z]+)?) (?:animation|layer|clip|"
      r"track)\b", r"\g<v> \g<np>"),
     (r"\bpause for (?:breath|air|thought|effect)\b", "pause"),
     (r"\b(?P<w>lingers?|loiters?|tarry|hangs? (?:around|about|on)|stays? (?:put|up)|holds? on|sits? tight)(?: up| down|"

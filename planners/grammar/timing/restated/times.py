@@ -59,6 +59,11 @@ RULES: Rules = (
     (rf"^(?:make |turn |paint |colou?r |let )?(?P<x>(?:the |my )?[a-z]+(?: [a-z]+)??) (?:to |into |go )?(?P<c>{COLOR}) "
      rf"at (?P<a>{POINT})(?: ,| and| then)+ (?:it |goes |go )*back to (?:its|the|his|her) (?:own |normal |usual |old |"
      rf"first |original |former )+(?:colou?r |self |look |one )?(?:again )?at (?P<b>{POINT})$", colored),
+    (rf"^(?P<c>(?:when|once|as soon as) .+?)(?: ,)? (?P<x>(?:the|my) [a-z]+(?: [a-z]+)?) (?:should|must|can|is to|has "
+     r"to) (?:vanish|disappear|be hidden|go away|be gone)(?: ,| and| then)+ (?:return|come back|reappear|be back)s?"
+     rf"(?: only)? (?P<w>at|when|once) (?P<b>{POINT}|.+)$", lambda m: f"{m['c']} , hide {m['x']} until {m['b']}"),
+    (rf"\b(?P<v>rest|wait|stay|stand|sit)(?P<s>s?) (?:by|at|beside|near|next to|on) (?:the|its) [a-z]+ (?=for {DURATION} "
+     r"before (?:it|he|she) )", r"wait\g<s> "),
     (r"\bopen (?:full|entirely|in full)(?= ?(?:,|$))", "fully open"),
     (r"\b(?P<n>\d+) ?(?:st|nd|rd|th) second\b", r"\g<n> seconds"),
     (r"\bfor the (?:period|time|while|stretch) (?:that |when |in which )?(?=(?:it|he|she|the [a-z]+(?: [a-z]+)?) (?:is|"
@@ -90,10 +95,11 @@ RULES: Rules = (
     (r"\bmid ?-? ?(?:fall|air|flight|swing|walk|roll|way|turn)\b(?! (?:between|up|down|through))", "halfway"),
     (r"(?: ,)? (?:and )?(?:then )?let (?:gravity|physics|nature) [a-z ]+$", ""),
     (r"^(?P<x>(?:hide|paint|make|turn|stop|freeze) .+? from [a-z0-9. ]+? (?:to|until|till) [a-z0-9. ]+?)(?: ,)? "
-     r"(?:and )?(?:then )?(?:bring|put|give|get) (?:it|him|her|them) back(?: (?:after(?:wards?)?|then|again|after that))?$",
+     r"(?:and )?(?:then )?(?:bring|put|give|get) (?:it|him|her|them) back(?: (?:after(?:wards?)?|then|again|after "
+     r"that))?$",
      r"\g<x>"),
-    (rf"(?:^|(?<=[.,;] ))(?:let |make |have )?(?P<np>(?:the |my )?[a-z ]+?) waits? (?:until|till|untill) (?P<d>{POINT}) "
-     r"before (?:it |he |she )?(?:starts? |begins? )?(?:to )?(?:(?:(?:slid(?:es?|ing)|swing(?:s|ing)?|go(?:es|ing)?|"
+    (rf"(?:^|(?<=[.,;] ))(?:let |make |have )?(?P<np>(?:the |my )?[a-z ]+?) waits? (?:until|till|untill) (?P<d>{POINT})"
+     r" before (?:it |he |she )?(?:starts? |begins? )?(?:to )?(?:(?:(?:slid(?:es?|ing)|swing(?:s|ing)?|go(?:es|ing)?|"
      r"mov(?:es?|ing)|com(?:es?|ing)) (?:back in|shut|in|closed|back))|clos(?:es?|ing)|shut(?:s|ting)?)(?: again)?$",
      r"close \g<np> at \g<d>"),
     (rf"\b(?P<w>waits?) (?:until|till|untill) (?P<d>{POINT}) before (?:it|he|she|they) (?:{S}|{PLAIN}|starts?|"
@@ -118,9 +124,9 @@ RULES: Rules = (
     (r"\b(?:spread|stretched|drawn|spread out|drawn out|stretched out) over (?=[a-z0-9])", "over "),
     (r"\b(?:at (?:the|his|her|its) corner|(?:at|in) (?:the|his|her|its) (?:turning point|turning|turn|bend|curve))\b",
      "when it turns"),
-    (r"(?: ,)?(?: and| then| only)* before (?:it|he|she) (?:is )?(?:go(?:es|ing)|carr(?:ies|ying)|mov(?:es|ing)|walk"
-     r"(?:s|ing)|roll(?:s|ing)|continu(?:es|ing)|proceed(?:s|ing)|head(?:s|ing)|driv(?:es|ing)) ?(?:on|onwards?|off)?"
-     r"(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
+    (r"(?: ,)?(?: and| then| only)* before (?:(?:it|he|she) )?(?:is )?(?:go(?:es|ing)|carr(?:ies|ying)|mov(?:es|ing)|"
+     r"walk(?:s|ing)|roll(?:s|ing)|continu(?:es|ing)|proceed(?:s|ing)|head(?:s|ing)|driv(?:es|ing)) ?(?:on|onwards?|"
+     r"off)?(?: (?:to|toward|towards|into) (?:the|its) [a-z]+)?$", ""),
     (r"(?: ,)? (?:and|but)? ?(?:it |he |she )?(?:(?:must|should|has to|shall|can) )?(?:stays?|remains?|keeps?|is "
      r"left) (?:so|that way|like that|there|still|gone|hidden|put|where it is)(?: (?:until|till|to) the (?:very "
      r")?end(?: of [a-z ]+)?)$", ""),

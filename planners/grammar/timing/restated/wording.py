@@ -15,6 +15,7 @@ Rules = tuple[tuple[str, str | Callable[["re.Match[str]"], str]], ...]  # a patt
 PLAIN = any_of(MOTION, "plain")
 S = any_of(MOTION, "s")
 ING = any_of((*MOTION, "stop"), "ing")
+NUMBER = r"(?:\d+(?:\.\d+)?|zero|one|two|three|four|five)"
 IT = "(?:it|he|she|they)"
 NAMED = r"(?:(?:the|that|this|my|our|all the) )?[a-z]+(?: [a-z]+){0,2}?"
 EVENT = "(?:motion|movement|animation|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|move)"

@@ -55,7 +55,7 @@ _HALF = re.compile(r"\b(first|second|last|latter|other) half\b")
 _UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
 _HALFWAY = re.compile(
     r"^(?:when |once |at |as soon as )?(?:(?P<who>.+?) (?:is|has (?:gone|got)|gets) )?"
-    r"(?:half ?way|midway|half the way|in the middle of)"
+    r"(?:half ?way|midway|half the way|in the middle of|(?:in )?mid (?:fall|air|flight|swing|walk|roll|turn))"
     r"(?P<way>(?: (?:down|up|through|there|across|along|over|to|into|out|open|of))* ?(?P<what>.*))$"
 )
 _ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| in| point)*$")
@@ -307,7 +307,8 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
         told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
         seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
         seconds |= word == "one" and at > 0 and words[at - 1] in _AT and not then.isalpha()  # "starting at one"
-        if told != 1 or (seconds and word in ("1", "one")):
+        seconds &= word != "a" or (at > 0 and words[at - 1] in ("for", "over", "within", "in"))
+        if told != 1 or (seconds and word in ("1", "one", "a")):
             rate = words[max(0, at - 1)] in ("every", "each", "per")
             among = exact if seconds and not rate else held
             if not any(abs(told - value) < 0.01 or abs(told + 0.5 - value) < 0.01 for value in among):

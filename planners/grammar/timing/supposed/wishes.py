@@ -140,7 +140,7 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"backwards?|reverse|reversed": "reverse return",
     r"back": "return reverse close stay still hide order repeat pause",
     r"again": "repeat return close open stay still halt hide recolor reverse pause",
-    r"invisible|hidden|disappears?|vanish|vanishes|gone": "hide remove",
+    r"invisible|hides?|hidden|disappears?|vanish|vanishes|gone": "hide remove",
     r"shows?|shown|reveals?|visible": "hide",
     r"shut|shuts|close|closes": "close stay still open begin order together speed",
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
