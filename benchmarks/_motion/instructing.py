@@ -240,7 +240,8 @@ def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list
         start = next((a for a, _ in spans if abs(a - expect["start"]) <= _near(expect)), spans[-1][0])
         if any(a - NEAR <= expect["start"] <= b for a, b in spans):
             start = expect["start"]  # it goes on from another movement
-    if expect.get("start") is not None and not closes and abs(start - expect["start"]) > _near(expect):
+    slowed = max(1.0, 1 / (expect.get("factor") or 1.0))  # what begins slowly is seen to move so much later
+    if expect.get("start") is not None and not closes and abs(start - expect["start"]) > slowed * _near(expect):
         return f"it begins at {start:.2f} s"
     if closes and start < expect["start"] - _near(expect):
         return f"it closes at {start:.2f} s"

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from . import measuring
 from .relating import related, supporter
 from .room_places import AT_WALL, corner_of, in_corner, wall_of, zone
 from .survey import Survey, Thing
 
 _NEAR = 1.2  # metres: farther things are not told as neighbours
+_SMALL = 0.5  # metres: of what is smaller it is told that it is on the floor, where it might be on something
 
 
 def place_of(thing: Thing, survey: Survey) -> tuple[str, str]:
@@ -35,6 +37,12 @@ def _place_of(thing: Thing, survey: Survey) -> tuple[str, str]:
 
 
 def _on_floor(thing: Thing, survey: Survey) -> tuple[str, str]:
+    where, beside = _on_ground(thing, survey)
+    small = survey.scaled and max(measuring.sides(survey, thing)) < _SMALL
+    return (f"on the floor {where}" if small else where), beside
+
+
+def _on_ground(thing: Thing, survey: Survey) -> tuple[str, str]:
     beside = _beside(thing, survey)
     if in_corner(thing, survey.room):
         one, other, _ = corner_of(thing, survey.room)

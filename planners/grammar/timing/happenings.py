@@ -265,7 +265,8 @@ def _part(word: str, course: _Course) -> Part:
 
 
 _ONE_OF = re.compile(
-    r"^(?:the )?(?P<rank>first|last)(?: one)? of (?:the|those|these|all|all the)(?: two| three| four)? (?P<noun>[a-z]+)$"
+    r"^(?:the )?(?P<rank>first|last)(?: one)? of (?:the|those|these|all|all the)(?: two| three| four)? "
+    r"(?P<noun>[a-z]+)$"
 )
 
 

@@ -61,9 +61,9 @@ RULES: Rules = (
      rf"first |original |former )+(?:colou?r |self |look |one )?(?:again )?at (?P<b>{POINT})$", colored),
     (rf"^(?P<c>(?:when|once|as soon as) .+?)(?: ,)? (?P<x>(?:the|my) [a-z]+(?: [a-z]+)?) (?:should|must|can|is to|has "
      r"to) (?:vanish|disappear|be hidden|go away|be gone)(?: ,| and| then)+ (?:return|come back|reappear|be back)s?"
-     rf"(?: only)? (?P<w>at|when|once) (?P<b>{POINT}|.+)$", lambda m: f"{m['c']} , hide {m['x']} until {m['b']}"),
-    (rf"\b(?P<v>rest|wait|stay|stand|sit)(?P<s>s?) (?:by|at|beside|near|next to|on) (?:the|its) [a-z]+ (?=for {DURATION} "
-     r"before (?:it|he|she) )", r"wait\g<s> "),
+     rf"(?: only)? (?:at|when|once) (?P<b>{POINT}|.+)$", lambda m: f"{m['c']} , hide {m['x']} until {m['b']}"),
+    (rf"\b(?P<v>rest|wait|stay|stand|sit)(?P<s>s?) (?:by|at|beside|near|next to|on) (?:the|its) [a-z]+ (?=for "
+     rf"{DURATION} before (?:it|he|she) )", r"wait\g<s> "),
     (r"\bopen (?:full|entirely|in full)(?= ?(?:,|$))", "fully open"),
     (r"\b(?P<n>\d+) ?(?:st|nd|rd|th) second\b", r"\g<n> seconds"),
     (r"\bfor the (?:period|time|while|stretch) (?:that |when |in which )?(?=(?:it|he|she|the [a-z]+(?: [a-z]+)?) (?:is|"

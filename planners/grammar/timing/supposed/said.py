@@ -61,8 +61,8 @@ class Said:
 
     @cached_property
     def whose(self) -> Query:
-        """What the first name means."""
-        return self.thing(self.things[0]) or Query(last=True)
+        """What the first name means; of everything, what moves."""
+        return self.thing(with_moving(self.things[0])) or Query(last=True)
 
     def joined(self) -> Said:
         """The same, with the first two names as one if "and" joins them: "the table and the vase"."""

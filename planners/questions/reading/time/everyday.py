@@ -87,6 +87,41 @@ when: (what|which) (second|moment|instant|point) is it (that|when) | it is when 
 altogether: all told | all in all | in all | in sum | taken together | when all is added up
 """
 _AROUND = r"""
+ , (?:both|all|the two) (?:legs|parts|stretches|stages)(?: of .+?)?(?: included| together| combined)?$ =>
+^(?:quick |short |brief )?(?:summary|recap|overview|rundown)(?: of .+?)? , (?=\w) =>
+^(?:and |so |but )?after(?:wards)? , (?=\w) =>
+ , i mean , .+$ =>
+\b(spi|ru|begi)ning\b => \1nning
+\b(sto|dro|sli|fli)ping\b => \1pping
+\b(hi|si|ge|shu)ting\b => \1tting
+\bhow much of time\b => how much time
+\bmakes? (?:its|his|her|an|the) (?:entrance|entry) (?:onto|on to|on|into|to)\b => enters
+\bwhen the curtain (?:falls|comes down)(?: on (?:this|the) \w+)?\b => at the end
+\b(?:what|which) speed (?:does|did) (.+?) (?:keep|hold|have|go at)\b => what is the speed of \1
+^on average , what is the speed => what is the average speed
+^(what is the average speed of .+?) from (?:when (?:it|he|she)|its|his|the) (?:sets off|starts|start|begins|beginning|\
+leaves|first movement)(?: to move)? (?:to|until|till) (?:when )?(?:it|he|she|its|the)? ?(?:hits?|reaches|touches|stops\
+?|end|ends|arrives|finishes|rest)\b.*$ => \1
+^how long (?:did|does) it take (the \w+(?: \w+)?) to (?:get|go|swing|slide|come|move) from (?:closed|shut) to (?:its w\
+idest|fully open|wide open|open|all the way open|its maximum)$ => how long does \1 take to open
+^how long (?:did|does) it take (the \w+(?: \w+)?) to (?:get|go|swing|slide|come|move) from (?:fully |wide )?open to \
+(?:closed|shut)$ => how long does \1 take to close
+\b(?:stands?|sits?|stays?|remains?|waits?|hangs?)(?: there| out)? (?:all the way|fully|completely|wide|entirely) (?:op\
+en|out)\b => stay fully open
+^how long does (.+?) (?:hold still|stay still|wait|rest|stay|pause|stop|stand still) (?:while|when) (?:it is )?(?:all \
+the way|fully|completely) (?:out|open)$ => how long does \1 stay fully open
+\b(?:make|makes|made) it (?:all the way )?back in\b => close
+^(?:what is )?the (?:maximum|max|maximal|greatest|full|total) (?:extension|opening|extent|travel) of (.+?)(?: in (\w+)\
+)?$ => how many \2 does \1 open
+^(the \w+(?: \w+)?) (clos|open|mov|fall|turn|stop|roll)(?:e?s)( again| back)? or (?:no|not)$ => does \1 \2e\3
+\b(how many (?:full |complete )?(?:turns|rounds|rotations) does .+?) give(?: us| me)?\b => \1 make
+^(?:it|they|he|she) (.+?) where , (the \w+(?: \w+)?)(?: , (.+))?$ => where do \2 \1 \3
+\bthe (\w+) of the (\w+) (\w+) and (?:the one|that) of the (\w+)(?: one)?$ => the \1 of the \2 \3 and the \1 of the \4\
+ \3
+^(the \w+(?: \w+)?) turns (?:to|toward) which (?:side|direction|way)(?: , .+)?$ => which way does \1 turn
+^on what (?:is|are) (?:put |placed |standing |set |sitting )?(the .+)$ => what is \1 on
+^(?:[^,]+) (?:my|the|our) (\w+(?: \w+)?) , i (?:hope|think|guess|suppose|bet|trust) , (does|did|is|has) it\b => \2 the\
+ \1
 ^(?:out )?of (?:everything|all (?:the )?(?:things|objects|items|stuff)|the things|the objects)(?: (?:here|there|in \
 (?:the|this) room|in the scene|around))? , => 
  , if any(?:thing|one|body)?(?: at all)? ,(?= ) =>
@@ -95,7 +130,7 @@ _AROUND = r"""
 ^(?:(?:i |we )?(?:need|want|log|mark|note|give(?: me| us)?|show(?: me| us)?|get(?: me| us)?|tell(?: me| us)?) )?(?:\
 the )?(?:exact )?(?:time|second|moment|instant|timestamp|timecode)(?: (?:when|that|at which))?(?= (?:the|our|that) \
 [a-z]+(?: [a-z]+)? (?:hits|reaches|starts|stops|begins|ends|comes|gets|arrives|leaves|touches|lands|falls|opens|closes|\
-turns|moves|halts)\b) => when
+turns|moves|halts|is (?:fully |all the way |completely )?(?:open|closed|shut)|has)\b) => when
 ^(?:at |in )?(\w+(?:\.\d+)?) seconds?(?: in)? , has (.+?) (?:already|yet) (.+)$ => has \2 \3 by \1 seconds
 ^has (.+?) (?:already|yet) (.+) at (\w+(?:\.\d+)?) seconds?$ => has \1 \2 by \3 seconds
 \bfull (?:spins|laps|circles|rounds|rotations|circuits) => full turns
