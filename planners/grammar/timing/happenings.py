@@ -75,11 +75,11 @@ _PRONOUNS = ("it", "he", "she", "they", "that", "this")
 _PEOPLE = re.compile(r"^(?:i|we|you|people|guests?|everyone|someone|somebody|my .*|anyone|nobody|there)\b")
 _RELATIONS = {
     "on": "on top of|on|upon|over|across|along|above|onto|on to", "inside": "inside of|inside|within|in|into",
-    "under": "underneath|beneath|under|below", "next_to": "next to|beside|close to|near to|near|by|alongside|at|around",
+    "under": "underneath|beneath|under|below", "next_to": "next to|beside|close to|near to|near|by|alongside|around",
     "behind": "behind|in back of", "in_front_of": "in front of|before",
 }  # fmt: skip
 _RELATED = {said: relation for relation, phrases in _RELATIONS.items() for said in phrases.split("|")}
-_TO = ("to", "up to", "over to", "against", "as far as", "across to", "back to")
+_TO = ("to", "up to", "over to", "against", "as far as", "across to", "back to", "at")
 _DONE = re.compile(
     r"(?:\b(?:is|has|are|have|gets)|'s) (?:all )?(?:done|finished|through) (?:with )?(?:its |his |the )?[a-z]+ing$"
 )

@@ -3,7 +3,22 @@
 from __future__ import annotations
 
 from ..moments import DURATION
-from .wording import EVENT, ING, IT, NAMED, PLAIN, POINT, SHARE, Rules, S, rate, slowed_to, with_unit
+from .wording import (
+    EVENT,
+    IN_ORDER,
+    ING,
+    IT,
+    NAMED,
+    PLAIN,
+    POINT,
+    SHARE,
+    Rules,
+    S,
+    in_order,
+    rate,
+    slowed_to,
+    with_unit,
+)
 
 RULES: Rules = (
     # what is switched off
@@ -48,6 +63,7 @@ RULES: Rules = (
      r")?(?:to|at) (?P<f>half|a third|a quarter|double|twice|triple) (?:of )?(?:its|the|his|her) speed\b",
      r"play \g<x> at \g<f> speed"),
     (r"\b(?P<n>two|three|four|five|\d+) times (?:as )?slow(?:er|ly)?\b", r"\g<n> times slower"),
+    (IN_ORDER, in_order),
     (r"(?: ,| and)?(?: let us)? say (?=(?:right |exactly )?(?:over|in|at|by|for|about|around|half|twice|double|a |an |"
      r"\d|one|two|three|four|five|ten) ?)", " "),
     (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {IT} (?:(?:does|do|is|are|did) )?(?:at present|at "

@@ -79,6 +79,31 @@ def colored(found: re.Match[str]) -> str:
     return f"make {found['x']} {found['c']}{from_to(found)}"
 
 
+_HUE_FIRST = rf"(?:the )?(?:{HUES})(?: (?!and |then )[a-z]+)?(?:(?: to fall| falls| drops| goes| should fall)? first)?"
+_HUE_NEXT = (
+    rf"(?: ,| then| and| next| finally)+ (?:the )?(?:{HUES})"
+    r"(?: (?:one|book|ball|box|last|second|third|first|goes|falls|drops))*"
+)
+IN_ORDER = (
+    r"^(?P<head>.*\b(?:order|sequence|falls?|drops?|come down|way (?:about|round|around)|round)\b.*?)[ ,:.]+"
+    rf"(?:(?:that is|i e|so|first|namely|with) )*(?P<list>{_HUE_FIRST}(?:{_HUE_NEXT}){{1,3}}(?: (?:for|at) the "
+    r"(?:finale|end))?)$"
+)
+
+
+def in_order(found: re.Match[str]) -> str:
+    """ "the books should come down the other way about : blue , green , then red"."""
+    hues = re.findall(rf"\b(?:{HUES})\b", found["list"])
+    noun = re.search(rf"\b(?:{HUES}) (?!one|first|last|then|and|falls?|drops?|for|to)([a-z]+)", found[0])
+    noun = noun or re.search(
+        r"\b(?:the|all|my|two|three|four) ([a-z]+)s\b(?= (?:[a-z]+ )*?(?:fall|drop|come|tumble|in))", found[0]
+    )
+    if noun is None or len(set(hues)) != len(hues) or re.search(rf"\b(?:{HUES})\b", found["head"]):
+        return found[0]
+    name = noun[1].removesuffix("s")
+    return "let " + " , then ".join(f"the {hue} {name}{' fall first' if not i else ''}" for i, hue in enumerate(hues))
+
+
 def counted(found: re.Match[str]) -> str:
     """The article before a unit as a number, so that it begins no name: "a second lamp"."""
     return found[1] or "one "
