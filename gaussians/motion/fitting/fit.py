@@ -23,7 +23,6 @@ import torch
 from numpy.typing import NDArray
 
 from ...cloud import NO_GROUP, GaussianCloud
-from ...errors import UserError
 from ...fit.fitting import Settings, Status
 from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
@@ -34,12 +33,14 @@ from ..at import at
 from ..motion import Motion, Residual, Track
 from .axes import line_of
 from .bodies import Body, Columns, Labelled
+from .agreement import MARKS, SSIM, Agreement
 from .footage import Footage
+from .resting import Ends
 from .rolling import rolled
 from .seeds import LEAST, Flags, gone, halves, seeds
 from .sharing import shared
 from .simplify import track_of
-from .start import trainer
+from .start import ROOM, start_cloud, trainer
 from .tracking import Tracker
 from .training import Joint, Single
 
@@ -47,6 +48,8 @@ F64 = NDArray[np.float64]
 Detail = Literal["static", "rigid", "residual"]  # the motion that may be fitted: none, paths, and single Gaussians' too
 
 START = 0.3  # share of the training that goes to the scene at its start
+LASTING = 0.3  # share of the training that goes to what a moving camera sees for most of the time
+ROUND = 0.35  # of that, the length of each training of what rests at an end
 EXPLAINS = 0.7  # of the difference without a body, to which its path must bring the pictures
 MOST_BODIES = 12
 ALIKE = 0.01  # of the radius of the cameras: bodies whose paths differ by less, on average, are one
@@ -113,34 +116,77 @@ class _Film:
     ) -> None:  # fmt: skip
         self._photos, self._settings, self._detail, self._on_status = photos, settings, detail, on_status
         self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
-        if not self._footage.stands:
-            raise UserError(
-                "a film needs two or more cameras that stand and have a frame at the first time; "
-                "of one moving camera only what stands still can be fitted: leave out `time`"
-            )
         self._rng = np.random.default_rng(settings.seed)
-        self._started, self._told, self._loss = time.perf_counter(), 0.0, math.nan
+        self._started, self._told, self._loss, self._before = time.perf_counter(), 0.0, math.nan, 0
 
     def fit(self) -> FittedFilm:
         """All steps."""
         footage, settings = self._footage, self._settings
-        steps = settings.steps and max(1, round(START * settings.steps))
-        schedule = Schedule(steps, settings.seconds and START * settings.seconds, settings.coarse)
-        start = trainer(footage, self._photos, settings.max_gaussians, schedule, self._rng)
-        while start.progress < 1:
-            self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
-        labelled, bodies, tried = self._bodies(start.parameters)
+        labelled, bodies, tried, before = self._of_standing() if footage.stands else self._of_moving()
         budget = min(settings.max_gaussians, int(MORE * len(labelled)))
         joint = Joint(labelled, bodies, footage, budget, self._rng)
         left = None if settings.seconds is None else max(0.2 * settings.seconds, settings.seconds - self._seconds)
-        more = None if settings.steps is None else settings.steps - start.steps
+        more = None if settings.steps is None else settings.steps - before
         while (share := _share(joint, more, left)) < 1:
-            self._tell(joint.step(share), start.steps + joint.steps, START + (1 - START) * share, len(labelled))
-        scene, steps = self._scene(labelled, bodies, None), start.steps + joint.steps
+            self._tell(joint.step(share), before + joint.steps, START + (1 - START) * share, len(labelled))
+        scene, steps = self._scene(labelled, bodies, None), before + joint.steps
         if self._detail == "residual" and scene.motion is not None and self._photos.held_out:
             scene, more = self._with_single(scene, labelled, bodies, round(SINGLE * joint.steps))
             steps += more
         return FittedFilm(scene, measure_film(scene, self._photos.held_out), steps, self._seconds, tried)
+
+    def _of_standing(self) -> tuple[Labelled, list[Body], int, int]:
+        """What moves before cameras that stand, its paths, how many were tried, and the steps of the training."""
+        settings = self._settings
+        steps = settings.steps and max(1, round(START * settings.steps))
+        schedule = Schedule(steps, settings.seconds and START * settings.seconds, settings.coarse)
+        start = trainer(self._footage, self._photos, settings.max_gaussians, schedule, self._rng)
+        while start.progress < 1:
+            self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
+        return *self._bodies(start.parameters), start.steps
+
+    def _of_moving(self) -> tuple[Labelled, list[Body], int, int]:
+        """The same before a camera that moves: the film is followed from the end at which more rests."""
+        whole, footage = self._lasting(), self._footage
+        lasting, round_ = whole.parameters, max(1, round(ROUND * whole.steps))
+        still = Labelled.labelled(lasting, np.zeros(len(lasting), np.int32))
+        if self._detail == "static":
+            return still, [], 0, whole.steps
+        ends = Ends(lasting, footage, self._photos.extent, round_, self._rng, self._tell_start)
+        resting = ends.best()
+        steps = whole.steps + ends.steps
+        if resting is None:
+            return still, [], 0, steps
+        self._footage = resting.footage
+        labelled, bodies, tried = self._bodies(resting.parameters)
+        self._footage = footage
+        if not bodies:
+            return still, [], tried, steps
+        if resting.backwards:
+            _turn_around(labelled, bodies)
+        return labelled, bodies, tried, steps
+
+    def _lasting(self) -> Agreement:
+        """A training on what is there for most of the time, completed."""
+        settings, shots, photos = self._settings, self._footage.shots, self._photos
+        cloud = start_cloud(shots, photos, settings.max_gaussians, self._rng)
+        training = Agreement(shots, Parameters.of(cloud), int(ROOM * len(cloud)) + 1, photos.extent, self._rng)
+        steps = settings.steps and max(1, round(LASTING * settings.steps))
+        started, share, marks = time.perf_counter(), 0.0, list(MARKS)
+        while share < 1:
+            if marks and share >= marks[0][0]:
+                training.leave_out(range(len(shots)), marks.pop(0)[1])
+            self._tell_start(training.step(share, SSIM if len(marks) < len(MARKS) else 0.0), len(cloud))
+            gone = time.perf_counter() - started
+            share = training.steps / steps if steps else gone / (LASTING * (settings.seconds or 1.0))
+        return training
+
+    def _tell_start(self, loss: float, gaussians: int) -> None:
+        """Report progress of a training before that of all together."""
+        self._before += 1
+        settings = self._settings
+        share = self._before / settings.steps if settings.steps else self._seconds / (settings.seconds or 1.0)
+        self._tell(loss, self._before, min(share, START), gaussians)
 
     def _with_single(
         self, scene: Scene, labelled: Labelled, bodies: list[Body], steps: int
@@ -296,6 +342,15 @@ class _Film:
             self._told = now
             left = now * (1 / max(share, 1e-9) - 1)
             self._on_status(Status(steps, min(share, 1.0), self._loss, math.nan, gaussians, left))
+
+
+def _turn_around(labelled: Labelled, bodies: list[Body]) -> None:
+    """Put bodies that were followed backwards where they are at the first time, and their paths the right way round; in
+    place."""
+    for number, body in enumerate(bodies, 1):
+        rows, last = np.flatnonzero(labelled.labels == number), len(body.offsets) - 1
+        labelled.means[rows], labelled.quats[rows] = body.placed(last, labelled.means[rows], labelled.quats[rows])
+        bodies[number - 1] = body.started_at(last).backwards()
 
 
 def _covered(tracker: Tracker, times: NDArray[np.int64]) -> bool:

@@ -51,7 +51,7 @@ def gone(columns: Columns, footage: Footage) -> Flags:
     for c, camera in enumerate(footage.cameras):
         own = [t for t in range(times) if (c, t) in footage.frames]
         everything = np.ones((camera.height, camera.width), bool)
-        masks = [footage.changed(footage.frames[c, t], int(footage.first[c])) for t in own]
+        masks = [footage.moved(c, t) for t in own]
         found = weights(columns, camera, [everything, *masks])
         each.append((own, found))
         most = np.maximum(most, found[:, 0])

@@ -27,6 +27,7 @@ SPACING = 2.0  # pixels, at the distance of the cameras' radius, between two poi
 FINER = 0.5  # of that, where something may move
 LONG = 0.25  # share of the times at which a pixel is of another colour, from which something may have gone from there
 PIXELS = 12  # pixels of the first frames for each Gaussian
+ENOUGH = 24  # pictures beyond which others show little that is new
 CONFIRMED = 0.85  # share of the Gaussians at points that are confirmed; the others cover what these leave bare
 PICTURES = 8  # of fewer pictures, only what is confirmed: too few see what is wrong
 BLOCKS = range(4, 13)  # pixels, side of the blocks that are covered: the first that keeps within the number
@@ -50,7 +51,7 @@ def start_points(
     """
     cameras = [s.camera for s in shots]
     found = points_of(cameras, [s.colors for s in shots], radius)
-    budget = min(most, len(found.means) // PIXELS)
+    budget = min(most, int(min(1.0, ENOUGH / len(shots)) * len(found.means) // PIXELS))
     spacing = SPACING * radius / cameras[0].fx
     share = CONFIRMED if len(shots) >= PICTURES else 1.0
     moves = np.concatenate([c.reshape(-1) for c in changing]) if changing else np.zeros(len(found.means), bool)
@@ -90,13 +91,20 @@ def _confirmed(found: Points, spacing: float, moves: NDArray[np.bool_], rng: np.
     return order[np.sort(first)]
 
 
+def start_cloud(
+    shots: Sequence[Shot], photos: Photos, most: int, rng: np.random.Generator,
+    changing: Sequence[NDArray[np.bool_]] = (),
+) -> GaussianCloud:  # fmt: skip
+    """Gaussians at surveyed points where the capture has them, else at those of the pictures' own stereo."""
+    if len(photos.points.means):
+        return initial_cloud(photos, most, rng)
+    return start_points(list(shots), photos.extent, most, rng, changing)
+
+
 def trainer(footage: Footage, photos: Photos, most: int, schedule: Schedule, rng: np.random.Generator) -> Trainer:
     """A training on the first frames: from surveyed points where the capture has them, else from their own stereo."""
     shots = [footage.shots[i] for i in footage.first]
-    if len(photos.points.means):
-        cloud = initial_cloud(photos, most, rng)
-    else:
-        cloud = start_points(shots, photos.extent, most, rng, changing(footage))
+    cloud = start_cloud(shots, photos, most, rng, changing(footage))
     budget = min(most, int(ROOM * len(cloud)) + 1)
     return Trainer(shots, Parameters.of(cloud), MCMCStrategy(budget, rng), photos.extent, schedule, rng)
 

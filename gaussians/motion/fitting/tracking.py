@@ -20,7 +20,7 @@ from ...fit.loss import BLACK
 from ...render.cpu import gradient
 from .. import keys
 from .bodies import Body, Columns, multiplied, pose_gradient, turned
-from .footage import Footage
+from .footage import Footage, differs
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -36,6 +36,7 @@ VIEWS = 6  # cameras that a pose is refined in
 STEPS, MEND_STEPS = 14, 8  # of the refinement at each time, while a path is searched and while it is mended
 MARGIN = 10  # pixels around a body that are rendered
 STILL = 0.004  # share of the pixels around a body that may change while it is taken to be at rest
+STILL_DRAWN = 0.02  # the same where frames are compared with a render
 MATTERS = 0.03  # difference of a colour by which a body is seen
 HOPELESS = 4  # times at which it may be lost from the first on, before it is given up
 LOST = 0.7  # of the difference without the body, above which it was not found and is searched farther away
@@ -108,13 +109,13 @@ class Tracker:
         for t in range(1, times):
             step = self._footage.times[t] - self._footage.times[t - 1]
             body.quats[t], body.offsets[t] = body.quats[t - 1], body.offsets[t - 1]
-            here, _ = body.placed(t, self._own[0], self._own[1])
-            views = self._views(here, t, float(np.linalg.norm(speed * step)))
-            if not views or self._rests(t, since, views):
+            here = body.placed(t, self._own[0], self._own[1])
+            views = self._views(here[0], t, float(np.linalg.norm(speed * step)))
+            if not views or self._rests(t, since, views, here):
                 speed, spin = np.zeros(3), np.zeros(3)
                 continue
             since = t
-            if self._rests(t, 0, self._views(self._own[0], t, 0.0)):  # it is back where it was at first
+            if self._rests(t, 0, self._views(self._own[0], t, 0.0), self._own[:2]):  # it is back where it was at first
                 body.quats[t], body.offsets[t] = body.quats[0], body.offsets[0]
                 speed, spin = np.zeros(3), np.zeros(3)
                 continue
@@ -285,7 +286,7 @@ class Tracker:
             x, y = pixels[camera.contains(pixels, depth)].astype(np.int64).T
             own = np.zeros((camera.height, camera.width), bool)
             own[y, x] = True
-            changed = footage.changed(footage.frames[key], int(footage.first[c]))
+            changed = footage.moved(c, t)
             self._bare[key] = ~ndimage.binary_dilation(own, iterations=3) & ~ndimage.binary_dilation(
                 changed, iterations=2
             )
@@ -366,9 +367,16 @@ class Tracker:
         photo = self._footage.shots[self._footage.frames[c, t]].colors[y0:y1, x0:x1]
         return _View(c, part, rest, np.ascontiguousarray(photo), (x0, y0, x1, y1))
 
-    def _rests(self, t: int, since: int, views: Sequence[_View]) -> bool:
-        """Whether nothing changed around a body since a time."""
+    def _rests(self, t: int, since: int, views: Sequence[_View], here: tuple[F32, F32]) -> bool:
+        """Whether nothing changed around a body since a time: to the frames of then, or, of a camera that moves, to
+        what it would see with the body `here` (means and quaternions)."""
         changed = area = 0
+        if self._footage.at_first:
+            for view in views:
+                drawn = gradient.draw(_joined(view.rest, (*here, *self._own[2:])), view.camera, BLACK)
+                off = differs(drawn.rgb, view.photo)
+                changed, area = changed + int(off.sum()), area + off.size
+            return 0 < area and changed <= STILL_DRAWN * area
         for view in views:
             before = self._footage.frames.get((view.number, since))
             if before is None:
