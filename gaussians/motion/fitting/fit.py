@@ -31,7 +31,7 @@ from ...fit.train import Schedule, Shot
 from ...scene import Scene
 from ..at import at
 from ..motion import Motion, Residual, Track
-from .axes import line_of
+from .axes import line_of, _judged as judged
 from .bodies import Body, Columns, Labelled
 from .agreement import MARKS, SSIM, Agreement
 from .footage import Footage
@@ -40,7 +40,9 @@ from .rolling import rolled
 from .seeds import LEAST, Flags, gone, halves, seeds
 from .sharing import shared
 from .simplify import track_of
+from .smoothing import smoothed
 from .start import ROOM, start_cloud, trainer
+from .supposing import supposed
 from .tracking import Tracker
 from .training import Joint, Single
 
@@ -55,6 +57,7 @@ MOST_BODIES = 12
 ALIKE = 0.01  # of the radius of the cameras: bodies whose paths differ by less, on average, are one
 TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
 AS_WELL = 1.05  # times the difference with its own path, up to which a body follows another, or stands still
+AS_WELL_ALONE = 1.5  # the same of one camera, before which a free path explains much that it should not
 TOGETHER = 0.6  # of the difference standing still, below which a body follows another without a search of its own
 RIGHT = 0.05  # root mean square difference of colours up to which what stands still is taken to be covered meanwhile
 SORTED = 10  # times at which that is measured
@@ -155,8 +158,6 @@ class _Film:
         ends = Ends(lasting, footage, self._photos.extent, round_, self._rng, self._tell_start)
         resting = ends.best()
         steps = whole.steps + ends.steps
-        if resting is None:
-            return still, [], 0, steps
         self._footage = resting.footage
         labelled, bodies, tried = self._bodies(resting.parameters)
         self._footage = footage
@@ -238,11 +239,11 @@ class _Film:
             if (path := _goes_with(tracker, [body for _, body in found])) is not None:
                 found.append((rows, path))
                 continue
-            tracked = tracker.track()
+            path = self._path(tracker)
             tried += 1
-            if tracked.gain < EXPLAINS:
-                found.append((rows, tracked.body))
-            elif tried < 2 * MOST_BODIES:
+            if path is not None:
+                found.append((rows, path))
+            elif tried < 2 * MOST_BODIES and not footage.at_first:
                 queue = [*queue, *halves(rows, flags)]
         labels, bodies = np.zeros(len(flags), np.int32), list[Body]()
         for rows, body in found:
@@ -253,11 +254,28 @@ class _Film:
             labels[rows] = same + 1
         return labels, bodies, tried
 
+    def _path(self, tracker: Tracker) -> Body | None:
+        """A path that explains a body, if there is one."""
+        tracked, footage = tracker.track(), self._footage
+        if not footage.at_first:
+            return tracked.body if tracked.gain < EXPLAINS else None
+        still = Body.at_rest(tracker.pivot, len(footage.times))
+        free, on = smoothed(tracker, tracked.body, footage.radius), supposed(tracker, len(footage.times))
+        e=[tracker.errors(t,[(b.quats[t],b.offsets[t]) for b in (tracked.body,free,on,still)])[0] for t in range(1,len(footage.times))]
+        assert on.line is not None
+        bound, enough = judged(tracker, free, on.line, free.runs[1:])
+        print("tracked", len(tracker._own[0]), tracked.gain, on.line.kind, on.line.axis.round(2),on.line.pivot.round(2), on.line.values.round(2).tolist(), "errors", np.sum(e,axis=0).round(1), enough)
+        best = on if enough else free
+        errors = np.sum([tracker.errors(t, [(b.quats[t], b.offsets[t]) for b in (best, still)])[0] for t in range(1, len(footage.times))], axis=0)
+        return best if errors[0] * AS_WELL_ALONE < errors[1] else None
+
     def _follow(self, labelled: Labelled, bodies: list[Body]) -> None:
         """Mend the path of each body, put it on one axis where the frames tell no more, or let it roll; in place."""
         for k in range(len(bodies)):
             tracker = self._tracker(labelled, bodies, k + 1)
             body = bodies[k].seen_from(tracker.pivot)
+            if not self._footage.stands and body.line is None:
+                body = smoothed(tracker, body, self._footage.radius)
             line = line_of(tracker, body)
             if line is None:
                 tracker.mend(body)
@@ -279,7 +297,8 @@ class _Film:
             some = _some(sorted({t for path in paths for t, _ in path.runs[1:]}))
             errors = np.sum([tracker.errors(t, [(p.quats[t], p.offsets[t]) for p in paths])[0] for t in some], axis=0)
             best = int(errors[1:].argmin())
-            if errors[1 + best] <= AS_WELL * errors[0]:
+            print("sort", number, (labelled.labels == number).sum(), np.round(errors, 1))
+            if errors[1 + best] <= (AS_WELL_ALONE if self._footage.at_first else AS_WELL) * errors[0]:
                 labelled.labels[labelled.labels == number] = others[best - 1] if best else 0
         self._renumber(labelled, bodies, labelled.labels)
 
@@ -357,9 +376,10 @@ def _covered(tracker: Tracker, times: NDArray[np.int64]) -> bool:
     """Whether what stands still looks right at times at which it is gone, since known bodies pass before it."""
     if not tracker.moving:
         return False
-    rest = Body.at_rest(tracker.pivot, 1)
-    each = [tracker.errors(t, [(rest.quats[0], rest.offsets[0])]) for t in _some(times.tolist())]
-    return sum(float(e[0]) for e, _ in each) < 3 * RIGHT**2 * sum(pixels for _, pixels in each)
+    rest, some = Body.at_rest(tracker.pivot, 1), _some(times.tolist())
+    each = [tracker.errors(t, [(rest.quats[0], rest.offsets[0])]) for t in some]
+    known = sum(float(e[0]) for e, _ in each)
+    return known < 3 * RIGHT**2 * sum(pixels for _, pixels in each)
 
 
 def _goes_with(tracker: Tracker, paths: Sequence[Body]) -> Body | None:

@@ -116,7 +116,8 @@ class Footage:
         """`[H, W]` pixels of a camera's frame at a time that are not as at the first time."""
         frame = self.frames[camera, t]
         if self.at_first:
-            return differs(self.at_first[camera], self.shots[frame].colors)
+            off = differs(self.at_first[camera], self.shots[frame].colors)
+            return np.asarray(ndimage.binary_dilation(off), dtype=bool)  # what is beside an edge differs less
         return self.changed(frame, int(self.first[camera]))
 
     def changed(self, frame: int, other: int) -> NDArray[np.bool_]:

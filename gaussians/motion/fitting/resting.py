@@ -37,6 +37,7 @@ SPACING = 1.0  # pixels, at the distance of the cameras' radius, between two poi
 OPACITY = 0.6
 DENIED = 0.5  # share of the pictures of the end that show it which look through a Gaussian: it is not there yet
 RESTS = 0.35  # share of what is only there at the end that a frame must show, while something rests
+TOLD = 0.5  # share of the frames of the end that must tell that it is at rest; others do not show it
 LEAST = 20  # pixels at which the end looks otherwise than usual, of a frame that tells whether it shows it
 ROUNDS = 2  # in which more frames are found to show the end
 COMPARE = (0.3, 0.5, 0.7, 0.85)  # shares of a round after which what frames show otherwise is left out
@@ -86,13 +87,14 @@ class Ends:
         }
         self.steps = 0
 
-    def best(self) -> Resting | None:
-        """The scene at the end at which more rests, as the first time of a footage that may be backwards; None if
-        nothing rests long enough at either."""
+    def best(self) -> Resting:
+        """The scene at the end at which more rests, as the first time of a footage that may be backwards; the lasting
+        scene if neither is another one for long enough."""
         sides = [self._rested(footage, 0) for footage in (self._footage, self._footage.backwards())]
         found = max(sides, key=lambda side: side.beyond)
         if not found.beyond:
-            return None
+            usual = [self._usual[id(self._footage.shots[i])] for i in self._footage.first]
+            return Resting(self._footage.beginning(usual), self._lasting, 0, 0)
         for _ in range(ROUNDS):
             longer = self._rested(found.footage, found.frames)
             if longer.frames <= found.frames:
@@ -157,13 +159,13 @@ class Ends:
 
 
 def _until(shown: F64, core: int) -> int:
-    """How many frames, from the first on, show what rests at the end; not those before which nothing tells it, and only
-    those of the core if it is always there."""
+    """How many frames, from the first on, show what rests at the end: only those of the core if it is always there."""
     gone = np.flatnonzero(shown[core:] < RESTS)
     if not len(gone):
         return core
     there = np.flatnonzero(shown[core : core + gone[0]] >= RESTS)
-    return core + (int(there[-1]) + 1 if len(there) else 0)
+    more = int(there[-1]) + 1 if len(there) else 0
+    return core + (more if len(there) >= TOLD * more else 0)
 
 
 def _core(footage: Footage, order: I64, extent: float) -> int:

@@ -61,7 +61,11 @@ def gone(columns: Columns, footage: Footage) -> Flags:
         changed[:, own] += np.where(shows[:, None] > 0, found[:, 1:], 0)
         known[:, own] += shows[:, None] > 0
     opaque = (columns[3] > FAINT) & (most > 0.02)
-    return np.asarray(opaque[:, None] & (known > 0) & (changed > GONE * total))
+    found = np.asarray(opaque[:, None] & (known > 0) & (changed > GONE * total))
+    if footage.at_first:  # one picture a time does not show all sides: they are as they were when they were seen last
+        last = np.maximum.accumulate(np.where(known > 0, np.arange(times), 0), axis=1)
+        found = np.take_along_axis(found, last, axis=1)
+    return found
 
 
 def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.int64]]:

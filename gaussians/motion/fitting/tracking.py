@@ -36,12 +36,13 @@ VIEWS = 6  # cameras that a pose is refined in
 STEPS, MEND_STEPS = 14, 8  # of the refinement at each time, while a path is searched and while it is mended
 MARGIN = 10  # pixels around a body that are rendered
 STILL = 0.004  # share of the pixels around a body that may change while it is taken to be at rest
-STILL_DRAWN = 0.02  # the same where frames are compared with a render
+STILL_DRAWN = 0.05  # of those at which a body is seen, where frames are compared with a render
 MATTERS = 0.03  # difference of a colour by which a body is seen
 HOPELESS = 4  # times at which it may be lost from the first on, before it is given up
 LOST = 0.7  # of the difference without the body, above which it was not found and is searched farther away
 SPINS = (0.7,)  # radians: turns about the world's axes that are tried where a body was found
 BETTER = 0.98  # of the difference with the present pose, below which another one replaces it
+DIFFERENCE = 0.02  # of the body's size: a step of which two renders tell a derivative
 APART = 0.02  # of the body's size: poses that are nearer are the same
 
 Pose = tuple[F64, F64]  # quaternion [4] and offset [3]
@@ -95,6 +96,7 @@ class Tracker:
         _, _, axes = np.linalg.svd((means - self.pivot) * np.sqrt(weight)[:, None], full_matrices=False)
         around = np.concatenate([np.outer(np.linspace(-TURN, TURN, 28), axis) for axis in axes])
         self._turns = np.concatenate([np.zeros_like(around), around], axis=1)  # of hinges and fans
+        self._axes = axes
         self._bare: dict[tuple[int, int], NDArray[np.bool_]] = {}
         self._blurred: dict[tuple[int, float], F32] = {}
         every = np.concatenate([self._rest[0], means])
@@ -132,7 +134,7 @@ class Tracker:
                 break
             if found[t]:
                 speed = (body.offsets[t] - body.offsets[t - 1]) / step
-                spin = _vector(multiplied(body.quats[t], body.quats[t - 1] * [1, -1, -1, -1])) / step
+                spin = vector(multiplied(body.quats[t], body.quats[t - 1] * [1, -1, -1, -1])) / step
             else:
                 body.quats[t], body.offsets[t] = body.quats[t - 1], body.offsets[t - 1]
         gain = float(np.mean(ratios)) if ratios else 1.0
@@ -210,6 +212,41 @@ class Tracker:
             _, by_turn, by_shift = self._slope(view, means, quats, body.pivot + body.offsets[t])
             turn, shift = turn + by_turn, shift + by_shift
         return turn, shift
+
+    def known(self, body: Body, t: int) -> tuple[float, F64, F64]:
+        """Squared difference at a time, its gradient `[6]` and Gauss-Newton matrix `[6, 6]` by a shift and by a further
+        turn times the body's size."""
+        value, slope, bend = 0.0, np.zeros(6), np.zeros((6, 6))
+        pose, step = (body.quats[t], body.offsets[t]), DIFFERENCE * self.size
+        poses = [pose]
+        for axis in np.eye(3):
+            poses += [(pose[0], pose[1] + sign * step * axis) for sign in (1, -1)]
+        for axis in np.eye(3):
+            poses += [(turned(pose[0], sign * step / self.size * axis), pose[1]) for sign in (1, -1)]
+        placed = [Body(self.pivot, q[None], o[None]).placed(0, self._own[0], self._own[1]) for q, o in poses]
+        for view in self._views(placed[0][0], t, 0.0):
+            off = [
+                unlike(gradient.draw(_joined(view.rest, (*p, *self._own[2:])), view.camera, BLACK), view.photo).reshape(-1)
+                for p in placed
+            ]
+            by = np.stack([(a - b) / (2 * step) for a, b in zip(off[1::2], off[2::2], strict=True)]).astype(np.float64)
+            here = off[0].astype(np.float64)
+            weight = np.minimum(1, CLIP / np.maximum(np.abs(here), 1e-9))
+            value += float((weight * here**2).sum())
+            slope += 2 * (by * weight) @ here
+            bend += 2 * (by * weight) @ by.T
+        return value, slope, bend
+
+    def box(self, beyond: float) -> tuple[F64, F64, F64]:
+        """The body's own axes `[3, 3]`, and from where to where it reaches along them from its middle; so large a share
+        of its Gaussians is beyond at either side."""
+        along = (self._own[0] - self.pivot) @ self._axes.T
+        return self._axes.astype(np.float64), np.quantile(along, beyond, axis=0), np.quantile(along, 1 - beyond, axis=0)
+
+    @property
+    def seconds(self) -> F64:
+        """`[T]` the times of the frames."""
+        return self._footage.times
 
     # --- the search ----------------------------------------------------------------------------------------------
 
@@ -373,9 +410,10 @@ class Tracker:
         changed = area = 0
         if self._footage.at_first:
             for view in views:
-                drawn = gradient.draw(_joined(view.rest, (*here, *self._own[2:])), view.camera, BLACK)
-                off = differs(drawn.rgb, view.photo)
-                changed, area = changed + int(off.sum()), area + off.size
+                both = _joined(view.rest, (*here, *self._own[2:]))
+                seen, bare = (gradient.draw(columns, view.camera, BLACK).rgb for columns in (both, view.rest))
+                off = differs(seen, view.photo)
+                changed, area = changed + int(off.sum()), area + int((np.abs(seen - bare).max(axis=2) > MATTERS).sum())
             return 0 < area and changed <= STILL_DRAWN * area
         for view in views:
             before = self._footage.frames.get((view.number, since))
@@ -423,7 +461,7 @@ def unlike(drawn: gradient.Drawn, photo: F32) -> F32:
 
 def led(a: Pose, b: Pose, share: float) -> Pose:
     """The pose on the way from one to another: 0 is the first, 1 the second, more is beyond it."""
-    step = _vector(multiplied(b[0], a[0] * [1, -1, -1, -1]))
+    step = vector(multiplied(b[0], a[0] * [1, -1, -1, -1]))
     return turned(a[0], share * step), a[1] + share * (b[1] - a[1])
 
 
@@ -434,7 +472,7 @@ def _seen(columns: Columns, camera: Camera) -> tuple[F64, F64, F64]:
     return pixels, np.minimum(reach, 1e4), depth
 
 
-def _vector(q: F64) -> F64:
+def vector(q: F64) -> F64:
     """The rotation vector `[3]` of a unit quaternion."""
     w, v = (q[0], q[1:]) if q[0] >= 0 else (-q[0], -q[1:])
     length = float(np.linalg.norm(v))
