@@ -53,6 +53,11 @@ def line_of(tracker: Tracker, body: Body) -> Line | None:
     return best[1]
 
 
+def agrees(tracker: Tracker, free: Body, line: Line) -> bool:
+    """Whether the frames tell no more of a body than its place on a line, beside a free path."""
+    return _judged(tracker, free, line, free.runs[1:])[1]
+
+
 def _judged(tracker: Tracker, body: Body, line: Line, runs: list[tuple[int, int]]) -> tuple[float, bool]:
     """The squared difference with the line, and whether it is enough: the information criterion prefers it to the free
     path, or it keeps nearly all that the free path gains on standing still. The criterion alone takes the errors of a

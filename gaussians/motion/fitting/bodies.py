@@ -149,6 +149,15 @@ class Labelled(Parameters):
         self.labels = np.concatenate([self.labels, self.labels[source]])
 
 
+def turn_around(labelled: Labelled, bodies: list[Body]) -> None:
+    """Put bodies that were followed backwards where they are at the first time, and their paths the right way round; in
+    place."""
+    for number, body in enumerate(bodies, 1):
+        rows, last = np.flatnonzero(labelled.labels == number), len(body.offsets) - 1
+        labelled.means[rows], labelled.quats[rows] = body.placed(last, labelled.means[rows], labelled.quats[rows])
+        bodies[number - 1] = body.started_at(last).backwards()
+
+
 def placed(columns: Columns, labels: NDArray[np.int32], bodies: list[Body], t: int) -> Columns:
     """Columns with each body where it is at a time."""
     means, quats = columns[0].copy(), columns[1].copy()

@@ -16,6 +16,7 @@ from ...fit.train import Shot
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
+U8 = NDArray[np.uint8]
 I64 = NDArray[np.int64]
 
 SAME_PLACE = 1e-4  # of the numbers of a pose: cameras within it are one camera that stands
@@ -35,7 +36,8 @@ class Footage:
         when: `[F]` index into `times`.
         cameras: the different cameras.
         who: `[F]` index into `cameras`.
-        at_first: `[H, W, 3]` of each camera, what it would see at the first time, as rendered; none: its frame then.
+        at_first: of each camera, what it would see at the first time, as rendered; none: it is a camera that stands,
+            which has a frame of then.
     """
 
     shots: tuple[Shot, ...]
@@ -44,7 +46,7 @@ class Footage:
     when: I64
     cameras: tuple[Camera, ...]
     who: I64
-    at_first: tuple[F32, ...] = ()
+    at_first: tuple[U8, ...] = ()
 
     @classmethod
     def of(cls, shots: Sequence[Shot], seconds: Sequence[float | None]) -> Footage:
@@ -91,7 +93,7 @@ class Footage:
         """The same frames in the opposite order: seconds count from 0 down."""
         return Footage.of(self.shots, (-self.seconds).tolist())
 
-    def beginning(self, at_first: Sequence[F32]) -> Footage:
+    def beginning(self, at_first: Sequence[U8]) -> Footage:
         """The same frames, of which is known what each camera would see at the first time."""
         return replace(self, at_first=tuple(at_first))
 
@@ -116,7 +118,7 @@ class Footage:
         """`[H, W]` pixels of a camera's frame at a time that are not as at the first time."""
         frame = self.frames[camera, t]
         if self.at_first:
-            off = differs(self.at_first[camera], self.shots[frame].colors)
+            off = differs(self.at_first[camera], self.shots[frame].photo)
             return np.asarray(ndimage.binary_dilation(off), dtype=bool)  # what is beside an edge differs less
         return self.changed(frame, int(self.first[camera]))
 
@@ -126,10 +128,15 @@ class Footage:
         return np.asarray(ndimage.median_filter(off, 3), dtype=bool)
 
 
-def differs(drawn: F32, photo: F32, least: float = DIFFERS) -> NDArray[np.bool_]:
+def rounded(drawn: F32) -> U8:
+    """Rendered colours as those of a photograph."""
+    return np.asarray((255 * drawn.clip(0, 1)).round(), np.uint8)
+
+
+def differs(drawn: U8, photo: U8, least: float = DIFFERS) -> NDArray[np.bool_]:
     """`[H, W]` where a colour of a picture is none of those that a render has at the pixel and beside it."""
-    low, high = ndimage.minimum_filter(drawn, (3, 3, 1)), ndimage.maximum_filter(drawn, (3, 3, 1))
-    off = np.maximum(low - photo, photo - high).max(axis=2) > least
+    low, high = (f(drawn, (3, 3, 1)).astype(np.int16) for f in (ndimage.minimum_filter, ndimage.maximum_filter))
+    off = np.maximum(low - photo, photo - high).max(axis=2) > 255 * least
     return np.asarray(ndimage.median_filter(off, 3), dtype=bool)
 
 

@@ -7,7 +7,6 @@ look. A film whose end rests longer is fitted backwards.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,20 +14,20 @@ import torch
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...camera import Camera
 from ...cloud import GaussianCloud, concat
 from ...fit.loss import BLACK
 from ...fit.parameters import Parameters
 from ...harmonics import color_to_dc
 from ...render.cpu import gradient
-from .agreement import Agreement
-from .footage import Footage, differs
+from .agreement import Agreement, Tell
+from .footage import U8, Footage, differs, rounded
 from .stereo import BEHIND, Points, points_of
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 Mask = NDArray[np.bool_]
-Tell = Callable[[float, int], None]
 
 FEWEST = 4  # frames of an end that are taken to show it at rest
 ASIDE = 0.15  # of the cameras' radius: as far the camera must go during these
@@ -39,6 +38,7 @@ DENIED = 0.5  # share of the pictures of the end that show it which look through
 RESTS = 0.35  # share of what is only there at the end that a frame must show, while something rests
 TOLD = 0.5  # share of the frames of the end that must tell that it is at rest; others do not show it
 LEAST = 20  # pixels at which the end looks otherwise than usual, of a frame that tells whether it shows it
+ROUND = 0.35  # of the training of what is there for most of the time: the length of that of an end
 ROUNDS = 2  # in which more frames are found to show the end
 COMPARE = (0.3, 0.5, 0.7, 0.85)  # shares of a round after which what frames show otherwise is left out
 
@@ -69,22 +69,19 @@ class Ends:
     """Finds the end of a film at which more rests.
 
     Args:
-        lasting: the scene that is there for most of the time; kept as it is.
+        lasting: the training of the scene that is there for most of the time; kept as it is.
         footage: of one moving camera.
         extent: radius of the cameras, scene units.
-        steps: of the training in each round.
         rng: draws the order of frames, and copies and noise of Gaussians.
         tell: is told the loss of each step, and the number of Gaussians.
     """
 
     def __init__(
-        self, lasting: Parameters, footage: Footage, extent: float, steps: int, rng: np.random.Generator, tell: Tell
-    ) -> None:
-        self._lasting, self._footage, self._extent, self._rng = lasting, footage, extent, rng
-        self._count, self._tell = steps, tell
-        self._usual = {
-            id(shot): gradient.draw(lasting.columns(), shot.camera, BLACK).rgb for shot in footage.shots
-        }
+        self, lasting: Agreement, footage: Footage, extent: float, rng: np.random.Generator, tell: Tell
+    ) -> None:  # fmt: skip
+        self._lasting, self._footage, self._extent, self._rng = lasting.parameters, footage, extent, rng
+        self._count, self._tell = max(1, round(ROUND * lasting.steps)), tell
+        self._usual = {id(shot): _picture(self._lasting, shot.camera) for shot in footage.shots}
         self.steps = 0
 
     def best(self) -> Resting:
@@ -120,14 +117,13 @@ class Ends:
         self.steps += self._count
         shown = self._shown(training, footage, order)
         until = _until(shown, core)
-        print("core", core, "count", count, "until", until, "n", len(start), np.round(shown, 2).tolist())
-        at_first = [gradient.draw(training.parameters.columns(), c, BLACK).rgb for c in footage.cameras]
+        at_first = [_picture(training.parameters, camera) for camera in footage.cameras]
         return Resting(footage.beginning(at_first), training.parameters, max(until, count), until - core)
 
     def _start(self, footage: Footage, chosen: I64) -> Parameters:
         """The lasting scene without what is not there at the end, and with points where it looks otherwise there."""
         shots = [footage.shots[i] for i in chosen]
-        other = [differs(self._usual[id(shot)], shot.colors) for shot in shots]
+        other = [differs(self._usual[id(shot)], shot.photo) for shot in shots]
         found = points_of([s.camera for s in shots], [s.colors for s in shots], self._extent)
         cloud = self._lasting.cloud()
         keep = torch.from_numpy(~_denied(cloud.means.numpy(), footage, chosen, found, other))
@@ -138,7 +134,6 @@ class Ends:
         spacing = SPACING * self._extent / shots[0].camera.fx
         _, first = np.unique(np.floor(found.means[rows] / spacing).astype(np.int64), axis=0, return_index=True)
         rows = rows[np.sort(first)]
-        print("denied", int((~keep).sum()), "added", len(rows), "masks", [int(m.sum()) for m in other])
         kept = cloud[keep]
         if len(rows) < 2:  # no distance to another one tells their size
             return Parameters.of(kept)
@@ -154,8 +149,13 @@ class Ends:
             shot, drawn = footage.shots[i], training.drawn(int(i))
             other = differs(drawn, self._usual[id(shot)])
             if other.sum() >= LEAST:
-                found[k] = 1 - differs(drawn, shot.colors)[other].mean()
+                found[k] = 1 - differs(drawn, shot.photo)[other].mean()
         return found
+
+
+def _picture(parameters: Parameters, camera: Camera) -> U8:
+    """The render `[H, W, 3]` of a scene in training."""
+    return rounded(gradient.draw(parameters.columns(), camera, BLACK).rgb)
 
 
 def _until(shown: F64, core: int) -> int:

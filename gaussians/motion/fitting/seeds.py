@@ -25,7 +25,9 @@ SEEN = 0.2  # of the largest weight of a Gaussian in any picture, from which a p
 GONE = 0.75  # share of a Gaussian's weight on changed pixels, over the pictures that show it, from which it is gone
 FAINT = 0.15  # opacity below which a Gaussian says nothing
 ALIKE = 0.8  # overlap of the times at which two neighbours are gone, from which they are of one thing
+ALIKE_ALONE = 0.87  # the same of one camera, before which what is covered is taken along more easily
 NEAR = 5.0  # pixels, at the distance of the cameras' radius: as near are Gaussians that touch
+BRIEF = 0.15  # share of the times: what one camera sees gone for less is taken to be covered
 LEAST = 12  # Gaussians of the smallest thing
 
 
@@ -61,11 +63,11 @@ def gone(columns: Columns, footage: Footage) -> Flags:
         changed[:, own] += np.where(shows[:, None] > 0, found[:, 1:], 0)
         known[:, own] += shows[:, None] > 0
     opaque = (columns[3] > FAINT) & (most > 0.02)
-    found = np.asarray(opaque[:, None] & (known > 0) & (changed > GONE * total))
+    flags: Flags = np.asarray(opaque[:, None] & (known > 0) & (changed > GONE * total))
     if footage.at_first:  # one picture a time does not show all sides: they are as they were when they were seen last
         last = np.maximum.accumulate(np.where(known > 0, np.arange(times), 0), axis=1)
-        found = np.take_along_axis(found, last, axis=1)
-    return found
+        flags = np.take_along_axis(flags, last, axis=1)
+    return flags
 
 
 def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.int64]]:
@@ -74,7 +76,10 @@ def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.i
     Args:
         flags: what `gone` found.
     """
-    rows = np.flatnonzero(flags.sum(axis=1) >= min(2, len(footage.times) - 1))
+    least = min(2, len(footage.times) - 1)
+    if footage.at_first:
+        least = max(least, round(BRIEF * len(footage.times)))
+    rows = np.flatnonzero(flags.sum(axis=1) >= least)
     if len(rows) < LEAST:
         return []
     means, own = columns[0][rows], flags[rows].astype(np.float32)
@@ -82,7 +87,7 @@ def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.i
     pairs = cKDTree(means).query_pairs(reach, output_type="ndarray")
     both = (own[pairs[:, 0]] * own[pairs[:, 1]]).sum(axis=1)
     either = np.maximum(own[pairs[:, 0]], own[pairs[:, 1]]).sum(axis=1)
-    pairs = pairs[both >= ALIKE * either]
+    pairs = pairs[both >= (ALIKE_ALONE if footage.at_first else ALIKE) * either]
     graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(rows), len(rows)))
     _, labels = connected_components(graph, directed=False)
     found = [rows[labels == k] for k in np.flatnonzero(np.bincount(labels) >= LEAST)]

@@ -39,8 +39,8 @@ def smoothed(tracker: Tracker, body: Body, radius: float) -> Body:
         slope, bend = slope + known.slope, bend + known.bend
         while damped < DAMPED[2]:
             own = bend + damped * np.diag(np.diag(bend))
-            step = -np.linalg.solve(own[6:, 6:] + 1e-9 * np.eye(len(own) - 6), slope[6:]).reshape(-1, 6)
-            tried = _stepped(found, runs, step, tracker.size)
+            step = np.asarray(-np.linalg.solve(own[6:, 6:] + 1e-9 * np.eye(len(own) - 6), slope[6:]), dtype=np.float64)
+            tried = _stepped(found, runs, step.reshape(-1, 6), tracker.size)
             there = _Known.of(tracker, tried, times)
             after = there.value + _steadiness(tried, times, tracker, radius)[0]
             if after < value:

@@ -27,7 +27,6 @@ SPACING = 2.0  # pixels, at the distance of the cameras' radius, between two poi
 FINER = 0.5  # of that, where something may move
 LONG = 0.25  # share of the times at which a pixel is of another colour, from which something may have gone from there
 PIXELS = 12  # pixels of the first frames for each Gaussian
-ENOUGH = 24  # pictures beyond which others show little that is new
 CONFIRMED = 0.85  # share of the Gaussians at points that are confirmed; the others cover what these leave bare
 PICTURES = 8  # of fewer pictures, only what is confirmed: too few see what is wrong
 BLOCKS = range(4, 13)  # pixels, side of the blocks that are covered: the first that keeps within the number
@@ -51,7 +50,7 @@ def start_points(
     """
     cameras = [s.camera for s in shots]
     found = points_of(cameras, [s.colors for s in shots], radius)
-    budget = min(most, int(min(1.0, ENOUGH / len(shots)) * len(found.means) // PIXELS))
+    budget = min(most, len(found.means) // PIXELS)
     spacing = SPACING * radius / cameras[0].fx
     share = CONFIRMED if len(shots) >= PICTURES else 1.0
     moves = np.concatenate([c.reshape(-1) for c in changing]) if changing else np.zeros(len(found.means), bool)

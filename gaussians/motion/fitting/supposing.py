@@ -1,8 +1,8 @@
-"""Hinges and slides that a body's shape suggests (`supposed`), for pictures of one camera, which tell a free path badly.
+"""Hinges and slides that a body's shape suggests (`supposed`), for one camera, whose pictures tell a free path badly.
 
-Doors turn about an edge, fans about their middle, drawers slide along an axis of their own. Of each such line, the value
-at every time is told by the colours of points of the body, all times together; the lines that explain these best are
-compared with the frames by rendering.
+Doors turn about an edge, fans about their middle, drawers slide along an axis of their own. For each such line, the
+values at all times are searched together, by the colours of points of the body. The lines that explain these best are
+refined and compared by the rendered difference.
 """
 
 from __future__ import annotations

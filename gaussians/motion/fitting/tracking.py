@@ -20,7 +20,7 @@ from ...fit.loss import BLACK
 from ...render.cpu import gradient
 from .. import keys
 from .bodies import Body, Columns, multiplied, pose_gradient, turned
-from .footage import Footage, differs
+from .footage import Footage, differs, rounded
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -204,6 +204,13 @@ class Tracker:
                 found[k] += float((unlike(drawn, view.photo) ** 2).sum())
         return found, pixels
 
+    def without_moving(self, t: int, body: Body) -> float:
+        """Squared difference at a time, as in `errors`, with the body at its first pose and without the known ones."""
+        kept, self.moving = self.moving, []
+        errors, _ = self.errors(t, [(body.quats[0], body.offsets[0])])
+        self.moving = kept
+        return float(errors[0])
+
     def slope(self, body: Body, t: int) -> tuple[F64, F64]:
         """Gradient of the squared difference at a time by a further turn about the body's middle and by a shift."""
         turn, shift = np.zeros(3), np.zeros(3)
@@ -226,7 +233,9 @@ class Tracker:
         placed = [Body(self.pivot, q[None], o[None]).placed(0, self._own[0], self._own[1]) for q, o in poses]
         for view in self._views(placed[0][0], t, 0.0):
             off = [
-                unlike(gradient.draw(_joined(view.rest, (*p, *self._own[2:])), view.camera, BLACK), view.photo).reshape(-1)
+                unlike(gradient.draw(_joined(view.rest, (*p, *self._own[2:])), view.camera, BLACK), view.photo).reshape(
+                    -1
+                )
                 for p in placed
             ]
             by = np.stack([(a - b) / (2 * step) for a, b in zip(off[1::2], off[2::2], strict=True)]).astype(np.float64)
@@ -412,9 +421,9 @@ class Tracker:
             for view in views:
                 both = _joined(view.rest, (*here, *self._own[2:]))
                 seen, bare = (gradient.draw(columns, view.camera, BLACK).rgb for columns in (both, view.rest))
-                off = differs(seen, view.photo)
+                off = differs(rounded(seen), rounded(view.photo))
                 changed, area = changed + int(off.sum()), area + int((np.abs(seen - bare).max(axis=2) > MATTERS).sum())
-            return 0 < area and changed <= STILL_DRAWN * area
+            return area > 0 and changed <= STILL_DRAWN * area
         for view in views:
             before = self._footage.frames.get((view.number, since))
             if before is None:
