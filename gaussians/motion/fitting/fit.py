@@ -83,14 +83,14 @@ def fit_film(
         detail: the motion that is fitted at most; residuals only where they improve held-out frames.
 
     Raises:
-        UserError: a frame has no time or all have one; or the cameras do not stand.
+        UserError: a frame has no time or all have the same; or the frames agree on no depths.
     """
     settings = settings or Settings(seconds=300.0)
     return _Film(photos, settings, detail, on_status).fit()
 
 
 def stands(photos: Photos) -> bool:
-    """Whether the frames of a film are of cameras that stand, so that what moves can be fitted."""
+    """Whether the frames of a film are of cameras that stand; else one moves, or several do."""
     return Footage.of(photos.shots, [s.time for s in photos.shots]).stands
 
 

@@ -134,10 +134,12 @@ def rounded(drawn: F32) -> U8:
 
 
 def differs(drawn: U8, photo: U8, least: float = DIFFERS) -> NDArray[np.bool_]:
-    """`[H, W]` where a colour of a picture is none of those that a render has at the pixel and beside it."""
-    low, high = (f(drawn, (3, 3, 1)).astype(np.int16) for f in (ndimage.minimum_filter, ndimage.maximum_filter))
-    off = np.maximum(low - photo, photo - high).max(axis=2) > 255 * least
-    return np.asarray(ndimage.median_filter(off, 3), dtype=bool)
+    """`[H, W]` where the colour of a picture is like none that a render has at the pixel and beside it."""
+    (height, width, _), around = drawn.shape, np.pad(drawn.astype(np.int16), ((1, 1), (1, 1), (0, 0)), mode="edge")
+    off = np.full((height, width), 255, np.int16)
+    for y, x in np.ndindex(3, 3):
+        off = np.minimum(off, np.abs(around[y : y + height, x : x + width] - photo).max(axis=2))
+    return np.asarray(ndimage.median_filter(off > 255 * least, 3), dtype=bool)
 
 
 def _same(a: Camera, b: Camera) -> bool:

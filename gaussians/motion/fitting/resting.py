@@ -116,9 +116,9 @@ class Ends:
             self._tell(training.step(step / self._count), len(start))
         self.steps += self._count
         shown = self._shown(training, footage, order)
-        until = _until(shown, core)
+        last = until(shown, core)
         at_first = [_picture(training.parameters, camera) for camera in footage.cameras]
-        return Resting(footage.beginning(at_first), training.parameters, max(until, count), until - core)
+        return Resting(footage.beginning(at_first), training.parameters, max(last, count), last - core)
 
     def _start(self, footage: Footage, chosen: I64) -> Parameters:
         """The lasting scene without what is not there at the end, and with points where it looks otherwise there."""
@@ -158,7 +158,7 @@ def _picture(parameters: Parameters, camera: Camera) -> U8:
     return rounded(gradient.draw(parameters.columns(), camera, BLACK).rgb)
 
 
-def _until(shown: F64, core: int) -> int:
+def until(shown: F64, core: int) -> int:
     """How many frames, from the first on, show what rests at the end: only those of the core if it is always there."""
     gone = np.flatnonzero(shown[core:] < RESTS)
     if not len(gone):
