@@ -26,7 +26,7 @@ EXPLAINS = 0.7  # of the difference without a body, to which its path must bring
 MOST_BODIES = 12
 ALIKE = 0.01  # of the radius of the cameras: bodies whose paths differ by less, on average, are one
 AS_WELL = 1.05  # times the difference with its own path, up to which a body follows another, or stands still
-AS_WELL_ALONE = 1.5  # the same of one camera, before which a free path explains much that it should not
+FREE_ALONE, LINE_ALONE = 1.5, 1.2  # the same of one camera, before which a free path explains what it should not
 PASSED = 0.5  # of the difference without the bodies that are known, to which they bring what they cover
 TOGETHER = 0.6  # of the difference standing still, below which a body follows another without a search of its own
 RIGHT = 0.05  # root mean square difference of colours up to which what stands still is taken to be covered meanwhile
@@ -103,14 +103,24 @@ class Finder:
         tracked, footage = tracker.track(), self._footage
         if not self._alone:
             return tracked.body if tracked.gain < EXPLAINS else None
-        count = len(footage.times)
-        free, still = smoothed(tracker, tracked.body, footage.radius), Body.at_rest(tracker.pivot, count)
-        on = supposed(tracker, count)
+        free = smoothed(tracker, tracked.body, footage.radius)
+        on = supposed(tracker, len(footage.times))
         assert on.line is not None
         best = on if agrees(tracker, free, on.line) else free
-        poses = [[(b.quats[t], b.offsets[t]) for b in (best, still)] for t in range(count)]
-        with_it, without = np.sum([tracker.errors(t, poses[t])[0] for t in range(1, count)], axis=0)
-        return best if AS_WELL_ALONE * with_it < without else None
+        return best if self._explains(tracker, best) else None
+
+    def _explains(self, tracker: Tracker, path: Body) -> bool:
+        """Whether one camera's frames are explained much better by a path than by standing still."""
+        still, errors = Body.at_rest(path.pivot, len(path.offsets)), np.zeros(2)
+        for t in range(1, len(path.offsets)):
+            errors += tracker.errors(t, [(b.quats[t], b.offsets[t]) for b in (path, still)])[0]
+        return bool(errors[1] > self._as_well(path) * errors[0])
+
+    def _as_well(self, path: Body) -> float:
+        """Times the difference with a path, up to which standing still, or another path, is as good."""
+        if not self._alone:
+            return AS_WELL
+        return FREE_ALONE if path.line is None else LINE_ALONE
 
     def _follow(self, labelled: Labelled, bodies: list[Body]) -> None:
         """Mend the path of each body, put it on one axis where the frames tell no more, or let it roll; in place."""
@@ -141,7 +151,7 @@ class Finder:
             some = _some(sorted({t for path in paths for t, _ in path.runs[1:]}))
             errors = np.sum([tracker.errors(t, [(p.quats[t], p.offsets[t]) for p in paths])[0] for t in some], axis=0)
             best = int(errors[1:].argmin())
-            if errors[1 + best] <= (AS_WELL_ALONE if self._alone else AS_WELL) * errors[0]:
+            if errors[1 + best] <= self._as_well(own) * errors[0]:
                 labelled.labels[labelled.labels == number] = others[best - 1] if best else 0
         self._renumber(labelled, bodies, labelled.labels)
 

@@ -25,7 +25,6 @@ SEEN = 0.2  # of the largest weight of a Gaussian in any picture, from which a p
 GONE = 0.75  # share of a Gaussian's weight on changed pixels, over the pictures that show it, from which it is gone
 FAINT = 0.15  # opacity below which a Gaussian says nothing
 ALIKE = 0.8  # overlap of the times at which two neighbours are gone, from which they are of one thing
-ALIKE_ALONE = 0.87  # the same of one camera, before which what is covered is taken along more easily
 NEAR = 5.0  # pixels, at the distance of the cameras' radius: as near are Gaussians that touch
 BRIEF = 0.15  # share of the times: what one camera sees gone for less is taken to be covered
 LEAST = 12  # Gaussians of the smallest thing
@@ -87,7 +86,7 @@ def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.i
     pairs = cKDTree(means).query_pairs(reach, output_type="ndarray")
     both = (own[pairs[:, 0]] * own[pairs[:, 1]]).sum(axis=1)
     either = np.maximum(own[pairs[:, 0]], own[pairs[:, 1]]).sum(axis=1)
-    pairs = pairs[both >= (ALIKE_ALONE if footage.at_first else ALIKE) * either]
+    pairs = pairs[both >= ALIKE * either]
     graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(rows), len(rows)))
     _, labels = connected_components(graph, directed=False)
     found = [rows[labels == k] for k in np.flatnonzero(np.bincount(labels) >= LEAST)]
