@@ -7,6 +7,9 @@ first frames ─stereo─► start ─changes─► seeds ─track─► bodies 
 The scene at its start is trained first. Of its Gaussians those may move whose pixels change wherever they are seen;
 what touches and goes at one time is one body. A body is kept if a path of it explains the frames. Then all Gaussians
 and all poses are trained together on the frames of every time.
+
+Before one moving camera the scene at its start is what all frames agree on, and what those of one end show otherwise
+(`agreement`, `resting`); things are followed from that end.
 """
 
 from __future__ import annotations

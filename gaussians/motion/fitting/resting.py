@@ -49,20 +49,17 @@ class Resting:
 
     Attributes:
         footage: with what each camera would see at the first time.
+        backwards: whether it goes from the last time of the film to the first.
         parameters: of the Gaussians.
         frames: how many frames, from the first on, show something at rest that leaves later.
         beyond: how many of these were not taken to do so.
     """
 
     footage: Footage
+    backwards: bool
     parameters: Parameters
     frames: int
     beyond: int
-
-    @property
-    def backwards(self) -> bool:
-        """Whether the footage goes from the last time to the first."""
-        return bool(self.footage.times[-1] <= 0) and bool(self.footage.times[0] < 0)
 
 
 class Ends:
@@ -87,19 +84,20 @@ class Ends:
     def best(self) -> Resting:
         """The scene at the end at which more rests, as the first time of a footage that may be backwards; the lasting
         scene if neither is another one for long enough."""
-        sides = [self._rested(footage, 0) for footage in (self._footage, self._footage.backwards())]
+        forward, backward = self._footage, self._footage.backwards()
+        sides = [self._rested(forward, False, 0), self._rested(backward, True, 0)]
         found = max(sides, key=lambda side: side.beyond)
         if not found.beyond:
             usual = [self._usual[id(self._footage.shots[i])] for i in self._footage.first]
-            return Resting(self._footage.beginning(usual), self._lasting, 0, 0)
+            return Resting(self._footage.beginning(usual), False, self._lasting, 0, 0)
         for _ in range(ROUNDS):
-            longer = self._rested(found.footage, found.frames)
+            longer = self._rested(found.footage, found.backwards, found.frames)
             if longer.frames <= found.frames:
                 return longer
             found = longer
         return found
 
-    def _rested(self, footage: Footage, count: int) -> Resting:
+    def _rested(self, footage: Footage, backwards: bool, count: int) -> Resting:
         """The scene at the first time of a footage, by so many of its frames or, for 0, by as few as possible."""
         order = np.argsort(footage.when, kind="stable")
         core = _core(footage, order, self._extent)
@@ -118,7 +116,8 @@ class Ends:
         shown = self._shown(training, footage, order)
         last = until(shown, core)
         at_first = [_picture(training.parameters, camera) for camera in footage.cameras]
-        return Resting(footage.beginning(at_first), training.parameters, max(last, count), last - core)
+        beginning = footage.beginning(at_first)
+        return Resting(beginning, backwards, training.parameters, max(last, count), last - core)
 
     def _start(self, footage: Footage, chosen: I64) -> Parameters:
         """The lasting scene without what is not there at the end, and with points where it looks otherwise there."""

@@ -1,4 +1,4 @@
-"""Films of one moving camera: what frames agree on, what rests at an end, and paths that single pictures tell in part."""
+"""Films of one moving camera: what frames agree on, what rests at an end, and paths that pictures tell in part."""
 
 import numpy as np
 import pytest
