@@ -70,7 +70,7 @@ class Tracker:
         columns: all Gaussians at the start.
         rows: those of the body.
         still: `[N]` those that stand still.
-        footage: frames from cameras that stand.
+        footage: its first time is that of the columns.
         seed: of the search.
         moving: the rows of other bodies whose path is known, and their paths.
     """
