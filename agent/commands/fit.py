@@ -86,7 +86,7 @@ def command(
     Every eighth photograph is held out to measure the quality. An interrupted training resumes from its last checkpoint
     (OUTPUT.checkpoint). If the photographs have no poses, these are estimated first (extra sfm) and kept in
     OUTPUT.poses; they are estimated again only if the photographs change. Frames with different times, from cameras
-    that stand, become a scene with motion.
+    that stand or one that moves, become a scene with motion.
     """
     started = time.perf_counter()
     from ...gaussians.errors import FileError, UserError
@@ -97,7 +97,6 @@ def command(
     from ...gaussians.fit.blocks import fit_by_blocks
     from ...gaussians.fit.checkpoint import delete
     from ...gaussians.fit.engine import resolve_device
-    from ...gaussians.motion.fitting.fit import stands
 
     startup.end()
     if minutes is not None and steps is not None:
@@ -118,11 +117,9 @@ def command(
     if unposed_photos(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
     photos = load_photos(capture, scale, terminal.progress, poses, strict=strict)
-    if photos.film and stands(photos):
+    if photos.film:
         _fit_film(photos, settings, output, report, force)
         return
-    if photos.film:
-        terminal.say("the frames have times, but one camera moves: only what stands still is fitted")
     terminal.say(_describe(photos) + (", on the GPU" if where == "cuda" else ""))
     kept = output.with_name(output.name + (".checkpoint" if parts == 1 else ".blocks"))
     if kept.exists():
@@ -165,11 +162,13 @@ def _blocks(said: str, settings: Settings, dialled: bool) -> int:
 def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | None, force: bool) -> None:
     """Fit a scene with motion to the frames of a film, and write it."""
     from ...gaussians.files import save
-    from ...gaussians.motion.fitting.fit import fit_film
+    from ...gaussians.motion.fitting.fit import fit_film, stands
 
     times = {shot.time for shot in (*photos.shots, *photos.held_out)}
+    standing = stands(photos)
+    by = "" if standing else " by a moving camera"
     terminal.say(
-        f"a film of {len(times)} times: what moves is fitted too, on the CPU, without harmonics and checkpoints; "
+        f"a film of {len(times)} times{by}: what moves is fitted too, on the CPU, without harmonics and checkpoints; "
         + _describe(photos)
     )
     done = fit_film(photos, settings, on_status=_show_status)
@@ -188,7 +187,10 @@ def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | N
             file.write((json.dumps(data, indent=2) + "\n").encode())
     told = ", ".join(f"{t.name} ({t.kind}, {len(t.times)} keys, {len(t):,} Gaussians)" for t in tracks)
     how = f"{done.quality.psnr:.2f} dB, SSIM {done.quality.ssim:.3f} on {len(done.quality.each)} held-out frames"
-    moves = f"moves: {told}" if tracks else "nothing that moves was found"
+    nothing = "nothing that moves was found: the scene stands still"
+    if not standing:
+        nothing += "; of a moving camera, only what rests for a while at the start or at the end is followed"
+    moves = f"moves: {told}" if tracks else nothing
     terminal.result(
         f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s\n{moves}",
         data,

@@ -36,7 +36,7 @@ INDEPENDENT = 25  # pixels of which one counts as an observation: neighbours err
 def line_of(tracker: Tracker, body: Body) -> Line | None:
     """The line on which all poses of a body may lie, or its line refined; None if its path is no hinge and no slide."""
     if body.line is not None:
-        return _refined(tracker, body, body.line)
+        return refined(tracker, body, body.line)
     runs = body.runs[1:]
     if len(runs) < 2:  # one place to go to lies on any line
         return None
@@ -46,11 +46,16 @@ def line_of(tracker: Tracker, body: Body) -> Line | None:
         line = _told(body, kind, tracker.size)
         if line is None:
             continue
-        line = _refined(tracker, body, line)
+        line = refined(tracker, body, line)
         error, enough = _judged(tracker, body, line, runs)
         if enough and error < best[0]:
             best = error, line
     return best[1]
+
+
+def agrees(tracker: Tracker, free: Body, line: Line) -> bool:
+    """Whether the frames tell no more of a body than its place on a line, beside a free path."""
+    return _judged(tracker, free, line, free.runs[1:])[1]
 
 
 def _judged(tracker: Tracker, body: Body, line: Line, runs: list[tuple[int, int]]) -> tuple[float, bool]:
@@ -112,7 +117,7 @@ def _misses(body: Body, line: Line, size: float) -> F64:
     return np.asarray(np.linalg.norm(on.offsets - body.offsets, axis=1) + size * 2 * np.arccos(cosines))
 
 
-def _refined(tracker: Tracker, body: Body, line: Line) -> Line:
+def refined(tracker: Tracker, body: Body, line: Line) -> Line:
     """The line and its values, by the rendered difference."""
     runs = body.runs[1:]
     unit = tracker.size if line.kind == "hinge" else 1.0

@@ -100,6 +100,17 @@ class Body:
         starts = [0, *(np.flatnonzero(~same) + 1).tolist()]
         return list(zip(starts, [*starts[1:], len(self.offsets)], strict=True))
 
+    def started_at(self, t: int) -> Body:
+        """The same movement of the Gaussians as they are at a time."""
+        back = np.array([left(q) @ (self.quats[t] * [1, -1, -1, -1]) for q in self.quats])
+        line = self.line and replace(self.line, values=self.line.values - self.line.values[t])
+        return Body(self.pivot + self.offsets[t], back, self.offsets - self.offsets[t], line)
+
+    def backwards(self) -> Body:
+        """The same poses in the opposite order of times."""
+        line = self.line and replace(self.line, values=self.line.values[::-1].copy())
+        return Body(self.pivot, self.quats[::-1].copy(), self.offsets[::-1].copy(), line)
+
     def seen_from(self, pivot: F64) -> Body:
         """The same poses about another pivot."""
         arm = pivot - self.pivot
@@ -136,6 +147,15 @@ class Labelled(Parameters):
         """See `Parameters`."""
         super().append(source)
         self.labels = np.concatenate([self.labels, self.labels[source]])
+
+
+def turn_around(labelled: Labelled, bodies: list[Body]) -> None:
+    """Put bodies that were followed backwards where they are at the first time, and their paths the right way round; in
+    place."""
+    for number, body in enumerate(bodies, 1):
+        rows, last = np.flatnonzero(labelled.labels == number), len(body.offsets) - 1
+        labelled.means[rows], labelled.quats[rows] = body.placed(last, labelled.means[rows], labelled.quats[rows])
+        bodies[number - 1] = body.started_at(last).backwards()
 
 
 def placed(columns: Columns, labels: NDArray[np.int32], bodies: list[Body], t: int) -> Columns:

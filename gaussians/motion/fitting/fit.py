@@ -7,6 +7,9 @@ first frames ─stereo─► start ─changes─► seeds ─track─► bodies 
 The scene at its start is trained first. Of its Gaussians those may move whose pixels change wherever they are seen;
 what touches and goes at one time is one body. A body is kept if a path of it explains the frames. Then all Gaussians
 and all poses are trained together on the frames of every time.
+
+Before one moving camera the scene at its start is what all frames agree on, and what those of one end show otherwise
+(`agreement`, `resting`); things are followed from that end.
 """
 
 from __future__ import annotations
@@ -23,7 +26,6 @@ import torch
 from numpy.typing import NDArray
 
 from ...cloud import NO_GROUP, GaussianCloud
-from ...errors import UserError
 from ...fit.fitting import Settings, Status
 from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
@@ -32,30 +34,20 @@ from ...fit.train import Schedule, Shot
 from ...scene import Scene
 from ..at import at
 from ..motion import Motion, Residual, Track
-from .axes import line_of
-from .bodies import Body, Columns, Labelled
+from .agreement import lasting
+from .bodies import Body, Labelled, turn_around
+from .finding import Finder
 from .footage import Footage
-from .rolling import Ball
-from .seeds import LEAST, Flags, gone, halves, seeds
-from .sharing import shared
+from .resting import Ends
 from .simplify import track_of
 from .start import trainer
-from .tracking import Tracker
 from .training import Joint, Single
 
 F64 = NDArray[np.float64]
 Detail = Literal["static", "rigid", "residual"]  # the motion that may be fitted: none, paths, and single Gaussians' too
 
 START = 0.3  # share of the training that goes to the scene at its start
-EXPLAINS = 0.7  # of the difference without a body, to which its path must bring the pictures
-MOST_BODIES = 12
-ALIKE = 0.01  # of the radius of the cameras: bodies whose paths differ by less, on average, are one
 TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
-AS_WELL = 1.05  # times the difference with its own path, up to which a body follows another, or stands still
-TOGETHER = 0.6  # of the difference standing still, below which a body follows another without a search of its own
-RIGHT = 0.05  # root mean square difference of colours up to which what stands still is taken to be covered meanwhile
-SORTED = 10  # times at which that is measured
-SETTLED = 1  # rounds in which paths are mended and Gaussians assigned to bodies
 MORE = 1.2  # times the Gaussians of the start: greatest number at the end, for what was hidden at the start
 SINGLE = 0.15  # of the steps of all together, that displacements of single Gaussians are trained for
 GAIN = 0.05  # dB on held-out frames, for which displacements of single Gaussians are kept
@@ -94,14 +86,14 @@ def fit_film(
         detail: the motion that is fitted at most; residuals only where they improve held-out frames.
 
     Raises:
-        UserError: a frame has no time or all have one; or the cameras do not stand.
+        UserError: a frame has no time or all have the same; or the frames agree on no depths.
     """
     settings = settings or Settings(seconds=300.0)
     return _Film(photos, settings, detail, on_status).fit()
 
 
 def stands(photos: Photos) -> bool:
-    """Whether the frames of a film are of cameras that stand, so that what moves can be fitted."""
+    """Whether the frames of a film are of cameras that stand; else one moves, or several do."""
     return Footage.of(photos.shots, [s.time for s in photos.shots]).stands
 
 
@@ -113,34 +105,69 @@ class _Film:
     ) -> None:  # fmt: skip
         self._photos, self._settings, self._detail, self._on_status = photos, settings, detail, on_status
         self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
-        if not self._footage.stands:
-            raise UserError(
-                "a film needs two or more cameras that stand and have a frame at the first time; "
-                "of one moving camera only what stands still can be fitted: leave out `time`"
-            )
         self._rng = np.random.default_rng(settings.seed)
         self._started, self._told, self._loss = time.perf_counter(), 0.0, math.nan
 
     def fit(self) -> FittedFilm:
         """All steps."""
         footage, settings = self._footage, self._settings
-        steps = settings.steps and max(1, round(START * settings.steps))
-        schedule = Schedule(steps, settings.seconds and START * settings.seconds, settings.coarse)
-        start = trainer(footage, self._photos, settings.max_gaussians, schedule, self._rng)
-        while start.progress < 1:
-            self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
-        labelled, bodies, tried = self._bodies(start.parameters)
+        labelled, bodies, tried, before = self._before_standing() if footage.stands else self._before_moving()
         budget = min(settings.max_gaussians, int(MORE * len(labelled)))
         joint = Joint(labelled, bodies, footage, budget, self._rng)
         left = None if settings.seconds is None else max(0.2 * settings.seconds, settings.seconds - self._seconds)
-        more = None if settings.steps is None else settings.steps - start.steps
+        more = None if settings.steps is None else settings.steps - before
         while (share := _share(joint, more, left)) < 1:
-            self._tell(joint.step(share), start.steps + joint.steps, START + (1 - START) * share, len(labelled))
-        scene, steps = self._scene(labelled, bodies, None), start.steps + joint.steps
+            self._tell(joint.step(share), before + joint.steps, START + (1 - START) * share, len(labelled))
+        scene, steps = self._scene(labelled, bodies, None), before + joint.steps
         if self._detail == "residual" and scene.motion is not None and self._photos.held_out:
             scene, more = self._with_single(scene, labelled, bodies, round(SINGLE * joint.steps))
             steps += more
         return FittedFilm(scene, measure_film(scene, self._photos.held_out), steps, self._seconds, tried)
+
+    def _before_standing(self) -> tuple[Labelled, list[Body], int, int]:
+        """What moves before cameras that stand, its paths, how many were tried, and the steps of the training."""
+        settings = self._settings
+        steps = settings.steps and max(1, round(START * settings.steps))
+        schedule = Schedule(steps, settings.seconds and START * settings.seconds, settings.coarse)
+        start = trainer(self._footage, self._photos, settings.max_gaussians, schedule, self._rng)
+        while start.progress < 1:
+            self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
+        return *self._bodies(start.parameters, self._footage), start.steps
+
+    def _before_moving(self) -> tuple[Labelled, list[Body], int, int]:
+        """The same before a camera that moves: the film is followed from the end at which more rests."""
+        told = 0
+
+        def tell(loss: float, gaussians: int) -> None:
+            nonlocal told
+            told += 1
+            share = (
+                told / self._settings.steps if self._settings.steps else self._seconds / (self._settings.seconds or 1)
+            )
+            self._tell(loss, told, min(share, START), gaussians)
+
+        usual = lasting(self._footage.shots, self._photos, self._settings, self._rng, tell)
+        still = Labelled.labelled(usual.parameters, np.zeros(len(usual.parameters), np.int32))
+        if self._detail == "static":
+            return still, [], 0, usual.steps
+        ends = Ends(usual, self._footage, self._photos.extent, self._rng, tell)
+        resting = ends.best()
+        labelled, bodies, tried = self._bodies(resting.parameters, resting.footage)
+        if not bodies:
+            return still, [], tried, usual.steps
+        if resting.backwards:
+            turn_around(labelled, bodies)
+        return labelled, bodies, tried, usual.steps + ends.steps
+
+    def _bodies(self, start: Parameters, footage: Footage) -> tuple[Labelled, list[Body], int]:
+        """What moves, by the number of its label, its paths, and how many were tried."""
+        if self._detail == "static":
+            return Labelled.labelled(start, np.zeros(len(start), np.int32)), [], 0
+
+        def tell() -> None:
+            self._tell(math.nan, 0, START, len(start))
+
+        return Finder(footage, self._settings.seed, self._rng, tell).find(start)
 
     def _with_single(
         self, scene: Scene, labelled: Labelled, bodies: list[Body], steps: int
@@ -158,113 +185,6 @@ class _Film:
     @property
     def _seconds(self) -> float:
         return time.perf_counter() - self._started
-
-    def _bodies(self, start: Parameters) -> tuple[Labelled, list[Body], int]:
-        """What moves, by the number of its label, and its path."""
-        columns, footage = start.columns(), self._footage
-        if self._detail == "static":
-            return Labelled.labelled(start, np.zeros(len(start), np.int32)), [], 0
-        labels, bodies, tried = self._found(columns, gone(columns, footage))
-        labelled = Labelled.labelled(start, labels)
-        if not bodies:
-            return labelled, bodies, tried
-        self._sort_out(labelled, bodies)
-        for _ in range(SETTLED):
-            self._follow(labelled, bodies)
-            self._settle(labelled, bodies)
-        self._sort_out(labelled, bodies)
-        self._follow(labelled, bodies)
-        return labelled, bodies, tried
-
-    def _found(self, columns: Columns, flags: Flags) -> tuple[NDArray[np.int32], list[Body], int]:
-        """Labels `[N]` of the seeds that a path explains, the paths, and how many were tried."""
-        footage, found = self._footage, list[tuple[NDArray[np.int64], Body]]()
-        queue = seeds(columns, footage, flags)[:MOST_BODIES]
-        still, tried = np.ones(len(flags), bool), 0
-        for rows in queue:
-            still[rows] = False
-        while queue:
-            rows = queue.pop(0)
-            self._tell(math.nan, 0, START, len(flags))
-            tracker = Tracker(columns, rows, still, footage, self._settings.seed + tried, found)
-            if _covered(tracker, np.flatnonzero(flags[rows].any(axis=0))):
-                continue
-            if (path := _goes_with(tracker, [body for _, body in found])) is not None:
-                found.append((rows, path))
-                continue
-            tracked = tracker.track()
-            tried += 1
-            if tracked.gain < EXPLAINS:
-                found.append((rows, tracked.body))
-            elif tried < 2 * MOST_BODIES:
-                queue = [*queue, *halves(rows, flags)]
-        labels, bodies = np.zeros(len(flags), np.int32), list[Body]()
-        for rows, body in found:
-            same = next((k for k, b in enumerate(bodies) if _alike(b, body, columns[0][rows], footage.radius)), None)
-            if same is None:
-                same = len(bodies)
-                bodies.append(body)
-            labels[rows] = same + 1
-        return labels, bodies, tried
-
-    def _follow(self, labelled: Labelled, bodies: list[Body]) -> None:
-        """Mend the path of each body, put it on one axis where the frames tell no more, or let it roll; in place."""
-        for k in range(len(bodies)):
-            tracker = self._tracker(labelled, bodies, k + 1)
-            body = bodies[k].seen_from(tracker.pivot)
-            line = line_of(tracker, body)
-            if line is None:
-                tracker.mend(body)
-                body = self._rolled(labelled, k + 1, body)
-            bodies[k] = body if line is None else body.on(line)
-
-    def _rolled(self, labelled: Labelled, number: int, body: Body) -> Body:
-        """A body as it is, or, if it is a ball that rolls, with its turns and the Gaussians of all its surface."""
-        columns, rows = labelled.columns(), np.flatnonzero(labelled.labels == number)
-        ball = Ball.of(columns[0][rows].astype(np.float64), columns[3][rows].astype(np.float64))
-        rolled = None if ball is None else ball.rolled(body, self._footage)
-        if ball is None or rolled is None:
-            return body
-        ball.filled(labelled, number, rolled, self._footage)
-        return rolled
-
-    def _sort_out(self, labelled: Labelled, bodies: list[Body]) -> None:
-        """Let a body stand still, or join another, where that explains the frames about as well as its own path while
-        the others go theirs: what something passed before stands, and fragments of a thing are one; in place."""
-        for number in sorted(range(1, len(bodies) + 1), key=lambda k: int((labelled.labels == k).sum())):
-            tracker = self._tracker(labelled, bodies, number)
-            own = bodies[number - 1].seen_from(tracker.pivot)
-            others = [k for k in range(1, len(bodies) + 1) if k != number and (labelled.labels == k).any()]
-            paths = [
-                own,
-                Body.at_rest(own.pivot, len(own.offsets)),
-                *(bodies[k - 1].seen_from(own.pivot) for k in others),
-            ]
-            some = _some(sorted({t for path in paths for t, _ in path.runs[1:]}))
-            errors = np.sum([tracker.errors(t, [(p.quats[t], p.offsets[t]) for p in paths])[0] for t in some], axis=0)
-            best = int(errors[1:].argmin())
-            if errors[1 + best] <= AS_WELL * errors[0]:
-                labelled.labels[labelled.labels == number] = others[best - 1] if best else 0
-        self._renumber(labelled, bodies, labelled.labels)
-
-    def _settle(self, labelled: Labelled, bodies: list[Body]) -> None:
-        """Assign Gaussians to bodies by the frames, in place; a body that keeps too few is dropped."""
-        labels = shared(labelled.columns(), labelled.labels, bodies, self._footage, self._rng)
-        self._renumber(labelled, bodies, labels)
-
-    def _renumber(self, labelled: Labelled, bodies: list[Body], labels: NDArray[np.int32]) -> None:
-        """Take over labels, without bodies that have too few Gaussians; in place."""
-        kept = [k for k in range(1, len(bodies) + 1) if (labels == k).sum() >= LEAST]
-        number = np.zeros(len(bodies) + 1, np.int32)
-        number[kept] = np.arange(1, len(kept) + 1)
-        labelled.labels, bodies[:] = number[labels], [bodies[k - 1] for k in kept]
-
-    def _tracker(self, labelled: Labelled, bodies: list[Body], number: int) -> Tracker:
-        """For the path of a body while the paths of the others are known."""
-        labels = labelled.labels
-        others = [(np.flatnonzero(labels == k), b) for k, b in enumerate(bodies, 1) if k != number]
-        rows = np.flatnonzero(labels == number)
-        return Tracker(labelled.columns(), rows, labels == 0, self._footage, self._settings.seed, others)
 
     def _scene(self, labelled: Labelled, bodies: Sequence[Body], single: Single | None) -> Scene:
         """The scene, rows by body, with tracks of few keys."""
@@ -306,45 +226,6 @@ class _Film:
             self._told = now
             left = now * (1 / max(share, 1e-9) - 1)
             self._on_status(Status(steps, min(share, 1.0), self._loss, math.nan, gaussians, left))
-
-
-def _covered(tracker: Tracker, times: NDArray[np.int64]) -> bool:
-    """Whether what stands still looks right at times at which it is gone, since known bodies pass before it."""
-    if not tracker.moving:
-        return False
-    rest = Body.at_rest(tracker.pivot, 1)
-    each = [tracker.errors(t, [(rest.quats[0], rest.offsets[0])]) for t in _some(times.tolist())]
-    return sum(float(e[0]) for e, _ in each) < 3 * RIGHT**2 * sum(pixels for _, pixels in each)
-
-
-def _goes_with(tracker: Tracker, paths: Sequence[Body]) -> Body | None:
-    """The path of those that are known by which a body is explained much better than by standing still."""
-    best: tuple[float, Body | None] = (TOGETHER, None)
-    for path in paths:
-        body = path.seen_from(tracker.pivot)
-        rest = body.quats[0], body.offsets[0]
-        some = _some([t for t, _ in body.runs[1:]])
-        each = [tracker.errors(t, [(body.quats[t], body.offsets[t]), rest])[0] for t in some]
-        with_it, without = np.sum(each, axis=0) if each else (1.0, 1.0)
-        if with_it / max(without, 1e-9) < best[0]:
-            best = with_it / max(without, 1e-9), body
-    return best[1]
-
-
-def _some(times: Sequence[int]) -> list[int]:
-    """At most `SORTED` of some times, evenly chosen."""
-    chosen = np.unique(np.linspace(0, len(times) - 1, min(SORTED, len(times))).astype(int))
-    return [int(times[k]) for k in chosen]
-
-
-def _alike(a: Body, b: Body, means: NDArray[np.float32], radius: float) -> bool:
-    """Whether the path of one body moves the means of another as its own path does, so that both are one."""
-    quats = np.tile([1.0, 0.0, 0.0, 0.0], (len(means), 1)).astype(np.float32)
-    away = [
-        float(np.linalg.norm(a.placed(t, means, quats)[0] - b.placed(t, means, quats)[0], axis=1).mean())
-        for t in range(len(a.offsets))
-    ]
-    return float(np.mean(away)) < ALIKE * radius
 
 
 def _share(joint: Joint, steps: int | None, seconds: float | None) -> float:

@@ -1,9 +1,9 @@
-"""Posed frames with times, by camera and time (`Footage`), and which of their pixels change."""
+"""Posed frames with times, by camera and time (`Footage`), and which of their pixels are not as at the first time."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,11 +16,13 @@ from ...fit.train import Shot
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
+U8 = NDArray[np.uint8]
 I64 = NDArray[np.int64]
 
 SAME_PLACE = 1e-4  # of the numbers of a pose: cameras within it are one camera that stands
 CHANGED = 0.05  # least difference of a colour, of 1, that counts as a change; more where frames are noisy
 NOISES = 4.0  # times the frames' own noise, from which a difference counts
+DIFFERS = 0.08  # difference of a colour to those of a render around a pixel, from which a frame shows something else
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +36,8 @@ class Footage:
         when: `[F]` index into `times`.
         cameras: the different cameras.
         who: `[F]` index into `cameras`.
+        at_first: of each camera, what it would see at the first time, as rendered; none: it is a camera that stands,
+            which has a frame of then.
     """
 
     shots: tuple[Shot, ...]
@@ -42,6 +46,7 @@ class Footage:
     when: I64
     cameras: tuple[Camera, ...]
     who: I64
+    at_first: tuple[U8, ...] = ()
 
     @classmethod
     def of(cls, shots: Sequence[Shot], seconds: Sequence[float | None]) -> Footage:
@@ -84,6 +89,14 @@ class Footage:
         """Whether the cameras stand: each has frames at several times, among them the first."""
         return len(self.cameras) > 1 and bool((self.when[self.first] == 0).all())
 
+    def backwards(self) -> Footage:
+        """The same frames in the opposite order: seconds count from 0 down."""
+        return Footage.of(self.shots, (-self.seconds).tolist())
+
+    def beginning(self, at_first: Sequence[U8]) -> Footage:
+        """The same frames, of which is known what each camera would see at the first time."""
+        return replace(self, at_first=tuple(at_first))
+
     @property
     def radius(self) -> float:
         """1.1 times the radius of the cameras around their middle, scene units."""
@@ -101,10 +114,32 @@ class Footage:
                 noises.append(float(np.median(np.abs(off))) / 255 / 0.6745 / np.sqrt(2))
         return max(CHANGED, NOISES * float(np.median(noises or [0.0])))
 
+    def moved(self, camera: int, t: int) -> NDArray[np.bool_]:
+        """`[H, W]` pixels of a camera's frame at a time that are not as at the first time."""
+        frame = self.frames[camera, t]
+        if self.at_first:
+            off = differs(self.at_first[camera], self.shots[frame].photo)
+            return np.asarray(ndimage.binary_dilation(off), dtype=bool)  # what is beside an edge differs less
+        return self.changed(frame, int(self.first[camera]))
+
     def changed(self, frame: int, other: int) -> NDArray[np.bool_]:
         """`[H, W]` pixels whose colour differs between two frames of one camera."""
         off = np.abs(self.shots[frame].photo.astype(np.int16) - self.shots[other].photo).max(axis=2) > 255 * self.least
         return np.asarray(ndimage.median_filter(off, 3), dtype=bool)
+
+
+def rounded(drawn: F32) -> U8:
+    """Rendered colours as those of a photograph."""
+    return np.asarray((255 * drawn.clip(0, 1)).round(), np.uint8)
+
+
+def differs(drawn: U8, photo: U8, least: float = DIFFERS) -> NDArray[np.bool_]:
+    """`[H, W]` where the colour of a picture is like none that a render has at the pixel and beside it."""
+    (height, width, _), around = drawn.shape, np.pad(drawn.astype(np.int16), ((1, 1), (1, 1), (0, 0)), mode="edge")
+    off = np.full((height, width), 255, np.int16)
+    for y, x in np.ndindex(3, 3):
+        off = np.minimum(off, np.abs(around[y : y + height, x : x + width] - photo).max(axis=2))
+    return np.asarray(ndimage.median_filter(off > 255 * least, 3), dtype=bool)
 
 
 def _same(a: Camera, b: Camera) -> bool:

@@ -26,6 +26,7 @@ GONE = 0.75  # share of a Gaussian's weight on changed pixels, over the pictures
 FAINT = 0.15  # opacity below which a Gaussian says nothing
 ALIKE = 0.8  # overlap of the times at which two neighbours are gone, from which they are of one thing
 NEAR = 5.0  # pixels, at the distance of the cameras' radius: as near are Gaussians that touch
+BRIEF = 0.15  # share of the times: what one camera sees gone for less is taken to be covered
 LEAST = 12  # Gaussians of the smallest thing
 
 
@@ -51,7 +52,7 @@ def gone(columns: Columns, footage: Footage) -> Flags:
     for c, camera in enumerate(footage.cameras):
         own = [t for t in range(times) if (c, t) in footage.frames]
         everything = np.ones((camera.height, camera.width), bool)
-        masks = [footage.changed(footage.frames[c, t], int(footage.first[c])) for t in own]
+        masks = [footage.moved(c, t) for t in own]
         found = weights(columns, camera, [everything, *masks])
         each.append((own, found))
         most = np.maximum(most, found[:, 0])
@@ -61,7 +62,11 @@ def gone(columns: Columns, footage: Footage) -> Flags:
         changed[:, own] += np.where(shows[:, None] > 0, found[:, 1:], 0)
         known[:, own] += shows[:, None] > 0
     opaque = (columns[3] > FAINT) & (most > 0.02)
-    return np.asarray(opaque[:, None] & (known > 0) & (changed > GONE * total))
+    flags: Flags = np.asarray(opaque[:, None] & (known > 0) & (changed > GONE * total))
+    if footage.at_first:  # one picture a time does not show all sides: they are as they were when they were seen last
+        last = np.maximum.accumulate(np.where(known > 0, np.arange(times), 0), axis=1)
+        flags = np.take_along_axis(flags, last, axis=1)
+    return flags
 
 
 def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.int64]]:
@@ -70,7 +75,10 @@ def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.i
     Args:
         flags: what `gone` found.
     """
-    rows = np.flatnonzero(flags.sum(axis=1) >= min(2, len(footage.times) - 1))
+    least = min(2, len(footage.times) - 1)
+    if footage.at_first:
+        least = max(least, round(BRIEF * len(footage.times)))
+    rows = np.flatnonzero(flags.sum(axis=1) >= least)
     if len(rows) < LEAST:
         return []
     means, own = columns[0][rows], flags[rows].astype(np.float32)

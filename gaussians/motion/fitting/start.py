@@ -90,13 +90,20 @@ def _confirmed(found: Points, spacing: float, moves: NDArray[np.bool_], rng: np.
     return order[np.sort(first)]
 
 
+def start_cloud(
+    shots: Sequence[Shot], photos: Photos, most: int, rng: np.random.Generator,
+    changing: Sequence[NDArray[np.bool_]] = (),
+) -> GaussianCloud:  # fmt: skip
+    """Gaussians at surveyed points where the capture has them, else at those of the pictures' own stereo."""
+    if len(photos.points.means):
+        return initial_cloud(photos, most, rng)
+    return start_points(list(shots), photos.extent, most, rng, changing)
+
+
 def trainer(footage: Footage, photos: Photos, most: int, schedule: Schedule, rng: np.random.Generator) -> Trainer:
     """A training on the first frames: from surveyed points where the capture has them, else from their own stereo."""
     shots = [footage.shots[i] for i in footage.first]
-    if len(photos.points.means):
-        cloud = initial_cloud(photos, most, rng)
-    else:
-        cloud = start_points(shots, photos.extent, most, rng, changing(footage))
+    cloud = start_cloud(shots, photos, most, rng, changing(footage))
     budget = min(most, int(ROOM * len(cloud)) + 1)
     return Trainer(shots, Parameters.of(cloud), MCMCStrategy(budget, rng), photos.extent, schedule, rng)
 

@@ -20,7 +20,7 @@ from ...fit.loss import BLACK
 from ...render.cpu import gradient
 from .. import keys
 from .bodies import Body, Columns, multiplied, pose_gradient, turned
-from .footage import Footage
+from .footage import Footage, differs, rounded
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -36,11 +36,13 @@ VIEWS = 6  # cameras that a pose is refined in
 STEPS, MEND_STEPS = 14, 8  # of the refinement at each time, while a path is searched and while it is mended
 MARGIN = 10  # pixels around a body that are rendered
 STILL = 0.004  # share of the pixels around a body that may change while it is taken to be at rest
+STILL_DRAWN = 0.05  # of those at which a body is seen, where frames are compared with a render
 MATTERS = 0.03  # difference of a colour by which a body is seen
 HOPELESS = 4  # times at which it may be lost from the first on, before it is given up
 LOST = 0.7  # of the difference without the body, above which it was not found and is searched farther away
 SPINS = (0.7,)  # radians: turns about the world's axes that are tried where a body was found
 BETTER = 0.98  # of the difference with the present pose, below which another one replaces it
+DIFFERENCE = 0.02  # of the body's size: a step of which two renders tell a derivative
 APART = 0.02  # of the body's size: poses that are nearer are the same
 
 Pose = tuple[F64, F64]  # quaternion [4] and offset [3]
@@ -68,7 +70,7 @@ class Tracker:
         columns: all Gaussians at the start.
         rows: those of the body.
         still: `[N]` those that stand still.
-        footage: frames from cameras that stand.
+        footage: its first time is that of the columns.
         seed: of the search.
         moving: the rows of other bodies whose path is known, and their paths.
     """
@@ -94,6 +96,7 @@ class Tracker:
         _, _, axes = np.linalg.svd((means - self.pivot) * np.sqrt(weight)[:, None], full_matrices=False)
         around = np.concatenate([np.outer(np.linspace(-TURN, TURN, 28), axis) for axis in axes])
         self._turns = np.concatenate([np.zeros_like(around), around], axis=1)  # of hinges and fans
+        self._axes = axes
         self._bare: dict[tuple[int, int], NDArray[np.bool_]] = {}
         self._blurred: dict[tuple[int, float], F32] = {}
         every = np.concatenate([self._rest[0], means])
@@ -108,13 +111,13 @@ class Tracker:
         for t in range(1, times):
             step = self._footage.times[t] - self._footage.times[t - 1]
             body.quats[t], body.offsets[t] = body.quats[t - 1], body.offsets[t - 1]
-            here, _ = body.placed(t, self._own[0], self._own[1])
-            views = self._views(here, t, float(np.linalg.norm(speed * step)))
-            if not views or self._rests(t, since, views):
+            here = body.placed(t, self._own[0], self._own[1])
+            views = self._views(here[0], t, float(np.linalg.norm(speed * step)))
+            if not views or self._rests(t, since, views, here):
                 speed, spin = np.zeros(3), np.zeros(3)
                 continue
             since = t
-            if self._rests(t, 0, self._views(self._own[0], t, 0.0)):  # it is back where it was at first
+            if self._rests(t, 0, self._views(self._own[0], t, 0.0), self._own[:2]):  # it is back where it was at first
                 body.quats[t], body.offsets[t] = body.quats[0], body.offsets[0]
                 speed, spin = np.zeros(3), np.zeros(3)
                 continue
@@ -131,7 +134,7 @@ class Tracker:
                 break
             if found[t]:
                 speed = (body.offsets[t] - body.offsets[t - 1]) / step
-                spin = _vector(multiplied(body.quats[t], body.quats[t - 1] * [1, -1, -1, -1])) / step
+                spin = vector(multiplied(body.quats[t], body.quats[t - 1] * [1, -1, -1, -1])) / step
             else:
                 body.quats[t], body.offsets[t] = body.quats[t - 1], body.offsets[t - 1]
         gain = float(np.mean(ratios)) if ratios else 1.0
@@ -201,6 +204,13 @@ class Tracker:
                 found[k] += float((unlike(drawn, view.photo) ** 2).sum())
         return found, pixels
 
+    def without_moving(self, t: int, body: Body) -> float:
+        """Squared difference at a time, as in `errors`, with the body at its first pose and without the known ones."""
+        kept, self.moving = self.moving, []
+        errors, _ = self.errors(t, [(body.quats[0], body.offsets[0])])
+        self.moving = kept
+        return float(errors[0])
+
     def slope(self, body: Body, t: int) -> tuple[F64, F64]:
         """Gradient of the squared difference at a time by a further turn about the body's middle and by a shift."""
         turn, shift = np.zeros(3), np.zeros(3)
@@ -209,6 +219,43 @@ class Tracker:
             _, by_turn, by_shift = self._slope(view, means, quats, body.pivot + body.offsets[t])
             turn, shift = turn + by_turn, shift + by_shift
         return turn, shift
+
+    def known(self, body: Body, t: int) -> tuple[float, F64, F64]:
+        """Squared difference at a time, its gradient `[6]` and Gauss-Newton matrix `[6, 6]` by a shift and by a further
+        turn times the body's size."""
+        value, slope, bend = 0.0, np.zeros(6), np.zeros((6, 6))
+        pose, step = (body.quats[t], body.offsets[t]), DIFFERENCE * self.size
+        poses = [pose]
+        for axis in np.eye(3):
+            poses += [(pose[0], pose[1] + sign * step * axis) for sign in (1, -1)]
+        for axis in np.eye(3):
+            poses += [(turned(pose[0], sign * step / self.size * axis), pose[1]) for sign in (1, -1)]
+        placed = [Body(self.pivot, q[None], o[None]).placed(0, self._own[0], self._own[1]) for q, o in poses]
+        for view in self._views(placed[0][0], t, 0.0):
+            off = [
+                unlike(gradient.draw(_joined(view.rest, (*p, *self._own[2:])), view.camera, BLACK), view.photo).reshape(
+                    -1
+                )
+                for p in placed
+            ]
+            by = np.stack([(a - b) / (2 * step) for a, b in zip(off[1::2], off[2::2], strict=True)]).astype(np.float64)
+            here = off[0].astype(np.float64)
+            weight = np.minimum(1, CLIP / np.maximum(np.abs(here), 1e-9))
+            value += float((weight * here**2).sum())
+            slope += 2 * (by * weight) @ here
+            bend += 2 * (by * weight) @ by.T
+        return value, slope, bend
+
+    def box(self, beyond: float) -> tuple[F64, F64, F64]:
+        """The body's own axes `[3, 3]`, and from where to where it reaches along them from its middle; so large a share
+        of its Gaussians is beyond at either side."""
+        along = (self._own[0] - self.pivot) @ self._axes.T
+        return self._axes.astype(np.float64), np.quantile(along, beyond, axis=0), np.quantile(along, 1 - beyond, axis=0)
+
+    @property
+    def seconds(self) -> F64:
+        """`[T]` the times of the frames."""
+        return self._footage.times
 
     # --- the search ----------------------------------------------------------------------------------------------
 
@@ -285,7 +332,7 @@ class Tracker:
             x, y = pixels[camera.contains(pixels, depth)].astype(np.int64).T
             own = np.zeros((camera.height, camera.width), bool)
             own[y, x] = True
-            changed = footage.changed(footage.frames[key], int(footage.first[c]))
+            changed = footage.moved(c, t)
             self._bare[key] = ~ndimage.binary_dilation(own, iterations=3) & ~ndimage.binary_dilation(
                 changed, iterations=2
             )
@@ -366,9 +413,17 @@ class Tracker:
         photo = self._footage.shots[self._footage.frames[c, t]].colors[y0:y1, x0:x1]
         return _View(c, part, rest, np.ascontiguousarray(photo), (x0, y0, x1, y1))
 
-    def _rests(self, t: int, since: int, views: Sequence[_View]) -> bool:
-        """Whether nothing changed around a body since a time."""
+    def _rests(self, t: int, since: int, views: Sequence[_View], here: tuple[F32, F32]) -> bool:
+        """Whether nothing changed around a body since a time: to the frames of then, or, of a camera that moves, to
+        what it would see with the body `here` (means and quaternions)."""
         changed = area = 0
+        if self._footage.at_first:
+            for view in views:
+                both = _joined(view.rest, (*here, *self._own[2:]))
+                seen, bare = (gradient.draw(columns, view.camera, BLACK).rgb for columns in (both, view.rest))
+                off = differs(rounded(seen), rounded(view.photo))
+                changed, area = changed + int(off.sum()), area + int((np.abs(seen - bare).max(axis=2) > MATTERS).sum())
+            return area > 0 and changed <= STILL_DRAWN * area
         for view in views:
             before = self._footage.frames.get((view.number, since))
             if before is None:
@@ -415,7 +470,7 @@ def unlike(drawn: gradient.Drawn, photo: F32) -> F32:
 
 def led(a: Pose, b: Pose, share: float) -> Pose:
     """The pose on the way from one to another: 0 is the first, 1 the second, more is beyond it."""
-    step = _vector(multiplied(b[0], a[0] * [1, -1, -1, -1]))
+    step = vector(multiplied(b[0], a[0] * [1, -1, -1, -1]))
     return turned(a[0], share * step), a[1] + share * (b[1] - a[1])
 
 
@@ -426,7 +481,7 @@ def _seen(columns: Columns, camera: Camera) -> tuple[F64, F64, F64]:
     return pixels, np.minimum(reach, 1e4), depth
 
 
-def _vector(q: F64) -> F64:
+def vector(q: F64) -> F64:
     """The rotation vector `[3]` of a unit quaternion."""
     w, v = (q[0], q[1:]) if q[0] >= 0 else (-q[0], -q[1:])
     length = float(np.linalg.norm(v))

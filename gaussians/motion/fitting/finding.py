@@ -1,0 +1,231 @@
+"""Finds what moves, and its paths (`Finder`), from the scene at the first time.
+
+Seeds are tracked, and those that a path explains are kept. They are sorted out, put on an axis where the frames tell no
+more, and each Gaussian near them is assigned to one of them or to what stands still.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...fit.parameters import Parameters
+from .axes import agrees, line_of
+from .bodies import Body, Columns, Labelled
+from .footage import Footage
+from .rolling import Ball
+from .seeds import LEAST, Flags, gone, halves, seeds
+from .sharing import shared
+from .smoothing import smoothed
+from .supposing import supposed
+from .tracking import Tracker
+
+EXPLAINS = 0.7  # of the difference without a body, to which its path must bring the pictures
+MOST_BODIES = 12
+ALIKE = 0.01  # of the radius of the cameras: bodies whose paths differ by less, on average, are one
+AS_WELL = 1.05  # times the difference with its own path, up to which a body follows another, or stands still
+FREE_ALONE, LINE_ALONE = 1.5, 1.2  # the same of one camera, before which a free path explains what it should not
+PASSED = 0.5  # of the difference without the bodies that are known, to which they bring what they cover
+TOGETHER = 0.6  # of the difference standing still, below which a body follows another without a search of its own
+RIGHT = 0.05  # root mean square difference of colours up to which what stands still is taken to be covered meanwhile
+SORTED = 10  # times at which that is measured
+SETTLED = 1  # rounds in which paths are mended and Gaussians assigned to bodies
+
+
+class Finder:
+    """Finds what moves in a footage.
+
+    Args:
+        footage: its first time is that of the scene from which bodies are tracked.
+        seed: of the searches.
+        rng: draws the order of frames.
+        tell: is called before each search.
+    """
+
+    def __init__(self, footage: Footage, seed: int, rng: np.random.Generator, tell: Callable[[], None]) -> None:
+        self._footage, self._seed, self._rng, self._tell = footage, seed, rng, tell
+        self._alone = bool(footage.at_first)
+
+    def find(self, start: Parameters) -> tuple[Labelled, list[Body], int]:
+        """What moves, by the number of its label, its paths, and how many bodies were tried.
+
+        Args:
+            start: of the Gaussians of the scene at the first time.
+        """
+        columns = start.columns()
+        labels, bodies, tried = self._found(columns, gone(columns, self._footage))
+        labelled = Labelled.labelled(start, labels)
+        if not bodies:
+            return labelled, bodies, tried
+        self._sort_out(labelled, bodies)
+        for _ in range(SETTLED):
+            self._follow(labelled, bodies)
+            self._settle(labelled, bodies)
+        self._sort_out(labelled, bodies)
+        self._follow(labelled, bodies)
+        return labelled, bodies, tried
+
+    def _found(self, columns: Columns, flags: Flags) -> tuple[NDArray[np.int32], list[Body], int]:
+        """Labels `[N]` of the seeds that a path explains, the paths, and how many were tried."""
+        footage, found = self._footage, list[tuple[NDArray[np.int64], Body]]()
+        queue = seeds(columns, footage, flags)[:MOST_BODIES]
+        still, tried = np.ones(len(flags), bool), 0
+        for rows in queue:
+            still[rows] = False
+        while queue:
+            rows = queue.pop(0)
+            self._tell()
+            tracker = Tracker(columns, rows, still, footage, self._seed + tried, found)
+            if _covered(tracker, np.flatnonzero(flags[rows].any(axis=0)), self._alone):
+                continue
+            if (path := _goes_with(tracker, [body for _, body in found])) is not None:
+                found.append((rows, path))
+                continue
+            path = self._path(tracker)
+            tried += 1
+            if path is not None:
+                found.append((rows, path))
+            elif tried < 2 * MOST_BODIES and not self._alone:
+                queue = [*queue, *halves(rows, flags)]
+        labels, bodies = np.zeros(len(flags), np.int32), list[Body]()
+        for rows, body in found:
+            same = next((k for k, b in enumerate(bodies) if _alike(b, body, columns[0][rows], footage.radius)), None)
+            if same is None:
+                same = len(bodies)
+                bodies.append(body)
+            labels[rows] = same + 1
+        return labels, bodies, tried
+
+    def _path(self, tracker: Tracker) -> Body | None:
+        """A path that explains a body, if there is one."""
+        tracked, footage = tracker.track(), self._footage
+        if not self._alone:
+            return tracked.body if tracked.gain < EXPLAINS else None
+        free = smoothed(tracker, tracked.body, footage.radius)
+        on = supposed(tracker, len(footage.times))
+        assert on.line is not None
+        best = on if agrees(tracker, free, on.line) else free
+        return best if self._explains(tracker, best) else None
+
+    def _explains(self, tracker: Tracker, path: Body) -> bool:
+        """Whether one camera's frames are explained much better by a path than by standing still."""
+        still, errors = Body.at_rest(path.pivot, len(path.offsets)), np.zeros(2)
+        for t in range(1, len(path.offsets)):
+            errors += tracker.errors(t, [(b.quats[t], b.offsets[t]) for b in (path, still)])[0]
+        return bool(errors[1] > self._as_well(path) * errors[0])
+
+    def _as_well(self, path: Body) -> float:
+        """Times the difference with a path, up to which standing still, or another path, is as good."""
+        if not self._alone:
+            return AS_WELL
+        return FREE_ALONE if path.line is None else LINE_ALONE
+
+    def _follow(self, labelled: Labelled, bodies: list[Body]) -> None:
+        """Mend the path of each body, put it on one axis where the frames tell no more, or let it roll; in place."""
+        for k in range(len(bodies)):
+            tracker = self._tracker(labelled, bodies, k + 1)
+            body = bodies[k].seen_from(tracker.pivot)
+            if self._alone and body.line is None:
+                body = smoothed(tracker, body, self._footage.radius)
+            line = line_of(tracker, body)
+            if line is None:
+                if not self._alone:
+                    tracker.mend(body)
+                body = self._rolled(labelled, k + 1, body)
+            bodies[k] = body if line is None else body.on(line)
+
+    def _rolled(self, labelled: Labelled, number: int, body: Body) -> Body:
+        """A body as it is, or, if it is a ball that rolls, with its turns and the Gaussians of all its surface."""
+        columns, rows = labelled.columns(), np.flatnonzero(labelled.labels == number)
+        ball = Ball.of(columns[0][rows].astype(np.float64), columns[3][rows].astype(np.float64))
+        rolled = None if ball is None else ball.rolled(body, self._footage)
+        if ball is None or rolled is None:
+            return body
+        ball.filled(labelled, number, rolled, self._footage)
+        return rolled
+
+    def _sort_out(self, labelled: Labelled, bodies: list[Body]) -> None:
+        """Let a body stand still, or join another, where that explains the frames about as well as its own path while
+        the others go theirs: what something passed before stands, and fragments of a thing are one; in place."""
+        for number in sorted(range(1, len(bodies) + 1), key=lambda k: int((labelled.labels == k).sum())):
+            tracker = self._tracker(labelled, bodies, number)
+            own = bodies[number - 1].seen_from(tracker.pivot)
+            others = [k for k in range(1, len(bodies) + 1) if k != number and (labelled.labels == k).any()]
+            paths = [
+                own,
+                Body.at_rest(own.pivot, len(own.offsets)),
+                *(bodies[k - 1].seen_from(own.pivot) for k in others),
+            ]
+            some = _some(sorted({t for path in paths for t, _ in path.runs[1:]}))
+            errors = np.sum([tracker.errors(t, [(p.quats[t], p.offsets[t]) for p in paths])[0] for t in some], axis=0)
+            best = int(errors[1:].argmin())
+            if errors[1 + best] <= self._as_well(own) * errors[0]:
+                labelled.labels[labelled.labels == number] = others[best - 1] if best else 0
+        self._renumber(labelled, bodies, labelled.labels)
+
+    def _settle(self, labelled: Labelled, bodies: list[Body]) -> None:
+        """Assign Gaussians to bodies by the frames, in place; a body that keeps too few is dropped."""
+        labels = shared(labelled.columns(), labelled.labels, bodies, self._footage, self._rng)
+        self._renumber(labelled, bodies, labels)
+
+    def _renumber(self, labelled: Labelled, bodies: list[Body], labels: NDArray[np.int32]) -> None:
+        """Take over labels, without bodies that have too few Gaussians; in place."""
+        kept = [k for k in range(1, len(bodies) + 1) if (labels == k).sum() >= LEAST]
+        number = np.zeros(len(bodies) + 1, np.int32)
+        number[kept] = np.arange(1, len(kept) + 1)
+        labelled.labels, bodies[:] = number[labels], [bodies[k - 1] for k in kept]
+
+    def _tracker(self, labelled: Labelled, bodies: list[Body], number: int) -> Tracker:
+        """For the path of a body while the paths of the others are known."""
+        labels = labelled.labels
+        others = [(np.flatnonzero(labels == k), b) for k, b in enumerate(bodies, 1) if k != number]
+        rows = np.flatnonzero(labels == number)
+        return Tracker(labelled.columns(), rows, labels == 0, self._footage, self._seed, others)
+
+
+def _covered(tracker: Tracker, times: NDArray[np.int64], alone: bool) -> bool:
+    """Whether what stands still looks right at times at which it is gone, since known bodies pass before it.
+
+    Args:
+        alone: of one camera: whether it looks much better with these is enough.
+    """
+    if not tracker.moving:
+        return False
+    rest, some = Body.at_rest(tracker.pivot, 1), _some(times.tolist())
+    each = [tracker.errors(t, [(rest.quats[0], rest.offsets[0])]) for t in some]
+    known = sum(float(e[0]) for e, _ in each)
+    if known < 3 * RIGHT**2 * sum(pixels for _, pixels in each):
+        return True
+    return alone and known < PASSED * sum(float(tracker.without_moving(t, rest)) for t in some)
+
+
+def _goes_with(tracker: Tracker, paths: Sequence[Body]) -> Body | None:
+    """The path of those that are known by which a body is explained much better than by standing still."""
+    best: tuple[float, Body | None] = (TOGETHER, None)
+    for path in paths:
+        body = path.seen_from(tracker.pivot)
+        rest = body.quats[0], body.offsets[0]
+        some = _some([t for t, _ in body.runs[1:]])
+        each = [tracker.errors(t, [(body.quats[t], body.offsets[t]), rest])[0] for t in some]
+        with_it, without = np.sum(each, axis=0) if each else (1.0, 1.0)
+        if with_it / max(without, 1e-9) < best[0]:
+            best = with_it / max(without, 1e-9), body
+    return best[1]
+
+
+def _some(times: Sequence[int]) -> list[int]:
+    """At most `SORTED` of some times, evenly chosen."""
+    chosen = np.unique(np.linspace(0, len(times) - 1, min(SORTED, len(times))).astype(int))
+    return [int(times[k]) for k in chosen]
+
+
+def _alike(a: Body, b: Body, means: NDArray[np.float32], radius: float) -> bool:
+    """Whether the path of one body moves the means of another as its own path does, so that both are one."""
+    quats = np.tile([1.0, 0.0, 0.0, 0.0], (len(means), 1)).astype(np.float32)
+    away = [
+        float(np.linalg.norm(a.placed(t, means, quats)[0] - b.placed(t, means, quats)[0], axis=1).mean())
+        for t in range(len(a.offsets))
+    ]
+    return float(np.mean(away)) < ALIKE * radius
