@@ -223,18 +223,24 @@ def _spun(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
         return  # "turn by 180 degrees instead of 90" is said of a turn that is there
     if manner.compare and manner.rate is None:
         return
-    if manner.rate is not None and sense in (
-        *MOTION,
-        "be",
-        "do",
-        "faster",
-        "slower",
-        "change",
-        "stay",
-        "continue",
-        "increase",
-        "reduce",
-        "start",
+    takes = clause.verb is not None and clause.verb.first == "take"  # "it should take half a second"
+    if (
+        manner.rate is not None
+        and not takes
+        and sense
+        in (
+            *MOTION,
+            "be",
+            "do",
+            "faster",
+            "slower",
+            "change",
+            "stay",
+            "continue",
+            "increase",
+            "reduce",
+            "start",
+        )
     ):
         yield Command(({**spin, "turns_per_second": manner.rate},))
         return

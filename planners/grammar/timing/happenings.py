@@ -150,7 +150,7 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     if at_rest and manner.only("state", "at", "whom", "goal"):
         return "moving", _ENDED  # "it is lying still at the wall"
     told = set(clause.aux)
-    ended = clause.form == "past" and bool({"has", "have", "is", "are", "was", "were", "had"} & told)
+    ended = clause.form == "past" and bool({"has", "have", "'s", "is", "are", "was", "were", "had"} & told)
     ended |= clause.form == "plain" and bool({"has", "have", "had"} & told)  # "it has come out"
     place = _RELATED.get(manner.at) if manner.whom is not None else None
     only_place = manner.only("goal", "at", "whom")

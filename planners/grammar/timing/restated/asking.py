@@ -29,6 +29,35 @@ RULES: Rules = (
     (r"(?: ,)? (?:from )?start to finish$", " from start to finish"),
     (rf"\b(?P<w>for|in|during|over) (?:the |my |its )?(?:closing|final|concluding) (?P<d>{DURATION})",
      r"\g<w> the last \g<d>"),
+    (r"\bvid\b", "video"),
+    (r"\b(?P<v>takes?|lasts?|taking|need|needs) (?P<a>only |just |about )?half a second\b", r"\g<v> \g<a>0.5 seconds"),
+    (r"(?P<np>\bthe [a-z]+) 's (?=(?:gone|come|been|stopped|opened|closed|shut|fallen|reached|left|finished|arrived|"
+     r"landed|turned)\b)", r"\g<np> has "),
+    (rf"\b(?P<x>from {DURATION} (?:to|until|till) {NUMBER} and a half)$", r"\g<x> seconds"),
+    (r"\b(?:aint|ain 't|ain not)\b", "is not"),
+    (r"\bshould be not\b", "should not be"),
+    (r"(?: ,)? (?:and )?after (?:that|this) (?:yes|it is (?:fine|ok)|ok|again|as normal|normal(?:ly)?)$", ""),
+    (r"(?: ,)? and that is it(?: ,)?(?: (?:it |he |she )?(?:does|do|should|will|must) not (?:move|go|walk|roll|turn|"
+     r"spin) (?:again|any ?more|on))?$", ""),
+    (rf" , (?:it |he |she )?takes? (?:about |only |just )?(?P<d>{DURATION})$", r" taking \g<d>"),
+    (rf"\bwhen we are at (?P<d>{DURATION})", r"at \g<d>"),
+    (r"\bget(?:s|ting)? (?:tired|bored|lazy|stuck) and (?=stop|halt|pause|freeze|slow)", ""),
+    (r"\b(?:in|at|on) the (?:very |exact )?(?P<m>moment|instant|second) (?=(?:the|my) (?:first |last |second )?[a-z]+ "
+     r"[a-z]+s\b)", r"the \g<m> "),
+    (rf"\bfor (?:a|the) (?:little |short |brief )?(?:while|bit|moment|time)(?: ,)? (?=(?:between|from|at|until|till) "
+     rf"{NUMBER})", ""),
+    (r"^(?P<c>(?:when|once|as soon as|after) [^,]+?) at the (?:very )?end ,", r"\g<c> ,"),
+    (r"\bcom(?:e|es) (?P<v>roll|walk|slid|driv|fly|hopp|runn|bounc)ing\b",
+     lambda m: {"slid": "slide", "driv": "drive", "hopp": "hop", "runn": "run", "bounc": "bounce"}.get(m["v"], m["v"])),
+    (r"^(?:leave|keep) (?P<np>(?:the|my) [a-z ]+?)(?: up| over| right| just)?(?: there)? (?:on|in|at) (?:the|its) "
+     r"[a-z]+(?: [a-z]+)?(?: ,| \.| and) (?:there is )?(?:no need for (?:it|that one|him|her) to|(?:i |we )?do not "
+     r"want (?:it|that|that one|this one)(?: to)?|(?:it|that one|this one|he|she) (?:is|does|should|must|needs?|shall) "
+     r"not(?: to)?) (?P<v>fall|falling|drop|dropping|move|moving|roll|rolling|come down|coming down)$",
+     lambda m: f"do not let {m['np']} {plain_of(m['v'])}"),
+    (rf"\b(?:sooner|faster|quicker)(?: ,)? (?=in {DURATION})", ""),
+    (rf"(?P<d>\bin {DURATION}) (?:overall|in total|in all|altogether|all in all)$", r"\g<d>"),
+    (rf"(?P<v>\b(?:stop|pause|wait|halt|rest)s?|\bpause) when (?:it|he|she) turns(?: ,)? (?=from {NUMBER})", r"\g<v> "),
+    (r"\b(?P<v>make|take|have|do)s? a (?:pause|stop|rest|break)\b(?! of)", "pause"),
     (r"\bthats\b", "that is"),
     (r"\bas (?P<x>(?:the|it|he|she) [^,]*?)(?: ,)? (?:and )?(?:hold|keep|stays?|leave) (?:that|it|so|there|like that)"
      r"(?: that way| so| like that)? (?:till|until|to) the (?:very )?end$", r"when \g<x>"),

@@ -64,8 +64,8 @@ RULES: Rules = (
      r"play \g<x> at \g<f> speed"),
     (r"\b(?P<n>two|three|four|five|\d+) times (?:as )?slow(?:er|ly)?\b", r"\g<n> times slower"),
     (IN_ORDER, in_order),
-    (r"(?: ,| and)?(?: let us)? say (?=(?:right |exactly )?(?:over|in|at|by|for|about|around|half|twice|double|a |an |"
-     r"\d|one|two|three|four|five|ten) ?)", " "),
+    (r"(?: ,| and)?(?: let us)? say (?=(?:right |exactly )?(?:from|between|over|in|at|by|for|about|around|half|twice|"
+     r"double|a |an |\d|one|two|three|four|five|ten) ?)", " "),
     (rf"\b(?P<a>(?:as|so) [a-z]+|[a-z]+er|more [a-z]+) (?:as|than) {IT} (?:(?:does|do|is|are|did) )?(?:at present|at "
      r"the moment|right now|currently|so far)\b", r"\g<a>"),
     (rf"^(?P<f>{SHARE}) (?:speed|pace|tempo) (?:on|for) (?P<x>.+)$", r"play \g<x> at \g<f> speed"),

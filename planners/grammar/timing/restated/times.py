@@ -64,6 +64,8 @@ RULES: Rules = (
      rf"(?: only)? (?:at|when|once) (?P<b>{POINT}|.+)$", lambda m: f"{m['c']} , hide {m['x']} until {m['b']}"),
     (rf"\b(?P<v>rest|wait|stay|stand|sit)(?P<s>s?) (?:by|at|beside|near|next to|on) (?:the|its) [a-z]+ (?=for "
      rf"{DURATION} before (?:it|he|she) )", r"wait\g<s> "),
+    (rf"(?P<t>\bat {POINT})(?: ,)? (?:(?:a little|a bit|somewhat|slightly|a touch) )?(?:later|earlier|"
+     r"sooner)$", r"\g<t>"),
     (r"\bopen (?:full|entirely|in full)(?= ?(?:,|$))", "fully open"),
     (r"\b(?P<n>\d+) ?(?:st|nd|rd|th) second\b", r"\g<n> seconds"),
     (r"\bfor the (?:period|time|while|stretch) (?:that |when |in which )?(?=(?:it|he|she|the [a-z]+(?: [a-z]+)?) (?:is|"
