@@ -474,6 +474,8 @@ class TimeReader:
             and all(op.get("change") in ("stop", "begin") for op in ops)
         ):  # "stop when it is turning" begins then
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
+        if kind == "look" and happening is not None and moment.start is None and _is_half_the_film(happening):
+            moment, happening = replace(moment, start="middle"), None
         stops = bool(ops) and all(op.get("change") == "stop" for op in ops)
         if happening is None and stops and moment.start == "middle" and any(map(_HALF_ITS_WAY.fullmatch, moment.said)):
             happening = Happening(During(state="halfway", part="from"), "")
@@ -575,6 +577,12 @@ _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b"
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
 
 
+def _is_half_the_film(happening: Happening) -> bool:
+    """Whether "halfway through" says nothing of what has gone half its way."""
+    during, said = happening.during, set(happening.said.split())
+    return (during.state, during.part) == ("halfway", "from") and during.of in (None, IT) and not said & _OF_A_WAY
+
+
 def _on_its_way(op: Fields) -> Fields:
     """What is put next to a thing at a time goes there: it stops where it is beside it, and looks for no free place."""
     place = op.get("place") if op["op"] == "move" else None
@@ -645,6 +653,7 @@ _THINGS = bag("sink mirror switch block swing slide paint light float lift step 
 
 _PART_OF_TIME = re.compile(r"\b(?:start|beginning|speed|motion|movement) of\b")
 _AT_A_TIME = re.compile(r"at (?!once\b)")
+_OF_A_WAY = bag("it he she they its his her their is has gone down up across along there")
 _AGAIN = re.compile(r"\b(?:again|back|as (?:before|usual|normal|ever)|like before)\b")
 _NOT_SEEN = re.compile(r"\b(?:not|never) (?:ever )?(?:see|be seen)\b")
 _COMES_BACK = re.compile(r"\b(?:back|returns?|comes?|again|normal|reappears?|appears?|shows?)\b")

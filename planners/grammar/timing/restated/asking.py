@@ -22,7 +22,12 @@ RULES: Rules = (
     (r"^(?:up)?on (?P<np>(?:the|my) [a-z]+) (?P<v>[a-z]+ing)\b", lambda m: f"when {m['np']} {plain_of(m['v'])}s"),
     (rf"\b(?:snap|switch|change|flip|set|fade|jump) (?P<np>(?:the|my) [a-z ]+?|it) (?:over )?to (?P<c>{COLOR})\b",
      r"turn \g<np> \g<c>"),
-    (rf"(?: ,)? and (?:then )?(?:{COLOR}|normal|itself) again(?: (?:after (?:that|this)|afterwards|then|later))?$", ""),
+    (rf"^(?P<x>.*\b(?:until|till|to|for|while|between|during|as long as)\b.+?)(?: ,)? (?:and |then )+(?:{COLOR}|normal|"
+     r"itself) again(?: (?:after (?:that|this)|afterwards|then|later))?$", r"\g<x>"),
+    (r"^(?P<np>(?:the|my|this|that) [a-z]+(?: [a-z]+)?) (?:is|was|are|looks?) [^,.]*? ,? ?(?:and )?so (?:please )?"
+     r"(?P<rest>(?:do not |never )?(?:show|hide|paint|make|turn|move|stop|remove|delete|lift|open|close|slow|let) it\b"
+     r".*)$",
+     lambda m: m["rest"].replace(" it", f" {m['np']}", 1)),
     (r"(?: ,)? (?:and )?then (?:it|he|she) (?:(?:can|may|should|is to|shall) )?(?:roll|walk|go|move|drive|slide|fall|"
      r"continue)s? on(?:wards)?(?: to (?:the|its) [a-z]+)?$", ""),
     (rf" , (?:in )?(?P<d>{DURATION}) (?:tops|max|maximum|at most|at the most|no more)$", r" in \g<d>"),
