@@ -45,8 +45,9 @@ def when_of(moment: Moment, during: During | None, kind: str, op: Fields) -> Whe
         lasting = SLOW if moment.slowly else BRIEF if moment.quickly and kind == "path" else None
     stop: End | None = None if lasting is not None else moment.stop
     goes = kind == "path" or op.get("turns") is not None
-    if goes and isinstance(start, float) and start < 0 and lasting is None and stop is None:
-        stop = "end"  # "in the last two seconds" is there at the end
+    last = isinstance(start, float) and (start < 0 or any(map(_TO_THE_END.search, moment.said)))
+    if goes and last and lasting is None and stop is None:
+        stop = "end"  # "in the last two seconds", "from 3 s to the end" is there at the end
     ends = during is not None and during.part in ("from", "after") and moment.always
     if kind == "path" and ends and stop is None and lasting is None:
         stop = "end"  # "by the end of the film"
@@ -89,6 +90,7 @@ def _is_paced(op: Fields) -> bool:
     return op["change"] in ("speed", "later") and when is None
 
 
+_TO_THE_END = re.compile(r"\b(?:to|until|till) the (?:very )?end\b")
 _BOTH = re.compile(r"\b(?:in and out|out and in|both|opening and closing|open and close)\b")
 _OPENS = re.compile(r"\b(?:open(?:s|ing)?|out)\b")
 _CLOSES = re.compile(

@@ -471,3 +471,10 @@ def test_what_opens_by_itself_opens_at_another_time(
     data = {"op": "articulate", "target": A_CHAIR, "change": "open", "when": {"start": start}}
     made = done(drawn, data, context).scene
     assert np.allclose(movements(course_of(made, CHAIR)), spans, atol=0.06)
+
+
+def test_what_closes_by_itself_closes_later(drawn: Scene, context: Context) -> None:
+    data = {"op": "articulate", "target": A_CHAIR, "change": "close", "when": {"start": 2.5}}
+    made = done(drawn, data, context).scene
+    assert np.allclose(movements(course_of(made, CHAIR)), [(0.5, 1.0), (2.5, 3.5)], atol=0.06)
+    assert middle(made, 2.45) == pytest.approx(middle(drawn, 1.5), abs=1e-3)  # it stays open until then

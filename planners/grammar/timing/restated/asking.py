@@ -35,6 +35,7 @@ RULES: Rules = (
     (rf"\b(?P<w>for|in|during|over) (?:the |my |its )?(?:closing|final|concluding) (?P<d>{DURATION})",
      r"\g<w> the last \g<d>"),
     (r"\bvid\b", "video"),
+    (r"\b(?:hold|keep)s? (?P<np>(?:the|my) [a-z ]+?|it) back (?=(?:until|till) )", r"let \g<np> wait "),
     (r"\b(?P<v>takes?|lasts?|taking|need|needs) (?P<a>only |just |about )?half a second\b", r"\g<v> \g<a>0.5 seconds"),
     (r"(?P<np>\bthe [a-z]+) 's (?=(?:gone|come|been|stopped|opened|closed|shut|fallen|reached|left|finished|arrived|"
      r"landed|turned)\b)", r"\g<np> has "),
