@@ -477,4 +477,4 @@ def test_what_closes_by_itself_closes_later(drawn: Scene, context: Context) -> N
     data = {"op": "articulate", "target": A_CHAIR, "change": "close", "when": {"start": 2.5}}
     made = done(drawn, data, context).scene
     assert np.allclose(movements(course_of(made, CHAIR)), [(0.5, 1.0), (2.5, 3.5)], atol=0.06)
-    assert middle(made, 2.45) == pytest.approx(middle(drawn, 1.5), abs=1e-3)  # it stays open until then
+    assert middle(made, 2.4) == pytest.approx(middle(drawn, 1.5), abs=5e-3)  # it stays open until then
