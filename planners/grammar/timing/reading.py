@@ -443,8 +443,6 @@ class TimeReader:
             if re.search(r"\b(?:off|out|on)$", command.text) and any(op["op"] in ("delete", "relight") for op in ops):
                 return None  # "the light should go out"
             kind = "path" if ways else kind
-        if moment.told or happening is not None:
-            ops = [_on_its_way(op) for op in ops]
         if command.timeless:
             moment = Moment()
         if happening is not None and happening.during.part in ("until", "until_end") and moment.stop is not None:
@@ -513,6 +511,7 @@ class TimeReader:
                     during = None  # "once it has opened, shut it at 3 s" is no 3 s later
                 op = {**op, **({"target": target} if target is not None else {})}
             when = when_of(moment, during, kind, op)
+            op = op if when in (None, When()) else _on_its_way(op)
             made.append({**op, **({"when": when} if when is not None else {})})
             parse_op(made[-1])  # an operation that cannot be is no reading
         return tuple(made)

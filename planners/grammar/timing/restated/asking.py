@@ -34,6 +34,7 @@ RULES: Rules = (
     (r"(?: ,)? (?:from )?start to finish$", " from start to finish"),
     (rf"\b(?P<w>for|in|during|over) (?:the |my |its )?(?:closing|final|concluding) (?P<d>{DURATION})",
      r"\g<w> the last \g<d>"),
+    (r"^(?:no|oh|sorry)(?: ,)? wait , ", ""),
     (r"\bvid\b", "video"),
     (r"\b(?:hold|keep)s? (?P<np>(?:the|my) [a-z ]+?|it) back (?=(?:until|till) )", r"let \g<np> wait "),
     (r"\b(?P<v>takes?|lasts?|taking|need|needs) (?P<a>only |just |about )?half a second\b", r"\g<v> \g<a>0.5 seconds"),
@@ -123,7 +124,7 @@ RULES: Rules = (
     (r"^take (?P<np>the [a-z ]+?) out (?=(?:from|between|for|until|till) )", r"hide \g<np> "),
     (r"\b(?:do|doing) (?P<np>it|him|her|them) (?=(?:light |dark |bright )?(?:"
      rf"{COLOR})(?: |$))", r"make \g<np> "),
-    (rf"\b(?P<c>{COLOR}) as (?:a|an|the) (?!(?:second|minute|whole)\b)[a-z]+\b", r"\g<c>"),
+    (rf"(?<!same )\b(?P<c>{COLOR}) as an? (?!(?:second|minute|whole)\b)[a-z]+\b", r"\g<c>"),
     (rf"\b(?P<c>{COLOR})(?: ,)? (?:instead of|rather than|and not|not) (?:the |its |this |that )?(?:old |dull |boring |"
      rf"ugly |usual |current |present )*(?:{COLOR})(?: it is| now| as now)?(?= ?(?:[,.]|at |from |when |for |$))",
      r"\g<c>"),

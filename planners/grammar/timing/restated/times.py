@@ -89,9 +89,10 @@ RULES: Rules = (
     (rf"^(?P<np>(?:the |my )?[a-z ]+?) (?:(?:need|needs|should|must|may|has) )?(?:to )?(?:only )?(?:{PLAIN}|{S}) "
      r"(?:only )?(?:as far as|up to|until|to) the (?:point|spot|place) where (?:it|he|she) turns\b",
      r"\g<np> should stop when it turns"),
-    (r"\b(?:let|make|have) (?:it|him|her|them|(?:the|my) [a-z ]+?) (?:stand|wait|stay|rest|hang)(?: open| there| "
-     r"out)? (?:a bit|a while|a little|a little while|a moment|for a bit|for a while|for a moment)(?: ,)? and "
-     r"(?:then )?", ""),
+    (r"\b(?P<l>(?:let|make|have) (?:it|him|her|them|(?:the|my) [a-z ]+?) )(?:stand|wait|stay|rest|hang)(?: open| there|"
+     r" out)? (?:a bit|a while|a little|a little while|a moment|for a bit|for a while|for a moment)(?: ,)? and (?:then "
+     rf")?(?P<v>(?:at|after|from) |start |{PLAIN} )",
+     lambda m: m["v"] if m["v"] in ("at ", "after ", "from ") else m["l"] + m["v"]),
     (r"\b(?P<w>start(?:s|ing)? closing) (?:(?:a bit|a little|much|far) )?(?:sooner|earlier|later)(?: ,)? (?=(?:right "
      r"|exactly |already )?(?:at|from) )", r"\g<w> "),
     (r"\bmid ?-? ?(?:fall|air|flight|swing|walk|roll|way|turn)\b(?! (?:between|up|down|through))", "halfway"),

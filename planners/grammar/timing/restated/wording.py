@@ -84,6 +84,7 @@ _HUE_NEXT = (
     rf"(?: ,| then| and| next| finally)+ (?:the )?(?:{HUES})"
     r"(?: (?:one|book|ball|box|last|second|third|first|goes|falls|drops))*"
 )
+_NO_NOUN = r"(?:one|first|last|then|and|falls?|drops?|goes|comes|is|should|must|lands?|for|to|at|in)\b"
 IN_ORDER = (
     r"^(?P<head>.*\b(?:order|sequence|falls?|drops?|come down|way (?:about|round|around)|round)\b.*?)[ ,:.]+"
     rf"(?:(?:that is|i e|so|first|namely|with) )*(?P<list>{_HUE_FIRST}(?:{_HUE_NEXT}){{1,3}}(?: (?:for|at) the "
@@ -94,7 +95,7 @@ IN_ORDER = (
 def in_order(found: re.Match[str]) -> str:
     """ "the books should come down the other way about : blue , green , then red"."""
     hues = re.findall(rf"\b(?:{HUES})\b", found["list"])
-    noun = re.search(rf"\b(?:{HUES}) (?!one|first|last|then|and|falls?|drops?|for|to)([a-z]+)", found[0])
+    noun = re.search(rf"\b(?:{HUES}) (?!{_NO_NOUN})([a-z]+)", found[0])
     noun = noun or re.search(
         r"\b(?:the|all|my|two|three|four) ([a-z]+)s\b(?= (?:[a-z]+ )*?(?:fall|drop|come|tumble|in))", found[0]
     )

@@ -10,7 +10,7 @@ from .....gaussians.language.query.query import Query
 from ...vocabulary.quantities import NUMBERS
 from ..manner import Thing
 from ..moments import Moment
-from .names import named, with_moving
+from .names import MOVING, named, with_moving
 
 _PRONOUN = re.compile(r"\b(?:it|he|she|him|her|they|them)\b")
 _AS_BEFORE = re.compile(  # ", then red again afterwards"
@@ -61,8 +61,12 @@ class Said:
 
     @cached_property
     def whose(self) -> Query:
-        """What the first name means; of everything, what moves."""
-        return self.thing(with_moving(self.things[0])) or Query(last=True)
+        """What the first name means; "everything that moves" is not the whole scene."""
+        name = self.things[0]
+        moves = re.search(
+            rf"\b{re.escape(name)} (?:(?:that|which|what) )?(?:(?:is|are) )?(?:moves?|moving)\b", self.text
+        )
+        return self.thing(MOVING if moves is not None and name == "everything" else name) or Query(last=True)
 
     def joined(self) -> Said:
         """The same, with the first two names as one if "and" joins them: "the table and the vase"."""

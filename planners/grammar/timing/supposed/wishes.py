@@ -16,7 +16,7 @@ from ...tagging.spelling import is_word
 from ...vocabulary.nouns import EVERYWHERE, is_known, is_opened
 from ...vocabulary.quantities import NUMBERS
 from ..asides import HUES
-from ..clauses import AUXILIARIES
+from ..clauses import ALL_OF_IT, AUXILIARIES
 from ..command import Command, pace
 from ..moments import DURATION, End, Moment, seconds_of
 from ..verbs import SENSES, has_form
@@ -291,7 +291,8 @@ def _reverse(said: Said) -> Iterator[Wish]:
     if not said.told and _OTHER_WAY.search(said.text):
         yield Wish(f"let {said.things[0]} turn the other way round", said.moment)
     elif not said.told:
-        yield Wish(pace(said.whose, "reverse"), said.moment, things=1 + len(said.goals))
+        whose = ALL_OF_IT if said.things[0] in (MOVING, "everything") else said.whose
+        yield Wish(pace(whose, "reverse"), said.moment, things=1 + len(said.goals))
 
 
 _AGAIN_FOR = re.compile(r"\b(?:over and over|again and again|all the time|keeps?|repeatedly|loops?|non ?stop)\b")
