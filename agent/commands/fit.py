@@ -223,7 +223,8 @@ def _describe(photos: Photos) -> str:
     height, width = photos.shots[0].photo.shape[:2]
     many = len(photos.points.means)
     points = f"{many:,} surveyed points" if many else "no surveyed points, so poses cannot be checked"
-    few = "; too few for initialization, so Gaussians start at random positions" if many < MIN_POINTS else ""
+    start = "where frames agree on a depth" if photos.film else "at random positions"
+    few = f"; too few for initialization, so Gaussians start {start}" if many < MIN_POINTS else ""
     text = f"{len(photos.shots)} photographs at {width}x{height}, {len(photos.held_out)} held out, {points}{few}"
     if photos.poses_folder is not None:
         text += f", poses estimated: {photos.poses_folder} is a capture too"

@@ -45,7 +45,8 @@ def smoothed(tracker: Tracker, body: Body, radius: float) -> Body:
                 break
             damped *= DAMPED[1]
         gained = known.value - there.value
-        found, known, damped = tried, there, damped / DAMPED[1]
+        if gained > 0:
+            found, known, damped = tried, there, damped / DAMPED[1]
         if not gained > ENOUGH * known.value:
             break
     return found

@@ -87,6 +87,14 @@ when: (what|which) (second|moment|instant|point) is it (that|when) | it is when 
 altogether: all told | all in all | in all | in sum | taken together | when all is added up
 """
 _AROUND = r"""
+\bbefor\b => before
+^when , (?:finally|at last|exactly|precisely|roughly|eventually) , => when
+\b(\d+) and a half seconds\b => \1.5 seconds
+ or (?:does it |is it |do they )?(?:just |simply |only )?(?:sit|stand|stay|lie)s?(?: (?:there|still|put))+$ =>
+\b(?:drive|go|get|roll|walk|move) anywhere\b => move
+^what about (the \w+(?: \w+)?) , (does|did|is|has|will) (?:that|it|this) => \2 \1
+^(?:(?:give|tell) me )?(?:the )?time (the \w+(?: \w+)?) (?:needs|takes|uses) for (?:one|a|each|every) (?:full |whole |\
+complete |single )?(?:turn|round|rotation|revolution)$ => how long does one turn take \1
  , (?:both|all|the two) (?:legs|parts|stretches|stages)(?: of .+?)?(?: included| together| combined)?$ =>
 ^(?:quick |short |brief )?(?:summary|recap|overview|rundown)(?: of .+?)? , (?=\w) =>
 ^(?:and |so |but )?after(?:wards)? , (?=\w) =>
