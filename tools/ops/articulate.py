@@ -129,8 +129,8 @@ class Articulate(TargetedOp):
                 made, end = _opening_at(own, motion, most, start)
                 tracks = [made if t is own else t for t in motion.tracks]
                 return with_tracks(scene, tracks, max(stop, end)), (f"it opens by itself, now from {start:.3g} s",)
-            closing = _closing(own, motion, goal) if self.change == "close" else None
-            if closing is not None and closing[0] < start and not self._has_end:
+            shuts = self.change == "close" and abs(goal) < _OPEN * abs(most) and not self._has_end
+            if shuts and (closing := _closing(own, motion, start)) is not None:
                 made, end = _closing_at(own, closing, start)
                 tracks = [made if t is own else t for t in motion.tracks]
                 return with_tracks(scene, tracks, max(stop, end)), (f"it closes by itself, now from {start:.3g} s",)
@@ -249,20 +249,30 @@ def _opening_at(own: Track, motion: Motion, most: float, start: float) -> tuple[
     return made, last if end < behind < math.inf else last + end - high
 
 
-def _closing(own: Track, motion: Motion, goal: float) -> tuple[float, float] | None:
-    """When a track that opens by itself begins to close, and when it is at a goal then; None if it never closes."""
+def _closing(own: Track, motion: Motion, start: float) -> tuple[float, float, float] | None:
+    """The last time that a track which opens by itself closes wholly before some time, if it does not open again until
+    then: when it begins and ends, and when what comes behind begins."""
     times = np.linspace(motion.start, motion.stop, max(round((motion.stop - motion.start) * _GRID), 2))
     angles = np.abs(angles_at(own, times))
-    widest = float(angles.max())
-    low = int(np.flatnonzero(angles > (1 - _OPEN / 2) * widest)[-1])
-    there = np.flatnonzero(angles[low:] <= abs(goal) + _OPEN / 2 * widest)
-    return (float(times[low]), float(times[low + there[0]])) if len(there) else None
+    steps = np.diff(angles) / max(float(angles.max()), 1e-12)
+    closes = steps < -_SAME
+    begins = np.flatnonzero(closes & ~np.r_[False, closes[:-1]] & (times[:-1] < start))
+    if not len(begins):
+        return None
+    low = int(begins[-1])
+    high = low + int(np.flatnonzero(~np.r_[closes[low:], False])[0])
+    behind = high + np.flatnonzero(np.abs(steps[high:]) > _SAME)
+    after = float(times[behind[0]]) if len(behind) else math.inf
+    if angles[high] > _OPEN / 2 * angles.max() or after < start:
+        return None
+    return float(times[low]), float(times[high]), after
 
 
-def _closing_at(own: Track, closing: tuple[float, float], start: float) -> tuple[Track, float]:
+def _closing_at(own: Track, closing: tuple[float, float, float], start: float) -> tuple[Track, float]:
     """A track that closes by itself, with its closing at a later time; until then it stays open. And when it ends."""
-    end = start + closing[1] - closing[0]
-    return playing(own, moved(closing, (start, end), -math.inf, math.inf)), end
+    low, high, behind = closing
+    end = start + high - low
+    return playing(own, moved((low, high), (start, end), -math.inf, behind)), end
 
 
 def _taken(own: Track) -> float:

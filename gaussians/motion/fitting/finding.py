@@ -159,6 +159,9 @@ class Finder:
                 *(bodies[k - 1].seen_from(own.pivot) for k in others),
             ]
             some = _some(sorted({t for path in paths for t, _ in path.runs[1:]}))
+            if not some:
+                labelled.labels[labelled.labels == number] = 0
+                continue
             errors = np.sum([tracker.errors(t, [(p.quats[t], p.offsets[t]) for p in paths])[0] for t in some], axis=0)
             best = int(errors[1:].argmin())
             if errors[1 + best] <= self._as_well(own) * errors[0]:

@@ -152,7 +152,7 @@ class _Film:
             return still, [], 0, usual.steps
         ends = Ends(usual, self._footage, self._photos.extent, self._rng, tell)
         resting = ends.best()
-        labelled, bodies, tried = self._bodies(resting.parameters, resting.footage)
+        labelled, bodies, tried = self._bodies(deepcopy(resting.parameters), resting.footage)
         if not bodies:
             return still, [], tried, usual.steps
         if resting.backwards:

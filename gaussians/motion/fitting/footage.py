@@ -90,7 +90,7 @@ class Footage:
         return len(self.cameras) > 1 and bool((self.when[self.first] == 0).all())
 
     def backwards(self) -> Footage:
-        """The same frames in the opposite order: seconds count from 0 down."""
+        """The same frames in the opposite order: its seconds are negated."""
         return Footage.of(self.shots, (-self.seconds).tolist())
 
     def beginning(self, at_first: Sequence[U8]) -> Footage:

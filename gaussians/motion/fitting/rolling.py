@@ -61,6 +61,8 @@ class Ball:
     def rolled(self, body: Body, footage: Footage) -> Body | None:
         """A body rolling along its path, if the colours of its surface are steadier so than with its own turns.
 
+        The normal of the plane on which it rolls is one of the world's axes.
+
         Args:
             body: its places are kept.
         """

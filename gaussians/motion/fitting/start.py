@@ -113,6 +113,9 @@ def changing(footage: Footage) -> list[NDArray[np.bool_]]:
     found = []
     for c, first in enumerate(footage.first):
         own = [i for i in np.flatnonzero(footage.who == c) if i != first]
+        if not len(own):  # a camera with a frame of the first time alone
+            found.append(np.zeros(footage.shots[first].photo.shape[:2], bool))
+            continue
         often = np.sum([footage.changed(int(i), int(first)) for i in own], axis=0)
         found.append(np.asarray(often >= LONG * len(own), dtype=bool))
     return found

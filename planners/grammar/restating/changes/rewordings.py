@@ -40,7 +40,7 @@ REWORDED = tuple(
         (r"no one", "nobody"),
         (
             rf"(?P<c>{_HUE})(?: ,)? (?:instead of|rather than|and not) (?:the |its |this |that )?(?:old |dull |boring |"
-            rf"ugly |usual |current |present )*(?:{_HUE})(?: it is| now)?",
+            rf"ugly |usual |current |present )*(?:{_HUE})(?: it is| now)?(?= [.,;!?]|$)",
             r"\g<c>",
         ),
         (
@@ -50,13 +50,13 @@ REWORDED = tuple(
         ),
         (
             r"(?:clear|take|get|strike|sweep|pull)s? (?P<np>(?:the|all|my|these|those|both) [a-z ]+?|it|them) (?:off|"
-            r"from|out of) the (?:set|stage|scene)(?: (?:altogether|completely|entirely))?",
+            r"from|out of) the (?:set|stage|scene)(?: (?:altogether|completely|entirely))?(?= [.,;!?]|$)",
             r"remove \g<np>",
         ),
         (
             r"(?:i|we) (?:would like|want|would prefer|need|would love) (?P<np>(?:the|all|my|these|those|both) "
-            r"[a-z ]+?) (?:taken|removed|cleared|cut)(?: out of| off| from)(?: the (?:set|stage|scene|picture|"
-            r"frame|shot|image|film))?(?: (?:altogether|completely|entirely))?",
+            r"[a-z ]+?) (?:taken|removed|cleared|cut) (?:out of|off|from) the (?:set|stage|scene|picture|frame|"
+            r"shot|image|film)(?: (?:altogether|completely|entirely))?(?= [.,;!?]|$)",
             r"remove \g<np>",
         ),
         (

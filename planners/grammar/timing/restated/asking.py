@@ -22,14 +22,16 @@ RULES: Rules = (
     (r"^(?:up)?on (?P<np>(?:the|my) [a-z]+) (?P<v>[a-z]+ing)\b", lambda m: f"when {m['np']} {plain_of(m['v'])}s"),
     (rf"\b(?:snap|switch|change|flip|set|fade|jump) (?P<np>(?:the|my) [a-z ]+?|it) (?:over )?to (?P<c>{COLOR})\b",
      r"turn \g<np> \g<c>"),
-    (rf"^(?P<x>.*\b(?:until|till|to|for|while|between|during|as long as)\b.+?)(?: ,)? (?:and |then )+(?:{COLOR}|normal|"
+    (rf"^(?P<x>(?=.*\b(?:{COLOR}|gold|silver|make|paint|turn|colou?r)\b.* (?:and|then) )(?=.*\b(?:until|till|"
+     rf"to|for|while|between|during|as long as)\b).+?)(?: ,)? (?:and |then )+(?:{COLOR}|normal|"
      r"itself) again(?: (?:after (?:that|this)|afterwards|then|later))?$", r"\g<x>"),
     (r"^(?P<np>(?:the|my|this|that) [a-z]+(?: [a-z]+)?) (?:is|was|are|looks?) [^,.]*? ,? ?(?:and )?so (?:please )?"
      r"(?P<rest>(?:do not |never )?(?:show|hide|paint|make|turn|move|stop|remove|delete|lift|open|close|slow|let) it\b"
      r".*)$",
      lambda m: m["rest"].replace(" it", f" {m['np']}", 1)),
-    (r"(?: ,)? (?:and )?then (?:it|he|she) (?:(?:can|may|should|is to|shall) )?(?:roll|walk|go|move|drive|slide|fall|"
-     r"continue)s? on(?:wards)?(?: to (?:the|its) [a-z]+)?$", ""),
+    (r"^(?P<x>(?=.*\b(?:pause|wait|sit|stay|rest|stand|freeze|hold)s?\b).+?)(?: ,)? (?:and )?then (?:it|he|she) (?:"
+     r"(?:can|may|should|is to|shall) )?(?:roll|walk|go|move|drive|slide|fall|continue)s? on(?:wards)?(?: to (?:the|its) "
+     r"[a-z]+)?$", r"\g<x>"),
     (rf" , (?:in )?(?P<d>{DURATION}) (?:tops|max|maximum|at most|at the most|no more)$", r" in \g<d>"),
     (r"(?: ,)? (?:from )?start to finish$", " from start to finish"),
     (rf"\b(?P<w>for|in|during|over) (?:the |my |its )?(?:closing|final|concluding) (?P<d>{DURATION})",
@@ -117,7 +119,7 @@ RULES: Rules = (
     (r"^hide (?P<np>.+?) from (?:us|me|everyone|everybody|sight|view|the (?:camera|audience|viewers?))\b",
      r"hide \g<np>"),
     (r"\b(?:clear|take|get|strike|sweep|pull|bring)s? (?P<np>(?:the|all|my|these|those|both) [a-z ]+?|it|them) (?:off|"
-     r"from|out of) the (?:set|stage|scene)\b(?: (?:altogether|completely|entirely))?", r"remove \g<np>"),
+     r"from|out of) the (?:set|stage|scene)(?: (?:altogether|completely|entirely))?(?= ?[,.;]|$)", r"remove \g<np>"),
     (r"^(?:i|we) (?:would like|want|would prefer|need|would love) (?P<np>(?:the|all|my|these|those|both) [a-z ]+?) "
      r"(?:taken|removed|cleared|cut)(?: out of| off| from)(?: the (?:set|stage|scene|picture|frame|shot|image|film))?"
      r"(?: (?:altogether|completely|entirely))?$", r"remove \g<np>"),

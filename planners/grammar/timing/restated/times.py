@@ -41,8 +41,8 @@ RULES: Rules = (
     (rf"(?P<w>\b(?:waits?|holds?|pauses?|stays?)\b.*? (?:till|until) .+?)(?: ,)? before {IT} (?:sets? off|{BEGIN}|{S})"
      r"(?: (?:down|off|out|to move|moving))*$", r"\g<w>"),
     (r"\b(?P<w>when|once|until|till|as soon as|after) (?:at last|finally|eventually|at long last) ", r"\g<w> "),
-    (r"^(?P<x>.*\b(?:pause|wait|stop|halt|freeze)s?\b.*? (?:for|at|when) .*?)(?: ,)? (?:and |then )+(?:go|goes|walk|"
-     r"walks|continues?|carry|carries|moves?|heads?|rolls?) (?:on|onwards?)(?: (?:to|toward|towards|into) (?:the|its|"
+    (r"^(?P<x>(?=.*\b(?:pause|wait|stop|halt|freeze)s?\b)(?=.* (?:for|at|when) ).+?)(?: ,)? (?:and |then )+(?:go|goes|"
+     r"walks?|continues?|carry|carries|moves?|heads?|rolls?) (?:on|onwards?)(?: (?:to|toward|towards|into) (?:the|its|"
      r"his) [a-z]+)?$", r"\g<x>"),
     (r"\b(?:at|in) the (?:exact |very )?middle of the (?:film|clip|video|movie|shot|scene|sequence)\b",
      "halfway through the film"),
@@ -96,7 +96,8 @@ RULES: Rules = (
     (r"\b(?P<w>start(?:s|ing)? closing) (?:(?:a bit|a little|much|far) )?(?:sooner|earlier|later)(?: ,)? (?=(?:right "
      r"|exactly |already )?(?:at|from) )", r"\g<w> "),
     (r"\bmid ?-? ?(?:fall|air|flight|swing|walk|roll|way|turn)\b(?! (?:between|up|down|through))", "halfway"),
-    (r"(?: ,)? (?:and )?(?:then )?let (?:gravity|physics|nature) [a-z ]+$", ""),
+    (r"(?: ,)? (?:and )?(?:then )?let (?:gravity|physics|nature) (?:win|take over|take its course|do its "
+     r"(?:work|job|thing)|finish (?:it|the job))$", ""),
     (r"^(?P<x>(?:hide|paint|make|turn|stop|freeze) .+? from [a-z0-9. ]+? (?:to|until|till) [a-z0-9. ]+?)(?: ,)? "
      r"(?:and )?(?:then )?(?:bring|put|give|get) (?:it|him|her|them) back(?: (?:after(?:wards?)?|then|again|after "
      r"that))?$",

@@ -98,7 +98,7 @@ complete |single )?(?:turn|round|rotation|revolution)$ => how long does one turn
  , (?:both|all|the two) (?:legs|parts|stretches|stages)(?: of .+?)?(?: included| together| combined)?$ =>
 ^(?:quick |short |brief )?(?:summary|recap|overview|rundown)(?: of .+?)? , (?=\w) =>
 ^(?:and |so |but )?after(?:wards)? , (?=\w) =>
- , i mean , .+$ =>
+ , i mean , (?:is|are|does|do|did|has|was|what|when|how|where|which) .+$ =>
 \b(spi|ru|begi)ning\b => \1nning
 \b(sto|dro|sli|fli)ping\b => \1pping
 \b(hi|si|ge|shu)ting\b => \1tting
@@ -121,10 +121,12 @@ the way|fully|completely) (?:out|open)$ => how long does \1 stay fully open
 \b(?:make|makes|made) it (?:all the way )?back in\b => close
 ^(?:what is )?the (?:maximum|max|maximal|greatest|full|total) (?:extension|opening|extent|travel) of (.+?)(?: in (\w+)\
 )?$ => how many \2 does \1 open
-^(the \w+(?: \w+)?) (clos|open|mov|fall|turn|stop|roll)(?:e?s)( again| back)? or (?:no|not)$ => does \1 \2e\3
+^(the \w+(?: \w+)?) (clos|mov)es( again| back)? or (?:no|not)$ => does \1 \2e\3
+^(the \w+(?: \w+)?) (open|fall|turn|stop|roll)s( again| back)? or (?:no|not)$ => does \1 \2\3
 \b(how many (?:full |complete )?(?:turns|rounds|rotations) does .+?) give(?: us| me)?\b => \1 make
 ^(?:it|they|he|she) (.+?) where , (the \w+(?: \w+)?)(?: , (.+))?$ => where do \2 \1 \3
-\bthe (\w+) of the (\w+) (\w+) and (?:the one|that) of the (\w+)(?: one)?$ => the \1 of the \2 \3 and the \1 of the \4\
+\bthe (fall|drop|start|stop|landing|turn) of the (red|green|blue|yellow|white|black|brown) (\w+) and (?:the one|that) of \
+the (\w+)(?: one)?$ => the \1 of the \2 \3 and the \1 of the \4 \3
  \3
 ^(the \w+(?: \w+)?) turns (?:to|toward) which (?:side|direction|way)(?: , .+)?$ => which way does \1 turn
 ^on what (?:is|are) (?:put |placed |standing |set |sitting )?(the .+)$ => what is \1 on
