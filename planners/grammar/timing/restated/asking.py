@@ -30,8 +30,8 @@ RULES: Rules = (
      r".*)$",
      lambda m: m["rest"].replace(" it", f" {m['np']}", 1)),
     (r"^(?P<x>(?=.*\b(?:pause|wait|sit|stay|rest|stand|freeze|hold)s?\b).+?)(?: ,)? (?:and )?then (?:it|he|she) (?:"
-     r"(?:can|may|should|is to|shall) )?(?:roll|walk|go|move|drive|slide|fall|continue)s? on(?:wards)?(?: to (?:the|its) "
-     r"[a-z]+)?$", r"\g<x>"),
+     r"(?:can|may|should|is to|shall) )?(?:roll|walk|go|move|drive|slide|fall|continue)s? on(?:wards)?(?: to (?:the|"
+     r"its) [a-z]+)?$", r"\g<x>"),
     (rf" , (?:in )?(?P<d>{DURATION}) (?:tops|max|maximum|at most|at the most|no more)$", r" in \g<d>"),
     (r"(?: ,)? (?:from )?start to finish$", " from start to finish"),
     (rf"\b(?P<w>for|in|during|over) (?:the |my |its )?(?:closing|final|concluding) (?P<d>{DURATION})",

@@ -125,9 +125,8 @@ the way|fully|completely) (?:out|open)$ => how long does \1 stay fully open
 ^(the \w+(?: \w+)?) (open|fall|turn|stop|roll)s( again| back)? or (?:no|not)$ => does \1 \2\3
 \b(how many (?:full |complete )?(?:turns|rounds|rotations) does .+?) give(?: us| me)?\b => \1 make
 ^(?:it|they|he|she) (.+?) where , (the \w+(?: \w+)?)(?: , (.+))?$ => where do \2 \1 \3
-\bthe (fall|drop|start|stop|landing|turn) of the (red|green|blue|yellow|white|black|brown) (\w+) and (?:the one|that) of \
-the (\w+)(?: one)?$ => the \1 of the \2 \3 and the \1 of the \4 \3
- \3
+\bthe (fall|drop|start|stop|landing|turn) of the (red|green|blue|yellow|white|black|brown) (\w+) and (?:the one|that) \
+of the (\w+)(?: one)?$ => the \1 of the \2 \3 and the \1 of the \4 \3
 ^(the \w+(?: \w+)?) turns (?:to|toward) which (?:side|direction|way)(?: , .+)?$ => which way does \1 turn
 ^on what (?:is|are) (?:put |placed |standing |set |sitting )?(the .+)$ => what is \1 on
 ^(?:[^,]+) (?:my|the|our) (\w+(?: \w+)?) , i (?:hope|think|guess|suppose|bet|trust) , (does|did|is|has) it\b => \2 the\
