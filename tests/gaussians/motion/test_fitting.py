@@ -237,6 +237,13 @@ def test_what_of_a_ball_is_not_seen_at_the_start_gets_the_colours_of_later_frame
     assert np.median(off) < 0.1  # of colours in [0, 1]
 
 
+def test_a_camera_with_one_frame_tells_no_changes():
+    shots = [shot(0.0), shot(0.4), shot(0.0, 180), shot(0.8)]
+    masks = changing(Footage.of(shots, [0.0, 0.0, 1.0, 0.0]))
+    assert [m.shape for m in masks] == [(12, 16)] * 3
+    assert masks[0].any() and not masks[1].any() and not masks[2].any()
+
+
 def test_a_plane_and_a_box_are_no_balls():
     rng = np.random.default_rng(3)
     x, y = rng.uniform(-1, 1, (2, 200))

@@ -478,3 +478,10 @@ def test_what_closes_by_itself_closes_later(drawn: Scene, context: Context) -> N
     made = done(drawn, data, context).scene
     assert np.allclose(movements(course_of(made, CHAIR)), [(0.5, 1.0), (2.5, 3.5)], atol=0.06)
     assert middle(made, 2.4) == pytest.approx(middle(drawn, 1.5), abs=5e-3)  # it stays open until then
+
+
+def test_what_closes_by_itself_may_close_by_half(drawn: Scene, context: Context) -> None:
+    data = {"op": "articulate", "target": A_CHAIR, "change": "close", "share": 0.5, "when": {"start": 1.5}}
+    made = done(drawn, data, context).scene
+    way = [float(np.linalg.norm(middle(made, t) - middle(drawn, 0.0))) for t in (1.4, 4.0)]
+    assert way[1] == pytest.approx(way[0] / 2, rel=0.02)  # it stays there
