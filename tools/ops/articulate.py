@@ -36,6 +36,7 @@ F64 = NDArray[np.float64]
 _TAKES = 1.5  # seconds, where nobody says how long
 _LEAST = 0.1  # seconds
 _SAME = 1e-6
+_NONE = np.zeros(0)
 _GRID = 100  # times a second at which it is looked whether something moves
 _OPEN = 0.02  # of the way: what is as near to open is open
 
@@ -125,24 +126,24 @@ class Articulate(TargetedOp):
                 start, end = span[0], span[0] + end - start  # it opens by itself, and this is how long it takes
             now = float(angles_at(own, np.array([start]))[0])
             goal = self._goal(most, slides, scene)
-            if self.change == "open" and abs(goal - now) < _OPEN * abs(most) and self.when.start is not None:
-                made, end = _opening_at(own, motion, most, start)
-                tracks = [made if t is own else t for t in motion.tracks]
-                return with_tracks(scene, tracks, max(stop, end)), (f"it opens by itself, now from {start:.3g} s",)
+            opens = self.change == "open" and abs(goal - now) < _OPEN * abs(most) and self.when.start is not None
             shuts = self.change == "close" and abs(goal) < _OPEN * abs(most) and not self._has_end
-            if shuts and (closing := _closing(own, motion, start)) is not None:
-                made, end = _closing_at(own, closing, start)
-                tracks = [made if t is own else t for t in motion.tracks]
-                return with_tracks(scene, tracks, max(stop, end)), (f"it closes by itself, now from {start:.3g} s",)
-            if not self._has_end:  # as fast as it opens by itself
-                end = start + max(_taken(own) * abs(goal - now) / abs(most), _LEAST)
-            before = [t for t in own.times if t < start - _SAME]
-            dense = np.unique(np.round([*before, *np.arange(before[-1], start, 1 / 30)], 9)) if before else np.zeros(0)
-            dense = dense[dense < start - _SAME]
-            times = np.array([*dense, start, end])
-            angles = np.array([*angles_at(own, dense), now, goal])
-            made = replace(own, times=times, angles=angles)
-            told = f"{start:.3g} to {end:.3g} s: from {_told(now, slides, scene)} to {_told(goal, slides, scene)}"
+            if opens:
+                made, end = _opening_at(own, motion, most, start)
+                told = f"it opens by itself, now from {start:.3g} s"
+            elif shuts and (later := _closing_at(own, motion, start)) is not None:
+                made, end = later
+                told = f"it closes by itself, now from {start:.3g} s"
+            else:
+                if not self._has_end:  # as fast as it opens by itself
+                    end = start + max(_taken(own) * abs(goal - now) / abs(most), _LEAST)
+                before = [t for t in own.times if t < start - _SAME]
+                dense = np.unique(np.round([*before, *np.arange(before[-1], start, 1 / 30)], 9)) if before else _NONE
+                dense = dense[dense < start - _SAME]
+                times = np.array([*dense, start, end])
+                angles = np.array([*angles_at(own, dense), now, goal])
+                made = replace(own, times=times, angles=angles)
+                told = f"{start:.3g} to {end:.3g} s: from {_told(now, slides, scene)} to {_told(goal, slides, scene)}"
             stop = max(stop, end)
         tracks = [made if t is own else t for t in motion.tracks]
         return with_tracks(scene, tracks, stop), (told,)
@@ -237,7 +238,7 @@ def _opening_at(own: Track, motion: Motion, most: float, start: float) -> tuple[
         most: angle or distance of wide open.
         start: seconds.
     """
-    times = np.linspace(motion.start, motion.stop, max(round((motion.stop - motion.start) * _GRID), 2))
+    times = _grid(motion)
     share = angles_at(own, times) / most
     moves = np.flatnonzero(np.abs(np.diff(share)) > _SAME)
     low, high = float(times[moves[0]]), float(times[int(np.argmax(share > 1 - _OPEN / 2))])
@@ -249,30 +250,32 @@ def _opening_at(own: Track, motion: Motion, most: float, start: float) -> tuple[
     return made, last if end < behind < math.inf else last + end - high
 
 
-def _closing(own: Track, motion: Motion, start: float) -> tuple[float, float, float] | None:
-    """The last time that a track which opens by itself closes wholly before some time, if it does not open again until
-    then: when it begins and ends, and when what comes behind begins."""
-    times = np.linspace(motion.start, motion.stop, max(round((motion.stop - motion.start) * _GRID), 2))
+def _closing_at(own: Track, motion: Motion, start: float) -> tuple[Track, float] | None:
+    """A track that closes by itself before a time, with its closing then, and when it ends. It stays open until then.
+
+    None if it does not close wholly, or opens again before.
+    """
+    times = _grid(motion)
     angles = np.abs(angles_at(own, times))
     steps = np.diff(angles) / max(float(angles.max()), 1e-12)
     closes = steps < -_SAME
     begins = np.flatnonzero(closes & ~np.r_[False, closes[:-1]] & (times[:-1] < start))
     if not len(begins):
         return None
-    low = int(begins[-1])
-    high = low + int(np.flatnonzero(~np.r_[closes[low:], False])[0])
-    behind = high + np.flatnonzero(np.abs(steps[high:]) > _SAME)
-    after = float(times[behind[0]]) if len(behind) else math.inf
-    if angles[high] > _OPEN / 2 * angles.max() or after < start:
+    first = int(begins[-1])
+    last = first + int(np.flatnonzero(~np.r_[closes[first:], False])[0])
+    again = last + np.flatnonzero(np.abs(steps[last:]) > _SAME)
+    behind = float(times[again[0]]) if len(again) else math.inf
+    if angles[last] > _OPEN / 2 * angles.max() or behind < start:
         return None
-    return float(times[low]), float(times[high]), after
-
-
-def _closing_at(own: Track, closing: tuple[float, float, float], start: float) -> tuple[Track, float]:
-    """A track that closes by itself, with its closing at a later time; until then it stays open. And when it ends."""
-    low, high, behind = closing
+    low, high = float(times[first]), float(times[last])
     end = start + high - low
     return playing(own, moved((low, high), (start, end), -math.inf, behind)), end
+
+
+def _grid(motion: Motion) -> F64:
+    """Times at which it is looked whether something moves."""
+    return np.linspace(motion.start, motion.stop, max(round((motion.stop - motion.start) * _GRID), 2))
 
 
 def _taken(own: Track) -> float:

@@ -12,16 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ...camera import Camera
-from ...cloud import GaussianCloud, concat
+from ...cloud import concat
 from ...fit.loss import BLACK
 from ...fit.parameters import Parameters
-from ...harmonics import color_to_dc
 from ...render.cpu import gradient
 from .agreement import Agreement, Tell
 from .footage import U8, Footage, differs, rounded
+from .start import at_points
 from .stereo import BEHIND, Points, points_of
 
 F32 = NDArray[np.float32]
@@ -33,7 +32,6 @@ FEWEST = 4  # frames of an end that are taken to show it at rest
 ASIDE = 0.15  # of the cameras' radius: as far the camera must go during these
 OFTEN = 4  # how often these frames are drawn for each time that others are
 SPACING = 1.0  # pixels, at the distance of the cameras' radius, between two points
-OPACITY = 0.6
 DENIED = 0.5  # share of the pictures of the end that show it which look through a Gaussian: it is not there yet
 RESTS = 0.35  # share of what is only there at the end that a frame must show, while something rests
 TOLD = 0.5  # share of the frames of the end that must tell that it is at rest; others do not show it
@@ -136,7 +134,7 @@ class Ends:
         kept = cloud[keep]
         if len(rows) < 2:  # no distance to another one tells their size
             return Parameters.of(kept)
-        added = _gaussians(found, rows, self._extent)
+        added = at_points(found, rows, 4 * found.sizes[rows], self._extent)
         first_id = int(cloud.ids.max()) + 1
         return Parameters.of(concat([kept, added.replace(ids=torch.arange(first_id, first_id + len(added)))]))
 
@@ -172,19 +170,6 @@ def _core(footage: Footage, order: I64, extent: float) -> int:
     eyes = np.stack([footage.shots[i].camera.position for i in order])
     far = np.linalg.norm(eyes - eyes[0], axis=1) >= ASIDE * extent
     return min(max(FEWEST, int(far.argmax()) + 1), len(order)) if far.any() else len(order)
-
-
-def _gaussians(found: Points, rows: I64, extent: float) -> GaussianCloud:
-    """A Gaussian at each of some points, as wide as the distance to the next ones."""
-    means = found.means[rows]
-    away, _ = cKDTree(means).query(means, k=min(4, len(means)))
-    sizes = np.clip(0.7 * np.sqrt((away[:, 1:] ** 2).mean(axis=1)), 1e-6 * extent, 4 * found.sizes[rows])
-    count = len(rows)
-    return GaussianCloud.create(
-        torch.from_numpy(means).float(), torch.tensor([[1.0, 0.0, 0.0, 0.0]]).repeat(count, 1),
-        torch.from_numpy(np.repeat(sizes[:, None], 3, axis=1)).float(), torch.full((count,), OPACITY),
-        color_to_dc(torch.from_numpy(found.colors[rows]).float())[:, None],
-    )  # fmt: skip
 
 
 def _denied(means: F32, footage: Footage, chosen: I64, found: Points, other: list[Mask]) -> Mask:

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .bodies import Body, multiplied, turned
-from .tracking import Tracker, vector
+from .bodies import Body, turned
+from .tracking import Tracker, turn_between
 
 F64 = NDArray[np.float64]
 
@@ -89,7 +89,9 @@ def _steadiness(body: Body, tracker: Tracker, radius: float) -> _Told:
     for t in range(1, count - 1):
         before, after = (unit / (seconds[k + 1] - seconds[k]) for k in (t - 1, t))
         shift = after * (body.offsets[t + 1] - body.offsets[t]) - before * (body.offsets[t] - body.offsets[t - 1])
-        turn = after * _turn(body, t, t + 1) - before * _turn(body, t - 1, t)
+        turn = after * turn_between(body.quats[t], body.quats[t + 1]) - before * turn_between(
+            body.quats[t - 1], body.quats[t]
+        )
         off = np.r_[shift, tracker.size * turn] / (SUDDEN * radius)
         square = float(off @ off)
         value += float(np.log1p(square))
@@ -99,11 +101,6 @@ def _steadiness(body: Body, tracker: Tracker, radius: float) -> _Told:
         slope[own] += 2 / (1 + square) * row.T @ off
         bend[own, own] += 2 / (1 + square) * row.T @ row
     return _Told(value, slope, bend)
-
-
-def _turn(body: Body, a: int, b: int) -> F64:
-    """The rotation vector from one time to another."""
-    return vector(multiplied(body.quats[b], body.quats[a] * [1, -1, -1, -1]))
 
 
 def _stepped(body: Body, step: F64, size: float) -> Body:

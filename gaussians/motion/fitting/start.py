@@ -67,9 +67,19 @@ def start_points(
             "the first frames of the film agree on no depths: check the poses, let the views of the cameras overlap, "
             "or give surveyed points"
         )
+    widths = np.r_[np.full(len(best), WIDEST * radius), block * found.sizes[rows[len(best) :]]]
+    return at_points(found, rows, widths, radius)
+
+
+def at_points(found: Points, rows: I64, widths: NDArray[np.float64], radius: float) -> GaussianCloud:
+    """A Gaussian at each of some points, as wide as the distance to the next ones and at most so wide.
+
+    Args:
+        rows: of two points or more.
+        widths: `[n]` greatest standard deviations, scene units.
+    """
     means = found.means[rows]
     away, _ = cKDTree(means).query(means, k=min(4, len(means)))
-    widths = np.r_[np.full(len(best), WIDEST * radius), block * found.sizes[rows[len(best) :]]]
     sizes = np.clip(0.7 * np.sqrt((away[:, 1:] ** 2).mean(axis=1)), 1e-6 * radius, widths)
     count = len(means)
     return GaussianCloud.create(

@@ -134,7 +134,7 @@ class Tracker:
                 break
             if found[t]:
                 speed = (body.offsets[t] - body.offsets[t - 1]) / step
-                spin = vector(multiplied(body.quats[t], body.quats[t - 1] * [1, -1, -1, -1])) / step
+                spin = turn_between(body.quats[t - 1], body.quats[t]) / step
             else:
                 body.quats[t], body.offsets[t] = body.quats[t - 1], body.offsets[t - 1]
         gain = float(np.mean(ratios)) if ratios else 1.0
@@ -470,7 +470,7 @@ def unlike(drawn: gradient.Drawn, photo: F32) -> F32:
 
 def led(a: Pose, b: Pose, share: float) -> Pose:
     """The pose on the way from one to another: 0 is the first, 1 the second, more is beyond it."""
-    step = vector(multiplied(b[0], a[0] * [1, -1, -1, -1]))
+    step = turn_between(a[0], b[0])
     return turned(a[0], share * step), a[1] + share * (b[1] - a[1])
 
 
@@ -481,8 +481,9 @@ def _seen(columns: Columns, camera: Camera) -> tuple[F64, F64, F64]:
     return pixels, np.minimum(reach, 1e4), depth
 
 
-def vector(q: F64) -> F64:
-    """The rotation vector `[3]` of a unit quaternion."""
+def turn_between(a: F64, b: F64) -> F64:
+    """The rotation vector `[3]` from one unit quaternion to another, world frame."""
+    q = multiplied(b, a * [1, -1, -1, -1])
     w, v = (q[0], q[1:]) if q[0] >= 0 else (-q[0], -q[1:])
     length = float(np.linalg.norm(v))
     return np.asarray(2 * np.arctan2(length, w) / length * v if length > 1e-12 else np.zeros(3))

@@ -66,7 +66,7 @@ RULES: Rules = (
     (rf"\b(?:sooner|faster|quicker)(?: ,)? (?=in {DURATION})", ""),
     (rf"(?P<d>\bin {DURATION}) (?:overall|in total|in all|altogether|all in all)$", r"\g<d>"),
     (rf"(?P<v>\b(?:stop|pause|wait|halt|rest)s?|\bpause) when (?:it|he|she) turns(?: ,)? (?=from {NUMBER})", r"\g<v> "),
-    (r"\b(?P<v>make|take|have|do)s? a (?:pause|stop|rest|break)\b(?! of)", "pause"),
+    (r"\b(?:make|take|have|do)s? a (?:pause|stop|rest|break)\b(?! of)", "pause"),
     (r"\bthats\b", "that is"),
     (r"\bas (?P<x>(?:the|it|he|she) [^,]*?)(?: ,)? (?:and )?(?:hold|keep|stays?|leave) (?:that|it|so|there|like that)"
      r"(?: that way| so| like that)? (?:till|until|to) the (?:very )?end$", r"when \g<x>"),
@@ -118,11 +118,6 @@ RULES: Rules = (
     (r"\barriv(?P<s>es?|ing) to (?=the |my |its )", r"arriv\g<s> at "),
     (r"^hide (?P<np>.+?) from (?:us|me|everyone|everybody|sight|view|the (?:camera|audience|viewers?))\b",
      r"hide \g<np>"),
-    (r"\b(?:clear|take|get|strike|sweep|pull|bring)s? (?P<np>(?:the|all|my|these|those|both) [a-z ]+?|it|them) (?:off|"
-     r"from|out of) the (?:set|stage|scene)(?: (?:altogether|completely|entirely))?(?= ?[,.;]|$)", r"remove \g<np>"),
-    (r"^(?:i|we) (?:would like|want|would prefer|need|would love) (?P<np>(?:the|all|my|these|those|both) [a-z ]+?) "
-     r"(?:taken|removed|cleared|cut)(?: out of| off| from)(?: the (?:set|stage|scene|picture|frame|shot|image|film))?"
-     r"(?: (?:altogether|completely|entirely))?$", r"remove \g<np>"),
     (r"^take (?P<np>the [a-z ]+?) out (?=(?:from|between|for|until|till) )", r"hide \g<np> "),
     (r"\b(?:do|doing) (?P<np>it|him|her|them) (?=(?:light |dark |bright )?(?:"
      rf"{COLOR})(?: |$))", r"make \g<np> "),
@@ -147,9 +142,9 @@ RULES: Rules = (
      r"[a-z]+(?: [a-z]+)?) (?:animation|layer|clip|"
      r"track)\b", r"\g<v> \g<np>"),
     (r"\bpause for (?:breath|air|thought|effect)\b", "pause"),
-    (r"\b(?P<w>lingers?|loiters?|tarry|hangs? (?:around|about|on)|stays? (?:put|up)|holds? on|sits? tight)(?: up| down|"
+    (r"\b(?:lingers?|loiters?|tarry|hangs? (?:around|about|on)|stays? (?:put|up)|holds? on|sits? tight)(?: up| down|"
      r" over)?(?: there| here)?(?: (?:on|in|at) (?:the|its) [a-z]+)? (?=(?:until|till) )", "wait "),
-    (rf"^(?P<x>.*\bthe (?:{COLOR}) (?P<n>[a-z]+?)s? .*?\bthen )the (?P<c>{COLOR})$", r"\g<x>the \g<c> one"),
+    (rf"^(?P<x>.*\bthe (?:{COLOR}) [a-z]+?s? .*?\bthen )the (?P<c>{COLOR})$", r"\g<x>the \g<c> one"),
     (r"\b(?:make|do|take|perform|turn)(?P<s>s?) (?:one|a|a single|1) (?:(?:slow|quick|full|complete|single|whole|"
      r"gentle|lazy|big)[ ,]+)+(?:turn|rotation|spin|revolution|twirl|pirouette)\b", r"spin\g<s> once"),
     (r"^(?:only )?(?:send|let|have|make|roll)?s? ?(?P<np>the [a-z ]+?) (?:(?:go|goes|roll|rolls|travel|travels|move|"

@@ -62,7 +62,7 @@ RULES: Rules = (
     (rf"^(?P<c>(?:when|once|as soon as) .+?)(?: ,)? (?P<x>(?:the|my) [a-z]+(?: [a-z]+)?) (?:should|must|can|is to|has "
      r"to) (?:vanish|disappear|be hidden|go away|be gone)(?: ,| and| then)+ (?:return|come back|reappear|be back)s?"
      rf"(?: only)? (?:at|when|once) (?P<b>{POINT}|.+)$", lambda m: f"{m['c']} , hide {m['x']} until {m['b']}"),
-    (rf"\b(?P<v>rest|wait|stay|stand|sit)(?P<s>s?) (?:by|at|beside|near|next to|on) (?:the|its) [a-z]+ (?=for "
+    (rf"\b(?:rest|wait|stay|stand|sit)(?P<s>s?) (?:by|at|beside|near|next to|on) (?:the|its) [a-z]+ (?=for "
      rf"{DURATION} before (?:it|he|she) )", r"wait\g<s> "),
     (rf"(?P<t>\bat {POINT})(?: ,)? (?:(?:a little|a bit|somewhat|slightly|a touch) )?(?:later|earlier|"
      r"sooner)$", r"\g<t>"),

@@ -108,19 +108,19 @@ complete |single )?(?:turn|round|rotation|revolution)$ => how long does one turn
 \b(?:what|which) speed (?:does|did) (.+?) (?:keep|hold|have|go at)\b => what is the speed of \1
 ^on average , what is the speed => what is the average speed
 ^(what is the average speed of .+?) from (?:when (?:it|he|she)|its|his|the) (?:sets off|starts|start|begins|beginning|\
-leaves|first movement)(?: to move)? (?:to|until|till) (?:when )?(?:it|he|she|its|the)? ?(?:hits?|reaches|touches|stops\
-?|end|ends|arrives|finishes|rest)\b.*$ => \1
-^how long (?:did|does) it take (the \w+(?: \w+)?) to (?:get|go|swing|slide|come|move) from (?:closed|shut) to (?:its w\
-idest|fully open|wide open|open|all the way open|its maximum)$ => how long does \1 take to open
+leaves|first movement)(?: to move)? (?:to|until|till) (?:when )?(?:it|he|she|its|the)? ?(?:hits?|reaches|touches|\
+stops?|end|ends|arrives|finishes|rest)\b.*$ => \1
+^how long (?:did|does) it take (the \w+(?: \w+)?) to (?:get|go|swing|slide|come|move) from (?:closed|shut) to (?:its \
+widest|fully open|wide open|open|all the way open|its maximum)$ => how long does \1 take to open
 ^how long (?:did|does) it take (the \w+(?: \w+)?) to (?:get|go|swing|slide|come|move) from (?:fully |wide )?open to \
 (?:closed|shut)$ => how long does \1 take to close
-\b(?:stands?|sits?|stays?|remains?|waits?|hangs?)(?: there| out)? (?:all the way|fully|completely|wide|entirely) (?:op\
-en|out)\b => stay fully open
+\b(?:stands?|sits?|stays?|remains?|waits?|hangs?)(?: there| out)? (?:all the way|fully|completely|wide|entirely) \
+(?:open|out)\b => stay fully open
 ^how long does (.+?) (?:hold still|stay still|wait|rest|stay|pause|stop|stand still) (?:while|when) (?:it is )?(?:all \
 the way|fully|completely) (?:out|open)$ => how long does \1 stay fully open
 \b(?:make|makes|made) it (?:all the way )?back in\b => close
-^(?:what is )?the (?:maximum|max|maximal|greatest|full|total) (?:extension|opening|extent|travel) of (.+?)(?: in (\w+)\
-)?$ => how many \2 does \1 open
+^(?:what is )?the (?:maximum|max|maximal|greatest|full|total) (?:extension|opening|extent|travel) of (.+?)(?: in \
+(\w+))?$ => how many \2 does \1 open
 ^(the \w+(?: \w+)?) (clos|mov)es( again| back)? or (?:no|not)$ => does \1 \2e\3
 ^(the \w+(?: \w+)?) (open|fall|turn|stop|roll)s( again| back)? or (?:no|not)$ => does \1 \2\3
 \b(how many (?:full |complete )?(?:turns|rounds|rotations) does .+?) give(?: us| me)?\b => \1 make
@@ -129,8 +129,8 @@ the way|fully|completely) (?:out|open)$ => how long does \1 stay fully open
 of the (\w+)(?: one)?$ => the \1 of the \2 \3 and the \1 of the \4 \3
 ^(the \w+(?: \w+)?) turns (?:to|toward) which (?:side|direction|way)(?: , .+)?$ => which way does \1 turn
 ^on what (?:is|are) (?:put |placed |standing |set |sitting )?(the .+)$ => what is \1 on
-^(?:[^,]+) (?:my|the|our) (\w+(?: \w+)?) , i (?:hope|think|guess|suppose|bet|trust) , (does|did|is|has) it\b => \2 the\
- \1
+^(?:[^,]+) (?:my|the|our) (\w+(?: \w+)?) , i (?:hope|think|guess|suppose|bet|trust) , (does|did|is|has) it\b => \2 \
+the \1
 ^(?:out )?of (?:everything|all (?:the )?(?:things|objects|items|stuff)|the things|the objects)(?: (?:here|there|in \
 (?:the|this) room|in the scene|around))? , => 
  , if any(?:thing|one|body)?(?: at all)? ,(?= ) =>
