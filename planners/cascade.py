@@ -73,7 +73,7 @@ class Cascade:
             UserError: the instruction is too long.
         """
         started = time.perf_counter()
-        plan = self.grammar.plan(text, previous=previous)
+        plan = self.grammar.plan(text, previous=previous, observation=observation)
         if plan.verdict == "unsafe":
             return plan
         wish = self._plan_wish(text, previous, observation)

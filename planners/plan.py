@@ -14,6 +14,7 @@ from ..tools.alternatives import either, given
 from ..tools.registry import AnyOp
 
 if TYPE_CHECKING:
+    from ..gaussians.language.query.query import Query
     from .rooms.graph import SceneGraph
 
 MAX_OPS = 64
@@ -166,6 +167,10 @@ class Observation(Protocol):
 
     def picture(self) -> bytes | None:
         """The viewer's view as PNG, None if the scene has no pixels."""
+        ...
+
+    def moves(self, query: Query) -> bool | None:
+        """Whether any of what a query names moves at some time; None if that cannot be told."""
         ...
 
 

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ...gaussians.errors import UserError
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
+    from ...gaussians.language.query.query import Query
+    from ...gaussians.language.query.selection import Selection
     from ...gaussians.scene import Scene
     from ...planners.rooms.graph import SceneGraph
     from ...planners.rooms.graph_scene import Stage
@@ -32,6 +36,15 @@ def graph_of(scene: Scene, viewer: Camera) -> SceneGraph:
             "planners cannot look at this scene: it is larger than any graph (100 km); give its scale with "
             "--metres-per-unit"
         ) from error
+
+
+def any_moves(scene: Scene, selection: Selection) -> bool | None:
+    """Whether any Gaussian of a selection moves at some time; None if nothing was found."""
+    from ...gaussians.motion.motion import moving_ids
+
+    if not selection.chosen:
+        return None
+    return bool(np.isin(moving_ids(scene.motion), selection.ids.cpu().numpy()).any())
 
 
 def picture_of(scene: Scene, camera: Camera) -> bytes:
@@ -68,4 +81,8 @@ class GraphObservation:
 
     def picture(self) -> None:
         """None: a written graph has no pixels."""
+        return None
+
+    def moves(self, query: Query) -> None:
+        """None: a written graph does not tell what moves."""
         return None

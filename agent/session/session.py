@@ -27,7 +27,7 @@ from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
-from .observation import graph_of, picture_of
+from .observation import any_moves, graph_of, picture_of
 from .own_references import own_references
 from .picture_models import infill_of, photographed, restyler_of
 from .plan_runner import PlanFailed, has_queries, run_plan
@@ -289,6 +289,14 @@ class Session:
     def picture(self) -> bytes:
         """The viewer's view as PNG, as it is sent to planners."""
         return picture_of(self.scene, self.viewer)
+
+    def moves(self, query: Query) -> bool | None:
+        """Whether any of what a query names moves at some time; None in a scene without motion, or if it names nothing
+        there. Embeds the scene if it is not embedded yet."""
+        if self.scene.motion is None:
+            return None
+        self.embed()
+        return any_moves(self.scene, self._context(self.last).resolve(self.scene, query))
 
     @property
     def references(self) -> tuple[str, ...]:

@@ -35,7 +35,7 @@ from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
-from .timing.reading import TimeReader, is_misread, may_be_timed
+from .timing.reading import Moves, TimeReader, is_misread, may_be_timed
 from .timing.supposed.wishes import SURE
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
@@ -80,7 +80,8 @@ class GrammarPlanner:
     name = NAME
 
     def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
-        """The plan for an instruction; see `Planner.plan`. The scene (`observation`) is ignored.
+        """The plan for an instruction; see `Planner.plan`. The scene is only asked what moves in it, where that
+        tells which of several wishes is meant.
 
         Raises:
             UserError: the text is too long.
@@ -89,7 +90,7 @@ class GrammarPlanner:
         cleaned = clean(text)
         told: dict[str, Any]
         try:
-            outcome = _understand(cleaned, previous)
+            outcome = _understand(cleaned, previous, observation.moves if observation is not None else None)
             told = {"ops": tuple(_valid(op) for op in outcome.ops), "reason": "; ".join(outcome.remarks)[:2000]}
         except Refusal as refusal:
             told = {"verdict": refusal.verdict, "reason": str(refusal), "unknown": _shortened(refusal.words)}
@@ -151,8 +152,11 @@ def _shortened(words: Sequence[str]) -> tuple[str, ...]:
     return tuple(w[:200] for w in words if w)[:64]
 
 
-def _understand(cleaned: str, previous: str | None) -> _Outcome:
+def _understand(cleaned: str, previous: str | None, moves: Moves | None = None) -> _Outcome:
     """Parse a cleaned instruction.
+
+    Args:
+        moves: whether what a query names moves in the scene; None if there is none.
 
     Raises:
         Refusal: any part of it is not understood, or none of it is an edit.
@@ -161,7 +165,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):
         return _timeless(cleaned, previous)
-    reader = TimeReader(_operations, _thing)
+    reader = TimeReader(_operations, _thing, moves)
     try:
         outcome = _timed(reader, cleaned, previous)
     except Refusal as refusal:
@@ -175,6 +179,8 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
         return _guessed(supposed)
     if (supposed := reader.timed(cleaned, outcome.ops)) is not None:
+        return _guessed(supposed)
+    if reader.is_still(outcome.ops) and (supposed := reader.supposed(cleaned)) and not reader.is_still(supposed):
         return _guessed(supposed)
     if not _names_things(outcome.ops, previous) and (supposed := reader.supposed(cleaned)):
         return _guessed(supposed) if _names_things(supposed, previous) else outcome

@@ -84,6 +84,9 @@ class _Later:
     def picture(self) -> bytes | None:
         return None  # it would show what is gone
 
+    def moves(self, query: Query) -> bool | None:
+        return self.before.moves(query)
+
 
 def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) -> Resolved:
     """What a plan would touch on a graph."""

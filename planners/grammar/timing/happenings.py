@@ -83,6 +83,10 @@ _TO = ("to", "up to", "over to", "against", "as far as", "across to", "back to",
 _DONE = re.compile(
     r"(?:\b(?:is|has|are|have|gets)|'s) (?:all )?(?:done|finished|through) (?:with )?(?:its |his |the )?[a-z]+ing$"
 )
+_UNDER_WAY = re.compile(
+    r"(?: (?:is|are)|'s) (?:still |up )*(?:in (?:the air|mid ?air|flight|motion|transit)|airborne|under way|"
+    r"on (?:its|his|her|their|the) way(?: down| up)?)$"
+)
 _USUALLY = re.compile(r" (?:would |will |does )?(?:normally|usually|ordinarily) (?=[a-z])")
 _THEY_ALL = re.compile(
     r"(?:all|both)(?: of (?:them|these|those)| (?:the )?(?:two|three|four|five))|they (?:have )?all|all of it|both"
@@ -111,7 +115,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     """What a clause behind a conjunction tells of; None if the whole of it is not understood."""
     if _PEOPLE.match(said):
         return None
-    said = _USUALLY.sub(" ", _DONE.sub("has stopped", said))
+    said = _USUALLY.sub(" ", _UNDER_WAY.sub(" is moving", _DONE.sub("has stopped", said)))
     if (over := _EVENT_OVER.match(said)) is not None:
         said = f"{over['who'] or 'it'} has stopped"
     if (half := _HALF.match(said)) is not None and (whose := _who(half["who"], thing)) is not None:

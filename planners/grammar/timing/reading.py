@@ -51,6 +51,7 @@ from .verbs import SENSES, any_of, forms, has_form
 from .whens import closes_later, inverse, of_one_movement, settled, when_of
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
+Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
 
 
 def may_be_timed(cleaned: str) -> bool:
@@ -67,11 +68,15 @@ class TimeReader:
     Args:
         understand: reads plain commands of the grammar; raises `Refusal`.
         thing: reads a phrase for things.
+        moves: tells what moves in the scene; None if there is none.
     """
 
-    def __init__(self, understand: Understand, thing: Callable[[str], Query | None]) -> None:
+    def __init__(
+        self, understand: Understand, thing: Callable[[str], Query | None], moves: Moves | None = None
+    ) -> None:  # fmt: skip
         self._understand = understand
         self._thing = thing
+        self._moves = moves
         self._things: dict[str, Query | None] = {}
 
     def read(self, cleaned: str) -> tuple[Fields, ...] | None:
@@ -134,8 +139,25 @@ class TimeReader:
         wording = with_nouns(spelled).split(" ")
         if (by_marks := divided(wording, marked(wording), self.thing)) is not None:
             readings.insert(0, by_marks)
-        offers = [Offer(kind, p, next(self._wished(kind, p, readings, wording), ())) for kind, p in kinds]
+
+        def offered(kinds: Sequence[tuple[str, float]]) -> list[Offer]:
+            return [Offer(kind, p, next(self._wished(kind, p, readings, wording), ())) for kind, p in kinds]
+
+        offers = offered(kinds)
+        if any(self.is_still(offer.made) for offer in offers):
+            found = chosen(offered(likely(cleaned, still=True)), words, least)
+            if found is not None:
+                return found  # else it is told that the thing does not move
         return chosen(offers, words, least)
+
+    def is_still(self, ops: Sequence[Fields]) -> bool:
+        """Whether operations change how something moves that stands still in the scene."""
+        for op in ops:
+            if op["op"] == "pace" and self._moves is not None and self._moves(op["target"]) is False:
+                return True
+            if OPS[op["op"]].makes_motion:
+                return False
+        return False
 
     def _wished(
         self, kind: str, chance: float, readings: Sequence[tuple[Said, Happening | None]], wording: Sequence[str]

@@ -72,6 +72,7 @@ def of_one_movement(said: str, ops: Sequence[Fields]) -> tuple[Fields, ...]:
     close slower" says nothing of how it opens."""
     if _BOTH.search(said):
         return tuple(ops)
+    said = HELD_BACK.sub(" ", said)
     opens, closes = _OPENS.search(said) is not None, _CLOSES.search(said) is not None
     if len(ops) != 1 or opens == closes or not _is_paced(ops[0]):
         return tuple(ops)
@@ -92,6 +93,7 @@ def _is_paced(op: Fields) -> bool:
 
 _TO_THE_END = re.compile(r"\b(?:to|until|till) the (?:very )?end\b")
 _BOTH = re.compile(r"\b(?:in and out|out and in|both|opening and closing|open and close)\b")
+HELD_BACK = re.compile(r"\b(?:hold|held|keep|kept)(?: (?:the|that|this|my|our)(?: [a-z]+){1,3}| it| \|)? back\b")
 _OPENS = re.compile(r"\b(?:open(?:s|ing)?|out)\b")
 _CLOSES = re.compile(
     r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back(?: in)?|(?:go|goes|slides?|comes?|going|sliding) in)\b"

@@ -22,10 +22,18 @@ LEAST = 0.08  # probability of a kind that is tried
 MOST = 4  # kinds that are tried
 
 
-def likely(said: str) -> list[tuple[str, float]]:
+def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
     """The kinds of wish that an instruction may be of, with probabilities, the likeliest first; none if it is likelier
-    no such wish."""
-    found = [(kind, chance) for kind, chance in classifier().kinds_of(said)[:MOST] if chance >= LEAST]
+    no such wish.
+
+    Args:
+        still: whether what it is about does not move by itself: it then asks for no other course of a motion.
+    """
+    known = classifier().kinds_of(said)
+    if still:
+        rest = 1.0 - sum(chance for kind, chance in known if kind in COURSES)
+        known = [(kind, chance / rest) for kind, chance in known if kind not in COURSES]
+    found = [(kind, chance) for kind, chance in known[:MOST] if chance >= LEAST]
     return [] if found and found[0][0] == NO_WISH else found
 
 

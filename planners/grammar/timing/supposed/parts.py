@@ -106,6 +106,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     text = with_moving(re.sub(r"(?: [,.;:!])+(?= [,.;:!])", "", text))
     if happening is None:
         text, moment, happening = _with_unmarked(text, moment, thing)
+    if happening is not None:
+        text, words = _with_goal(text, words, spans, happening, thing)
     named = [(tag, _name(words, start, stop, thing)) for tag, start, stop in sorted(spans, key=lambda s: s[1])]
     goals = _things(named, "y", thing)
     things = _things(named, "x", thing) or tuple(name for name in names_in(text, thing) if name not in goals)[:1]
@@ -116,6 +118,18 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     goals = tuple(name for name in goals if name not in things)
     idle = " ".join(" ".join(words[start:stop]) for tag, start, stop in spans if tag in _IDLE)
     return Said(text, (*things, *goals), moment, happening is not None, thing, goals, idle), happening
+
+
+def _with_goal(
+    text: str, words: Sequence[str], spans: Sequence[Span], happening: Happening, thing: Thing
+) -> tuple[str, Sequence[str]]:
+    """A text and its words with what a pronoun for a goal means: "when the robot is there, roll the car over to it"."""
+    goals = [start for tag, start, stop in spans if tag == "y" and stop == start + 1 and thing(words[start]) == IT]
+    meant = names_in(happening.said, thing)[:1]
+    if len(goals) != 1 or not meant or not re.search(rf"\b{words[goals[0]]}$", text):
+        return text, words
+    text = f"{text.removesuffix(words[goals[0]])}{meant[0]}"
+    return text, [meant[0] if at == goals[0] else word for at, word in enumerate(words)]
 
 
 def _with_half(words: Sequence[str], span: Span) -> Span:

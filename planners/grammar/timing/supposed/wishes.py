@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import takewhile
 
 from .....gaussians import late_re as re
 from ...learned.seen import hues
@@ -125,10 +126,11 @@ def _times(moment: Moment) -> set[End | None]:
 
 def _left(wish: Wish, said: Said) -> str:
     """The words that do not stand in a command."""
-    often = 0 if wish.holds in hues() else 1  # "red, a good strong red"
-    left = (
-        re.sub(rf"(?<!\S){re.escape(wish.holds)}(?!\S)", " ", said.beside, count=often) if wish.holds else said.beside
-    )
+    left, hue = said.beside, wish.holds.split(" ")[-1]
+    if wish.holds:
+        left = re.sub(rf"(?<!\S){re.escape(wish.holds)}(?!\S)", " ", left, count=1)
+    if hue in hues():
+        left = re.sub(rf"(?<!\S){hue}(?!\S)", " ", left)  # "red, a good strong red"
     return _COMPLAINED.sub(" ", left)
 
 
@@ -148,6 +150,7 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
 }
 _THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
 _BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")
+_HELD_BACK = re.compile(r"\b(?:hold|held|keep|kept)(?: \|)? back\b")
 _NEGATED = ("hide", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")
@@ -163,6 +166,8 @@ def _says_no_more(kind: str, said: Said, left: str) -> bool:
         left = f"{left} {then['rest']}"  # "let it stand for a second, then shut it"
     if kind == "move" and len(said.things) > 1:
         left = _BACK_TO.sub(" ", left)
+    if kind == "begin":
+        left = _HELD_BACK.sub(" ", left)
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY) or _WISHED.search(said.text):
         return False
     if kind not in _NEGATED and _NOT.search(_DISLIKES.sub(" ", _TOO_FAST.sub(" ", _TOO_SLOW.sub(" ", left)))):
@@ -208,15 +213,19 @@ _A_COLORED = re.compile(r"(?:an? )(?P<hue>[a-z]+) (?P<noun>[a-z ]+)$")
 
 
 def _recolor(said: Said) -> Iterator[Wish]:
-    hue = next((word for word in _COMPLAINED.sub(" ", said.beside).split() if word in hues()), None)
-    if hue is None and (found := _A_COLORED.match(said.things[0])) is not None and found["hue"] in hues():
-        noun = f"the {found['noun']}"  # "give me a red door"
-        yield Wish(Command(kind="look", text=f"make {noun} {found['hue']}"), said.moment, holds=found["hue"])
-    several = [word for word in said.beside.split() if word in hues() and word != hue]
-    if hue is not None and not several:
-        shade = re.search(rf"\b(?:{_SHADE}) {hue}\b", said.text)
-        text = f"make {said.things[0]} {hue if shade is None else shade[0]}"
-        yield Wish(Command(kind="look", text=text), said.moment, holds=hue)
+    words = _COMPLAINED.sub(" ", said.beside).split()
+    first = next((at for at, word in enumerate(words) if word in hues()), None)
+    if first is None:
+        if (found := _A_COLORED.match(said.things[0])) is not None and found["hue"] in hues():
+            noun = f"the {found['noun']}"  # "give me a red door"
+            yield Wish(Command(kind="look", text=f"make {noun} {found['hue']}"), said.moment, holds=found["hue"])
+        return
+    hue = " ".join(takewhile(hues().__contains__, words[first:]))  # "navy blue"
+    if set(words) & hues() <= set(hue.split()):
+        shown = re.search(rf"\b(?P<as>as (?:an? )?)?(?P<hue>(?:(?:{_SHADE}) )?{hue})\b", said.text)
+        named = hue if shown is None else shown["hue"]
+        holds = hue if shown is None else shown[0]
+        yield Wish(Command(kind="look", text=f"make {said.things[0]} {named}"), said.moment, holds=holds)
 
 
 _ENTERS_LATER = re.compile(r"\bnot\b[^,.]*[,.].*\b(?:appears?|spawns?|pops?|shows?|reveal(?:s|ed)?|comes?|fades?)\b")
@@ -265,18 +274,17 @@ _OTHER_WAY = re.compile(
 )
 
 
+_STANDS_ON = re.compile(r"\| (?:\w+ ){0,3}(?:on|in|by|near|at|behind|under|beside) \|")  # "it spins on the table"
+
+
 def _spin(said: Said) -> Iterator[Wish]:
-    if (rate := _RATE.search(said.beside)) is not None:
-        yield Wish(f"spin {said.things[0]} {rate[0]}", said.moment, holds=rate[0])
-        return
-    times, full = _TIMES.search(said.beside), _ROUND.search(said.beside)
-    if times is not None:
-        often = "once" if times[0] in _ONCE else times[0]
-        yield Wish(f"spin {said.things[0]} {often}", _to_the_end(said.moment), holds=times[0])
-    elif full is not None:
-        yield Wish(f"spin {said.things[0]} once", _to_the_end(said.moment), holds=full[0])
-    else:
-        yield Wish(f"spin {said.things[0]}", said.moment)
+    rate, times, full = (p.search(said.beside) for p in (_RATE, _TIMES, _ROUND))
+    how, moment = ("", "") if rate is None else (rate[0], rate[0]), said.moment
+    if rate is None and (often := times or full) is not None:
+        how = ("once" if often is full or often[0] in _ONCE else often[0], often[0])
+        moment = _to_the_end(moment)
+    where = 1 if _STANDS_ON.search(said.beside) is None else 2
+    yield Wish(f"spin {said.things[0]} {how[0]}".strip(), moment, where, how[1])
 
 
 def _to_the_end(moment: Moment) -> Moment:
@@ -397,6 +405,9 @@ def _speed(said: Said) -> Iterator[Wish]:
         if factor > 0 and (factor > 1 or not _HASTE.search(plain)):
             yield Wish(pace(said.whose, "speed", factor=factor), _plainly(said), holds=often[0])
         return
+    if any(_durations(said.text)):  # "it is too slow, half a second is enough"
+        yield from _duration(said)
+        return
     slower, faster = _SLOWER.search(plain) is not None, _FASTER.search(plain) is not None
     for pattern, factor in _FACTORS:
         if (found := pattern.search(said.beside)) is not None:
@@ -425,9 +436,10 @@ def _duration(said: Said) -> Iterator[Wish]:
     if moment.lasting is not None:
         if not any(words.startswith("by ") for words in moment.said):  # that is a time, and no duration
             yield Wish(pace(said.whose, "begin"), replace(_plainly(said), taken=True))
-    elif moment.start is None and _TAKES.search(said.text):
-        for seconds, words in _durations(said.text):
-            yield Wish(pace(said.whose, "begin"), Moment(lasting=seconds, taken=True), holds=words)
+    elif moment.start is None and _sign(said.text) is None:
+        told = list(_durations(said.text))
+        for seconds, words in told if len(told) == 1 or _TAKES.search(said.text) else ():
+            yield Wish(pace(said.whose, "begin"), Moment(lasting=seconds, taken=True), 1 + len(said.goals), words)
 
 
 # -- rests -----------------------------------------------------------------------------------------------------------
