@@ -81,7 +81,8 @@ class When(BaseModel):
     """`when` of any operation on a target: seconds of the scene in which a look holds, or that a movement takes.
 
     A missing end is open. Negative seconds count from the end of the scene. With `during`, `start` counts from when
-    that begins. `every`: a look comes and goes, once in so many seconds, for the first half of each.
+    that begins. `until`: what ends each time, of part until or until_end. `every`: a look comes and goes, once in so
+    many seconds, for the first half of each.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
@@ -90,8 +91,15 @@ class When(BaseModel):
     stop: Seconds | Literal["middle", "end"] | None = None
     lasting: Annotated[float, Field(gt=0, le=3600, allow_inf_nan=False)] | None = None  # seconds, at most until `stop`
     during: During | None = None
+    until: During | None = None
     every: Annotated[float, Field(ge=0.05, le=3600, allow_inf_nan=False)] | None = None
     gradual: bool = False  # a look that changes little by little from start to stop, and stays
+
+    @model_validator(mode="after")
+    def _ends(self) -> Self:
+        if self.until is not None and self.until.part not in ("until", "until_end"):
+            raise ValueError('"until" takes what ends the time: its part is until or until_end')
+        return self
 
     def describe(self) -> str:
         """ "from 1 s to 3 s"."""
@@ -100,6 +108,8 @@ class When(BaseModel):
             said.append(f"from {_told(self.start)}" if self.during is None else f"{self.start:g} s later")
         if self.stop is not None:
             said.append(f"to {_told(self.stop)}")
+        if self.until is not None:
+            said.append(self.until.describe())
         if self.lasting is not None:
             said.append(f"for {self.lasting:g} s")
         if self.every is not None:

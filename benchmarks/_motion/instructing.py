@@ -298,7 +298,7 @@ def _turning(expect: dict[str, Any], course: Course, earlier: Course, spans: lis
             else ""
         )
     if expect["kind"] == "spin" and "angle_deg" in expect:
-        after = (expect["start"] - NEAR, _LAST)
+        after = (expect["start"] - NEAR, effect.end)
         turned = abs(math.degrees(events.yawed(course, after)))
         return f"it turns by {turned:.0f} degrees" if abs(turned - expect["angle_deg"]) > 15 else ""
     if "angle_deg" in expect and (expect.get("factor") or 1) > 0:  # an angle is from how it is at the start

@@ -13,6 +13,7 @@ from same_plan import same
 from scenewright.agent.session.observation import GraphObservation
 from scenewright.benchmarks import _written
 from scenewright.gaussians.errors import BackendError, UserError
+from scenewright.gaussians.language.query.query import Query
 from scenewright.planners import MODEL_VARIABLE, load
 from scenewright.planners.budget import Budget, Ledger, Metered
 from scenewright.planners.cascade import MEASURABLE, Cascade, without_model
@@ -60,6 +61,9 @@ class Blind:
 
     def picture(self) -> bytes | None:
         raise AssertionError("the grammar looks at nothing")
+
+    def moves(self, query: Query) -> bool | None:
+        raise AssertionError("nothing here is about motion")
 
 
 @pytest.mark.parametrize("first", spread(range(3), 3))

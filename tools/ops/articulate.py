@@ -122,6 +122,8 @@ class Articulate(TargetedOp):
                 told = "it does not move any more"
         else:
             start, end = self._time(spans_of(self.when, scene, selection, context)[0], motion.start, context)
+            if self.change == "close" and self.when == When(stop=self.when.stop):
+                start = max(end - _taken(own), motion.start)  # as fast as it opens, and shut then
             if self._only_lasts and self.change == "open" and (span := movement([own], motion.start, stop)) is not None:
                 start, end = span[0], span[0] + end - start  # it opens by itself, and this is how long it takes
             now = float(angles_at(own, np.array([start]))[0])
@@ -151,7 +153,8 @@ class Articulate(TargetedOp):
     @property
     def _has_end(self) -> bool:
         """Whether is said when it is done, or how long it takes."""
-        return self.when is not None and (self.when.stop is not None or self.when.lasting is not None)
+        when = self.when
+        return when is not None and not (when.stop is None and when.lasting is None and when.until is None)
 
     @property
     def _only_lasts(self) -> bool:

@@ -57,6 +57,8 @@ def spans_of(when: When | None, scene: Scene, target: Selection, context: Contex
         if when.lasting is not None and when.start is None:
             start = whole.start if context.time is None else context.time
         found = [(start, math.inf)]
+    if when.until is not None:
+        found = _ended(found, when.until, scene, target, context)
     stop = _moment(when.stop, whole, math.inf)
     found = [(a, min(b, stop, a + when.lasting if when.lasting is not None else math.inf)) for a, b in found]
     found = [(a, b) for a, b in found if b - a > SHORTEST]
@@ -129,6 +131,20 @@ def _told(when: When, during: During, scene: Scene, target: Selection, context: 
     return [(-math.inf, last[1] - delay)]
 
 
+def _ended(spans: list[Span], until: During, scene: Scene, target: Selection, context: Context) -> list[Span]:
+    """The spans, each at most until something happens for the first time after its start."""
+    happens = _happening(until, scene, target, context)
+    ends = [b if until.part == "until_end" else a for a, b in happens]
+    last = length_of(scene).stop
+    ended = list[Span]()
+    for start, stop in spans:
+        end = next((t for t in ends if t > start + SHORTEST and t < last - SHORTEST), None)
+        if end is None:
+            raise InstructionError(f"that does not happen after {start:.3g} s: {until.describe().split(' ', 1)[1]}")
+        ended.append((start, min(stop, end)))
+    return ended
+
+
 def _delay(when: When) -> float:
     return float(when.start) if isinstance(when.start, float | int) else 0.0
 
@@ -156,26 +172,25 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
             raise InstructionError(f"it does not come near {during.anchors[0].describe()}: send it there")
         return [(time, math.inf)]
     stand = viewer_stand(context.viewer, up, field.typical_size, field.middle)
-    found: list[Span] = []
     unit = 1.0 / (scene.frame.metres_per_unit or 1.0)
-    for group in groups:
+
+    def of(group: int) -> list[Span]:
         if during.state in ("falling", "turning", "open", "opening", "closing", "fully_open", "halfway"):
             course = course_of(scene, group)
-            found += falls(course, unit) if during.state == "falling" else _own(course, during.state, unit)
-        elif during.state == "touches":  # "the wall" may be several
-            found += [s for anchor in anchors[0] for s in _touching(scene, group, anchor, unit)]
-        elif len(anchors) == 1:
-            found += [s for anchor in anchors[0] for s in intervals(scene, group, during.state, (anchor,), stand)]
-        else:
-            found += intervals(scene, group, during.state, [a[0] for a in anchors], stand)
-    if (
-        during.of is not None
-        and during.of.pick == "all"
-        and during.of.text
-        and during.part in ("while", "unless")
-        and found
-    ):
-        found = [(min(a for a, _ in found), max(b for _, b in found))]  # "while the books fall", one after the other
+            return falls(course, unit) if during.state == "falling" else _own(course, during.state, unit)
+        if during.state == "touches":  # "the wall" may be several
+            return [s for anchor in anchors[0] for s in _touching(scene, group, anchor, unit)]
+        if len(anchors) == 1:
+            return [s for anchor in anchors[0] for s in intervals(scene, group, during.state, (anchor,), stand)]
+        return list(intervals(scene, group, during.state, [a[0] for a in anchors], stand))
+
+    each = [of(group) for group in groups]
+    found = [span for spans in each for span in spans]
+    if during.of is not None and during.of.pick == "all" and during.of.text and found:
+        if during.part in ("while", "unless"):  # "while the books fall", one after the other
+            found = [(min(a for a, _ in found), max(b for _, b in found))]
+        elif anchors and all(each):  # "once all books are on the floor"
+            found = [(max(spans[0][0] for spans in each), max(b for _, b in found))]
     if during.state == "closing" and not found:  # what began open closes as it moves
         found = [s for group in groups for s in movements(course_of(scene, group), unit)]
     exact = _edges(scene, groups) if during.state in _KEYED else []

@@ -66,7 +66,7 @@ def readings(field: LanguageField, encoder: Encoder | None, text: str, metres: f
     sized = fit is None or belief.scale is not None
     alone = np.ones(len(field.groups)) if fit is None else fit.astype(np.float64)
     threshold = encoder.calibration.threshold
-    scores = _by_given_names(field, text, exact, belief.shares(text).total * alone)
+    scores = _by_given_names(belief, text, exact, belief.shares(text).total * alone)
     note = "" if sized else _only_likely(text)
     if is_loose(text, encoder.vocabulary):
         sized, note = False, _read_as(text, next(iter(sorted(exact))))
@@ -75,18 +75,18 @@ def readings(field: LanguageField, encoder: Encoder | None, text: str, metres: f
     if wide:
         note = f"no plain {text} is here, so the {{label}} is meant" if wide > encoder.vocabulary.covered(text) else ""
         limit = max(belief.confirms, SURE)
-        yield Reading(_by_given_names(field, text, wide, belief.of_kinds(wide)), limit, True, wide, note)
+        yield Reading(_by_given_names(belief, text, wide, belief.of_kinds(wide)), limit, True, wide, note)
     if belief.confirms > threshold:
         likely = belief.shares(text, trusting=True).total * alone
-        yield Reading(_by_given_names(field, text, exact, likely), threshold, False, exact, _only_likely(text))
+        yield Reading(_by_given_names(belief, text, exact, likely), threshold, False, exact, _only_likely(text))
         if wide:
             likely = belief.of_kinds(wide, trusting=True)
-            yield Reading(_by_given_names(field, text, wide, likely), SURE, False, wide, _only_likely(text))
+            yield Reading(_by_given_names(belief, text, wide, likely), SURE, False, wide, _only_likely(text))
     sort = known_as(text, encoder.vocabulary)
     if sort.relation == "sort":
         meant = frozenset(sort.kinds)
         note = _read_as(text, sort.kinds[0])
-        yield Reading(_by_given_names(field, text, meant, belief.of_kinds(meant)), belief.confirms, False, meant, note)
+        yield Reading(_by_given_names(belief, text, meant, belief.of_kinds(meant)), belief.confirms, False, meant, note)
 
 
 def is_known(encoder: Encoder, field: LanguageField, text: str) -> bool:
@@ -129,32 +129,52 @@ def _fits_size(belief: Belief, text: str) -> Flags | None:
         return None  # a word that means other kinds as well
     if kind.name in belief.names:  # a detector knows it
         return None
+    return _has_size(belief, kind.name)
+
+
+def _has_size(belief: Belief, kind: str) -> Flags:
+    """Whether the size of each group `[G]` may be that of a kind; all may where metres are not known."""
     count = len(belief.field.groups)
     if belief.scale is None:
         return np.ones(count, dtype=bool)
-    (w0, w1), (d0, d1), (h0, h1) = kinds.extent(kind.name)
+    (w0, w1), (d0, d1), (h0, h1) = kinds.extent(kind)
     sizes = belief.field.boxes.sizes.reshape(count, 3) * belief.scale
     long = sizes[:, :2].max(axis=1)
     fits: Flags = (long >= max(w0, d0)) & (long <= max(w1, d1)) & (sizes[:, 2] >= h0) & (sizes[:, 2] <= h1)
     return fits
 
 
-def _by_given_names(field: LanguageField, text: str, meant: frozenset[str], scores: F64) -> F64:
+def _called_by_family(belief: Belief, text: str) -> Flags:
+    """Whether the given name of each group `[G]` is that of the family alone to which the kind that a phrase names
+    belongs, and its size may be that of the kind: a "lamp" half a metre high may be the desk lamp, no floor lamp."""
+    kind = kinds.of(text)
+    if kind is None or belief.scale is None:
+        return np.zeros(len(belief.field.groups), dtype=bool)
+    families = kinds.table().families
+    called = [
+        g.named_by != "" and kind.name in families.get(g.label, ()) and label_matches(kind.name, g.label)
+        for g in belief.field.groups
+    ]
+    return np.array(called, dtype=bool) & _has_size(belief, kind.name)
+
+
+def _by_given_names(belief: Belief, text: str, meant: frozenset[str], scores: F64) -> F64:
     """Scores `[G]` in which names from elsewhere decide.
 
     A group with a label but without any evidence (inserted under another encoder) scores 1 or 0 by its label. One that
     was given its name scores 1 by that name, and 0 by the name of another kind. Where one is called by the very words,
     another word for the same kind is the name of something else: a dresser is no "drawer" where drawers have names.
     """
-    scores = scores.copy()
+    field, scores = belief.field, scores.copy()
     seen: Flags = np.asarray(field.embeddings.any(axis=1))
+    families = _called_by_family(belief, text)
     worded = any(g.named_by and g.count and label_matches(g.label, text) for g in field.groups)
     for g in field.groups:
         unseen = not seen[g.id] and not g.votes
         if not unseen and not g.named_by:
             continue
         own = label_matches(g.label, text)
-        same = kinds.of(text) is not None and kinds.of(g.label) is kinds.of(text)
+        same = families[g.id] or (kinds.of(text) is not None and kinds.of(g.label) is kinds.of(text))
         other = worded and g.named_by != "" and not own and same
         known = g.label_score >= OWN_NAME and (g.label in meant or own or (same and not worded)) and not other
         if unseen or known or other or _another_kind(g.label, text):

@@ -6,7 +6,7 @@ A clause is cut out of the words of a sentence if the whole of it says that some
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
@@ -26,10 +26,23 @@ class Happening:
     Attributes:
         during: with `of` as it was said; `IT` for a pronoun.
         said: the clause.
+        until: what ends the time that begins then; None if nothing is said to.
+        from_start: whether a time that it ends begins at a moment told in numbers.
     """
 
     during: During
     said: str
+    until: During | None = None
+    from_start: bool = False
+
+    def ended(self, other: Happening) -> Happening | None:
+        """This with what ends the time that it begins; None if one of both does not begin or end a time."""
+        if self.during.part not in ("from", "after", "while") or other.during.part not in ("until", "until_end"):
+            return None
+        until = other.during
+        if until.of == IT and self.during.of not in (None, IT):
+            until = until.model_copy(update={"of": self.during.of})
+        return replace(self, until=until)
 
 
 @dataclass(frozen=True)
@@ -107,15 +120,18 @@ _AT_TURN = re.compile(
     r"turned|has rounded|has reached) (?:its|his|her|the|that) "
     r"(?:turn|turning point|corner|bend|curve)$"
 )
+_IS_THERE = re.compile(r" (?:gets|has got|is|arrives|has arrived|comes|has come) there$")
+_APPROACHES = re.compile(r"\b[a-z]+ing (?:back |over )?(?:to|towards?) (?:the|my|its|it|him|her)\b")  # no state
 _FULLY = re.compile(r"\b(?:full|fully|completely|all the way|wide|entirely|totally)\b")
 _NEXT = ("touching", "in contact with", "resting against")
 
 
 def clause_of(word: str, said: str, thing: Thing) -> During | None:
     """What a clause behind a conjunction tells of; None if the whole of it is not understood."""
-    if _PEOPLE.match(said):
+    if _PEOPLE.match(said) or (_APPROACHES.search(said) and re.fullmatch(_WHILE, word)):
         return None
     said = _USUALLY.sub(" ", _UNDER_WAY.sub(" is moving", _DONE.sub("has stopped", said)))
+    said = _IS_THERE.sub(" has stopped", said)
     if (over := _EVENT_OVER.match(said)) is not None:
         said = f"{over['who'] or 'it'} has stopped"
     if (half := _HALF.match(said)) is not None and (whose := _who(half["who"], thing)) is not None:
@@ -139,6 +155,8 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
             state, course = found
             anchors = (manner.whom,) if manner.whom is not None and state not in ALONE else ()
             part = _part(word, course)
+            if state == "open" and not clause.negated and re.fullmatch(_AFTER, word):
+                state = "fully_open"
             if clause.negated:
                 part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: ignore[assignment]
             return During(state=state, anchors=anchors, of=clause.target, part=part)

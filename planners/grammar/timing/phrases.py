@@ -22,7 +22,8 @@ TIME_WORDS = re.compile(
     r"on the [a-z]+ [a-z]+ing|"
     r"all the time|way through|pace|tempo|always|permanently|throughout|"
     r"forever|other way|crazy|let|last|beginning|clip|do|does|doing|from \d\S* (?:to|until|till)|between \d|direction|"
-    r"speed|moving|moves|that move|not|never|out|back|quick(?:er|ly)?|twice|as fast)\b"
+    r"speed|moving|moves|that move|not|never|out|back|quick(?:er|ly)?|twice|as fast|"
+    r"(?:leave|keep) (?:the|my) [a-z ]+ up (?:there|on|in))\b"
 )
 TIMELY = (
     *(m for m in MOTION if m != "move"),

@@ -405,8 +405,11 @@ class TimeReader:
                 cuttable = False
                 for left, happening in happenings.cut(rest, self.thing):
                     cuttable = True
-                    if any(True for _ in happenings.cut(left, self.thing)):
-                        continue  # "as it opens, hide it, and bring it back when it is open"
+                    if (more := next(happenings.cut(left, self.thing), None)) is not None:
+                        both = more[1].ended(happening) or happening.ended(more[1])
+                        if both is None:
+                            continue  # "as it opens, hide it, and bring it back when it is open"
+                        left, happening = more[0], both
                     if flashes and happening.during.part == "from":
                         during = happening.during.model_copy(update={"part": "while"})
                         happening = replace(happening, during=during)
@@ -425,9 +428,6 @@ class TimeReader:
         begins = happening is not None and happening.during.part in ("from", "after")
         if happening is not None and not begins and moment.stop is not None and moment.lasting is None:
             return None
-        ends = happening is not None and happening.during.part in ("until", "until_end")
-        if ends and moment.start is not None and any(map(_AT_A_TIME.match, moment.said)):
-            return None  # a time that starts in numbers and stops with what happens
         if happening is not None and happening.said.startswith("before ") and phrases.RIDDING.match(said):
             return None  # "delete the vase before it falls" gives a reason
         for command in commands(said, self.thing, moment, told):
@@ -467,8 +467,11 @@ class TimeReader:
             kind = "path" if ways else kind
         if command.timeless:
             moment = Moment()
-        if happening is not None and happening.during.part in ("until", "until_end") and moment.stop is not None:
-            return None
+        if happening is not None and happening.during.part in ("until", "until_end"):
+            if moment.stop is not None:
+                return None
+            if moment.start is not None and any(map(_FROM_A_TIME.match, moment.said)):
+                happening = replace(happening, from_start=True)
         if happening is not None and happening.during.part == "while" and moment.always and kind == "look":
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
         if command.every is not None:
@@ -485,6 +488,8 @@ class TimeReader:
             if happening is not None:
                 return None
             happening = Happening(During(**command.during), "")
+            if happening.during.state == "open" and moment.start == "end":
+                moment = Moment()  # "it must not close at the end"
         if command.ends and moment.start is not None and moment.stop is None:
             moment = replace(moment, start=None, stop=moment.start)
         if (
@@ -526,13 +531,20 @@ class TimeReader:
         made: list[Fields] = []
         for op in ops:
             target = op.get("target")
-            during = None
+            during: During | None = None
+            until: During | None = None
             if happening is not None:
                 target, during = settled(target, happening.during)
-                if during.part in ("from", "after") and any(map(_AT_A_TIME.match, moment.said)):
+                if happening.until is not None:
+                    target, until = settled(target, happening.until)
+                if happening.from_start:
+                    during, until = None, during
+                if during is not None and during.part in ("from", "after") and any(map(_AT_A_TIME.match, moment.said)):
                     during = None  # "once it has opened, shut it at 3 s" is no 3 s later
                 op = {**op, **({"target": target} if target is not None else {})}
             when = when_of(moment, during, kind, op)
+            if until is not None:
+                when = (when or When()).model_copy(update={"until": until})
             op = op if when in (None, When()) else _on_its_way(op)
             made.append({**op, **({"when": when} if when is not None else {})})
             parse_op(made[-1])  # an operation that cannot be is no reading
@@ -674,6 +686,7 @@ _THINGS = bag("sink mirror switch block swing slide paint light float lift step 
 
 _PART_OF_TIME = re.compile(r"\b(?:start|beginning|speed|motion|movement) of\b")
 _AT_A_TIME = re.compile(r"at (?!once\b)")
+_FROM_A_TIME = re.compile(r"(?:at (?!once\b)|from|starting|beginning|halfway|midway)")
 _OF_A_WAY = bag("it he she they its his her their is has gone down up across along there")
 _AGAIN = re.compile(r"\b(?:again|back|as (?:before|usual|normal|ever)|like before)\b")
 _NOT_SEEN = re.compile(r"\b(?:not|never) (?:ever )?(?:see|be seen)\b")

@@ -107,7 +107,7 @@ def inverse(moment: Moment, happening: Happening | None) -> list[tuple[Moment, H
     """The times in which something is not to be seen that is to be seen in another; none if nobody can say."""
     if happening is not None:
         during = happening.during.model_copy(update={"part": _FLIPPED[happening.during.part]})
-        return [(moment, replace(happening, during=during))] if moment.empty else []
+        return [(moment, replace(happening, during=during))] if moment.empty and happening.until is None else []
     start, stop = moment.start, moment.stop
     if moment.lasting is not None:
         stop = start + moment.lasting if isinstance(start, float) and start >= 0 and stop is None else None

@@ -25,6 +25,20 @@ RULES: Rules = (
     (r"^(?:kill|cut) (?P<np>(?:the |that |this |my )?(?:[a-z]+ )?(?:fan|wheel|windmill|propeller|rotor|carousel|motor|"
      r"engine|machine))\b(?! (?:in|into|out|off)\b)", r"stop \g<np>"),
     # how fast
+    (r"(?P<x>\b(?:stop|halt|freeze|end|pause)s? .+?)(?: ,)? and (?:go|walk|move|travel|roll|get|come) no (?:further|"
+     r"farther|more)$", r"\g<x>"),
+    (r"(?P<x>\b(?:\d+(?:\.\d+)?|[a-z]+) (?:degrees?|deg|°|cm|m|met(?:re|er)s?|centimet(?:re|er)s?))(?: ,)? (?:and |but "
+     r")?"
+     r"(?:no|not|nothing) (?:more|further|farther|wider)(?: than (?:that|this))?$", r"\g<x>"),
+    (r"(?: ,| \.) (?:and )?(?:no|without) (?:waiting|hanging|messing|dawdling|faffing|loitering|delay|dithering|"
+     r"mucking|pausing)(?: (?:around|about))?$", ""),
+    (r"(?P<x>\btoo [a-z]+) for (?:my|our|the|his|her|their) [a-z]+ to (?:follow|see|watch|enjoy|understand|take in|"
+     r"catch|keep up|notice|believe)(?: it| with it)?\b", r"\g<x>"),
+    (r"\b(?:to|at) (?P<f>half|a third|a quarter|double|twice) (?:of )?(?:what it is|what it was|that)(?: now| at "
+     r"present| at the moment)?$", r"to \g<f> the speed"),
+    (r"\b(?:complete|finish|do|make|perform)s? (?:its|his|her|the) [a-z]+ in half the (?:usual |present |current )?time"
+     r"(?: it (?:takes|needs))?(?: (?:now|at present|currently|at the moment))?$", "move twice as fast"),
+    (rf" , (?:it |he |she )?should (?:take|last|need) (?:about |only |just )*(?P<d>{DURATION})$", r" in \g<d>"),
     (r"(?: ,)? (?:and )?(?:(?:keep(?:ing)?|with|at) )?(?:the|its|his)? ?same (?:duration|length|speed|pace|timing|"
      r"tempo)(?: as (?:now|before))?$", ""),
     (rf"^(?:move|shift|push|put|set|delay) (?P<np>{NAMED}) 's (?:start|beginning|begin) to (?P<d>{POINT})$",

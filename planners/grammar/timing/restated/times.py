@@ -24,6 +24,7 @@ from .wording import (
     gone,
     plain_of,
     unwished,
+    with_unit,
 )
 
 RULES: Rules = (
@@ -38,11 +39,36 @@ RULES: Rules = (
      r"(?: \. (?:leave|keep) it (?:open|out)(?: please)?)?",
      lambda m: f"do not close the {re.sub('^the ', '', m['np'])}"),
     # how a time is named
+    (rf"(?: ,)?(?: and| then| but)+ (?:(?:turn |make )?it )?(?:back to )?(?:{COLOR}|normal|its (?:own|old|usual|normal)"
+     rf" "
+     r"colou?r) again (?:when|once|as soon as|from when) (?=(?:it|he|she|the|my) )", " until "),
+    (r"\b(?:for|in|during|through) the (?:bit|part|moment|section|stretch|time) (?:where|when|in which) ", "while "),
+    (r"(?P<x>\b(?:two times|twice))(?: ,)? (?:the )?second (?:time|one|go|round) (?=from|at|when|after)", "again "),
+    (r"(?P<x>\b(?:at|from|until|till|by|in|after) \d+(?:\.\d+)?)(?: ,)? (?:and )?(?:not|instead of|rather than) (?:at |"
+     r"from "
+     r"|in |after )?\d+(?:\.\d+)?$", r"\g<x> seconds"),
+    (rf"(?P<x>\b(?:later|earlier|sooner|delayed by {DURATION}|by {DURATION}))(?: ,| ;) (?:the |its )?(?:closing|opening"
+     rf")(?: "
+     r"stays)?$", r"\g<x>"),
+    (rf"^(?P<np>(?:the |my )?[a-z ]+?) (?:cue|entrance) (?:(?:moves?|shifts?|goes|changes?) )?(?:to|at) (?P<d>{POINT})$"
+     rf"",
+     lambda m: f"start {m['np']} at {with_unit(m['d'])}"),
+    (r"^(?P<x>.+? (?:to|towards?|into|beside|next to|by) (?P<y>(?:the|my|its) [a-z]+(?: [a-z]+)??)) (?P<w>when|once|as "
+     r"soon as|after) (?P<who>(?:the|my) [a-z]+(?: [a-z]+)?|it|he|she) (?:gets|is|has got|arrives|has arrived|comes|"
+     r"has come) there(?= ?(?:[,.]|$))", r"\g<x> \g<w> \g<who> reaches \g<y>"),
+    (rf"(?P<x>\b(?:start|begin|turn|run|move|work)s? (?:only|just) (?:after|at|from) {POINT})(?: ,| ;| \.)+ (?:and )?"
+     r"(?:until|till|before) then (?:it|he|she) (?:should |must |shall |may |has to |is to )?(?:be |is |stays? |stands?"
+     r" |"
+     r"remains? |keeps? |hangs? )*(?:motionless|still|off|switched off|idle|at rest|put)$", r"\g<x>"),
+    (r"^(?:hold|keep) (?P<np>(?:the |my )?[a-z ]+?) (?:shut|closed|still|back) for (?:another|one more|a further) "
+     rf"(?P<d>second|{DURATION})(?= ?(?:[,.]|$))",
+     lambda m: f"start {m['np']} {'one second' if m['d'] == 'second' else m['d']} later"),
     (rf"(?P<w>\b(?:waits?|holds?|pauses?|stays?)\b.*? (?:till|until) .+?)(?: ,)? before {IT} (?:sets? off|{BEGIN}|{S})"
      r"(?: (?:down|off|out|to move|moving))*$", r"\g<w>"),
     (r"\b(?P<w>when|once|until|till|as soon as|after) (?:at last|finally|eventually|at long last) ", r"\g<w> "),
-    (r"^(?P<x>(?=.*\b(?:pause|wait|stop|halt|freeze)s?\b)(?=.* (?:for|at|when) ).+?)(?: ,)? (?:and |then )+(?:go|goes|"
-     r"walks?|continues?|carry|carries|moves?|heads?|rolls?) (?:on|onwards?)(?: (?:to|toward|towards|into) (?:the|its|"
+    (r"^(?P<x>(?=.*\b(?:pause|wait|stop|halt|freeze|rest|stand)s?\b)(?=.* (?:for|at|when) ).+?)(?: ,)? (?:and |then )+"
+     r"(?:go|goes|walks?|continues?|carry|carries|moves?|heads?|rolls?) (?:on|onwards?)(?: (?:to|toward|towards|into) ("
+     r"?:the|its|"
      r"his) [a-z]+)?$", r"\g<x>"),
     (r"\b(?:at|in) the (?:exact |very )?middle of the (?:film|clip|video|movie|shot|scene|sequence)\b",
      "halfway through the film"),

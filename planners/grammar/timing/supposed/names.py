@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .....gaussians import late_re as re
+from .....gaussians.world.words import singular
 from ...tagging.words import bag
 from ...vocabulary.nouns import EVERYWHERE, is_known
 from ...vocabulary.quantities import NUMBERS
@@ -48,7 +49,7 @@ def with_nouns(text: str) -> str:
             [word for word in part.split() if is_known(word) and word not in _NO_THINGS]
             for part in (text[: found.start()], text[found.end() :])
         )
-        return f"{found['how']} {(before[-1:] or after[:1] or ['one'])[0]}"
+        return f"{found['how']} {singular((before[-1:] or after[:1] or ['one'])[0])}"
 
     return _ONE.sub(noun, text)
 

@@ -97,8 +97,6 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
             happening = event
         else:
             return None
-    if happening is not None and happening.during.part in ("until", "until_end") and moment.start is not None:
-        return None  # a time that starts in numbers and stops with what happens
     if any(tag in _IDLE and _loses(tag, words[start:stop]) for tag, start, stop in spans):
         return None
     left = {at for tag, start, stop in spans if tag in TIMES or tag in _IDLE for at in range(start, stop)}

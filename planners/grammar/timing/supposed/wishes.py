@@ -21,6 +21,7 @@ from ..clauses import ALL_OF_IT, AUXILIARIES
 from ..command import Command, pace
 from ..moments import DURATION, End, Moment, seconds_of
 from ..verbs import SENSES, has_form
+from ..whens import HELD_BACK
 from .choosing import says
 from .kinds import classifier
 from .names import MOVING
@@ -135,8 +136,8 @@ def _left(wish: Wish, said: Said) -> str:
 
 
 _TELLING = {  # words that say something by themselves, and the kinds of wishes that say it
-    r"slow|slower|slowly|fast|faster|quick|quicker|quickly|twice|double|half|speed": "speed duration spin repeat "
-    "amount",
+    r"slow|slower|fast|faster|quick|quicker|twice|double|half|speed": "speed duration spin repeat amount",
+    r"slowly|quickly": "speed duration spin repeat amount move",
     r"far|farther|further|wide|wider": "amount",
     r"earlier|sooner|later": "begin open order",
     r"backwards?|reverse|reversed": "reverse return",
@@ -146,16 +147,23 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"shows?|shown|reveals?|visible": "hide",
     r"shut|shuts|close|closes": "close stay still open begin order together speed",
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
-    r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order",
+    r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
 }
 _THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
 _BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")
-_HELD_BACK = re.compile(r"\b(?:hold|held|keep|kept)(?: \|)? back\b")
+_BACK_IN = re.compile(r"\bback(?: in)?\b")
 _NEGATED = ("hide", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")
 _WISHED = re.compile(r" , (?:and |but )?(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b")
 _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
+
+
+def _without(text: str, *patterns: re.Pattern[str]) -> str:
+    """A text without what patterns find."""
+    for pattern in patterns:
+        text = pattern.sub(" ", text)
+    return text
 
 
 def _says_no_more(kind: str, said: Said, left: str) -> bool:
@@ -167,10 +175,12 @@ def _says_no_more(kind: str, said: Said, left: str) -> bool:
     if kind == "move" and len(said.things) > 1:
         left = _BACK_TO.sub(" ", left)
     if kind == "begin":
-        left = _HELD_BACK.sub(" ", left)
+        left = HELD_BACK.sub(" ", left)
+        if is_opened(said.things[0]):
+            left = _BACK_IN.sub(" ", left)  # the beginning of its closing
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY) or _WISHED.search(said.text):
         return False
-    if kind not in _NEGATED and _NOT.search(_DISLIKES.sub(" ", _TOO_FAST.sub(" ", _TOO_SLOW.sub(" ", left)))):
+    if kind not in _NEGATED and _NOT.search(_without(left, _DISLIKES, _TOO_FAST, _TOO_SLOW, _NO_MORE)):
         return kind == "begin" and _LATER.search(left) is not None  # "not at once, it waits"
     manner = _MANNER.search(left)
     return manner is None or manner["verb"] in AUXILIARIES or has_form(manner["verb"], tuple(SENSES), "plain", "s")
@@ -197,6 +207,7 @@ _SHADE = r"very dark|very light|dark|deep|light|pale|bright|vivid"
 _APPEARS = re.compile(
     r"\b(?:appears?|shows?|shown|visible|pops? (?:up|in)|comes? in(?:to)?|reveals?|there only|turns? up)\b"
 )
+_NO_MORE = re.compile(r"\b(?:no|not|nothing) (?:more|further|farther|wider)(?: than (?:that|this))?\b")
 _NOT = re.compile(r"\b(?:not|no|never|without|invisible|nobody|nothing)\b")
 _BACK = re.compile(r"\b(?:back|again)\b")
 _TOWARDS = re.compile(
@@ -267,7 +278,10 @@ _ROUND = re.compile(
 _BACKWARDS = re.compile(
     r"\b(?:back|backwards?|revers\w+|in reverse|rewind|rewound|opposite|undo\w*|invert\w*|flip\w*|contrary)\b"
 )
-_RATE = re.compile(r"\b(?:once|twice|(?:[a-z]+|\d+) (?:times|turns|rounds)) (?:a|per|every|each) second\b")
+_RATE = re.compile(
+    r"\b(?:once|twice|(?:[a-z]+|\d+(?:\.\d+)?) (?:times|turns?|rounds?|rotations?|revolutions?)) "
+    r"(?:a|per|every|each) second\b"
+)
 _OTHER_WAY = re.compile(
     r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction)|way (?:round|around)|direction|clockwise|anti|"
     r"counter)\b"
@@ -435,9 +449,9 @@ def _duration(said: Said) -> Iterator[Wish]:
         return
     if moment.lasting is not None:
         if not any(words.startswith("by ") for words in moment.said):  # that is a time, and no duration
-            yield Wish(pace(said.whose, "begin"), replace(_plainly(said), taken=True))
-    elif moment.start is None and _sign(said.text) is None:
-        told = list(_durations(said.text))
+            yield Wish(pace(said.whose, "begin"), replace(_plainly(said), taken=True), 1 + len(said.goals))
+    elif moment.start is None and _MOVED_ON.search(said.text) is None:
+        told = [span for span in _durations(said.text) if f"for {span[1]}" not in said.text]
         for seconds, words in told if len(told) == 1 or _TAKES.search(said.text) else ():
             yield Wish(pace(said.whose, "begin"), Moment(lasting=seconds, taken=True), 1 + len(said.goals), words)
 
@@ -453,6 +467,7 @@ _RESTS = re.compile(
 )
 
 
+_HALFWAY = {"state": "halfway", "part": "from"}
 _HALF_DONE = re.compile(r"\b(?:half ?way|half (?:of )?(?:the|its|his|her) (?:way|fall|drop|walk|swing)|midway)\b")
 
 
@@ -460,7 +475,7 @@ def _pause(said: Said) -> Iterator[Wish]:
     moment, rest = said.moment, pace(said.whose, "stop")
     half = _HALF_DONE.search(said.beside)
     if half is not None and moment.lasting is not None and moment.start is None and not said.event:
-        rest = replace(rest, during={"state": "halfway", "part": "from"})
+        rest = replace(rest, during=_HALFWAY)
         yield Wish(rest, replace(moment, taken=False), things=1 + len(said.goals), holds=half[0])
         return
     if moment.lasting is not None or moment.stop is not None:
@@ -476,6 +491,11 @@ def _halt(said: Said) -> Iterator[Wish]:
     waits = moment.start is None and moment.stop is not None  # it moves afterwards
     if said.told and moment.lasting is None and (moment.stop in (None, "end") or waits):
         yield Wish(pace(said.whose, "stop"), _plainly(said))
+    elif not said.told and (half := _HALF_DONE.search(said.beside)) is not None:
+        if is_opened(said.things[0]):
+            yield Wish(f"open {said.things[0]} only halfway", Moment(), holds=half[0])
+        else:
+            yield Wish(replace(pace(said.whose, "stop"), during=_HALFWAY), Moment(), holds=half[0])
 
 
 def _still(said: Said) -> Iterator[Wish]:
