@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from statistics import median
 from typing import Any, Literal
 
@@ -255,9 +256,17 @@ def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list
     if "duration_s" in expect and abs(taken - expect["duration_s"]) > 0.4:
         return f"it takes {taken:.2f} s"
     for a, b in [expect["frozen"]] if "frozen" in expect else []:
-        if any(s[0] < b - 0.1 and a + 0.1 < s[1] for s in spans):
+        if any(s[0] < b - 0.1 and a + 0.1 < s[1] for s in spans) and not _rests(spans, (a, b), _near(expect)):
             return f"it moves between {a} and {b} s"
     return ""
+
+
+def _rests(spans: list[Span], wanted: Span, near: float) -> bool:
+    """Whether something rests between two movements for as long as it is wanted to, near that time."""
+    for (_, start), (stop, _) in pairwise(spans):
+        if max(abs(start - wanted[0]), abs(stop - wanted[1])) <= near and stop - start >= wanted[1] - wanted[0] - 0.1:
+            return True
+    return False
 
 
 def _closes_at(course: Course, spans: list[Span]) -> float:

@@ -192,7 +192,7 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
         return ("closing" if sense == "close" else "moving"), _ENDED
     if sense in ("be", "stay", "look", "stop") and fields == {"state"}:
         if manner.state == "open":
-            stands = clause.verb is not None and clause.verb.first == "stand"
+            stands = sense == "stay" or (clause.verb is not None and clause.verb.first == "stand")
             fully = stands or _FULLY.search(" ".join(clause.tail)) is not None or "out" in clause.tail
             return ("fully_open" if fully else "open"), _HOLDS
         states: dict[str, tuple[str, _Course]] = {

@@ -42,7 +42,7 @@ from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
 from .supposed.choosing import Offer, chosen
-from .supposed.kinds import COURSES, likely, marked
+from .supposed.kinds import COURSES, is_done_by, likely, marked
 from .supposed.names import with_nouns
 from .supposed.parts import TIMES, divided, leaves_out
 from .supposed.said import Said, said_of
@@ -149,6 +149,12 @@ class TimeReader:
             if found is not None:
                 return found  # else it is told that the thing does not move
         return chosen(offers, words, least)
+
+    def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields]) -> bool:
+        """Whether operations begin with one that no wish of the likeliest kind is done by: "get the robot there by 3 s"
+        hides nothing."""
+        kinds = likely(cleaned) if ops else []
+        return bool(kinds) and kinds[0][1] >= _SAID_SO and not is_done_by(kinds[0][0], str(ops[0]["op"]))
 
     def is_still(self, ops: Sequence[Fields]) -> bool:
         """Whether operations change how something moves that stands still in the scene."""

@@ -8,6 +8,7 @@ from .wording import CAUSING, COLOR, EVENT, ING, NUMBER, PASTS, PLAIN, POINT, Ru
 
 RULES: Rules = (
     # how it is written
+    (r" , (?:as )?(?:a )?permanent(?:ly)?(?: change)?$", ""),
     (rf"^(?P<np>(?:the |my )?[a-z]+(?: [a-z]+)??) in (?:a )?(?P<c>{COLOR}) , (?P<t>(?:the )?(?:whole|entire|full) "
      r"[a-z]+|all the time|always|throughout)$", r"make \g<np> \g<c>"),
     (r"\bfirst ,? ?(?:so |i e |that is )?(?P<w>before|ahead of) (?=(?:the|my) )", r"\g<w> "),
@@ -183,7 +184,7 @@ RULES: Rules = (
     (r"\b(?:put|paint|make|have|turn|let) (?P<np>(?:the|my) [a-z ]+?) (?:of|in|with) (?:the |a )?(?:colou?r (?:of "
      rf")?)?(?P<c>{COLOR})(?: colou?r)?\b(?! [a-z]+ (?:to|from)\b)", r"make \g<np> \g<c>"),
     (r"^(?:(?:i|we) (?:think|feel|believe|guess|say|bet|reckon)(?: that)? )?(?P<np>(?:the|my|this|that) [a-z ]+?) "
-     r"(?:would|might|could|will) (?:look|be) (?:(?:so|really|much|very|quite|even|rather|far|a lot|way) "
+     r"(?:would|might|could|will) (?:look|be|read) (?:(?:so|really|much|very|quite|even|rather|far|a lot|way) "
      r")*(?:[a-z]+er|lovely|nice|good|great|better|best|well|pretty|beautiful|perfect|cool|sweet|fun|smart|super|"
      rf"gorgeous) (?:in|as) (?:a )?(?P<c>{COLOR}|cream|beige|navy|teal|ivory|lilac|mint|maroon|cyan|magenta)\b",
      r"\g<np> should be \g<c>"),

@@ -39,6 +39,18 @@ RULES: Rules = (
      r"(?: \. (?:leave|keep) it (?:open|out)(?: please)?)?",
      lambda m: f"do not close the {re.sub('^the ', '', m['np'])}"),
     # how a time is named
+    (r"\b(?:only )?(?:until|till|up to|as far as) (?:only )?(?=\d+(?:\.\d+)? ?(?:degrees?|deg|°|cm|centimet))", "by "),
+    (r"\b(?:straight|right) off the bat\b", "from the start"),
+    (r"\b(?:come|comes|fall|falls|drop|drops|go|goes|roll|rolls) (?P<w>down )?a second time (?=(?:at|from|when|after) "
+     r")",
+     "move once more "),
+    (r"^(?P<x>.*\bmove .+?)(?: to (?:the|its) (?:left|right))? until (?:it|he|she) (?:sits|stands|is|rests) (?=(?:next "
+     r"to|"
+     r"beside|by|near|in front of|behind) (?:the|my) )", r"\g<x> "),
+    (r"^(?:the|my) (?P<np>[a-z]+(?: [a-z]+)?) (?:may|should|must|can|could|has to|needs to) (?:close|open|start|move|st"
+     r"op)s? "
+     r"(?:sooner|earlier|later|faster|slower)(?: ,| :| ;| \.)? (?P<v>let|have|make) it (?P<r>.+)$", r"\g<v> the \g<np> "
+     r"\g<r>"),
     (rf"(?: ,)?(?: and| then| but)+ (?:(?:turn |make )?it )?(?:back to )?(?:{COLOR}|normal|its (?:own|old|usual|normal)"
      rf" "
      r"colou?r) again (?:when|once|as soon as|from when) (?=(?:it|he|she|the|my) )", " until "),

@@ -18,6 +18,13 @@ COURSES = (  # kinds that are about how what is there moves by itself
     "begin", "speed", "duration", "pause", "halt", "still", "reverse", "stay", "order", "together", "repeat", "return",
     "longer",
 )  # fmt: skip
+_DONE_BY = {  # the operations by which a wish of a kind is done; the other kinds are about how something moves
+    "recolor": ("recolor", "restyle"), "hide": ("opacity", "delete"), "remove": ("delete", "opacity"),
+    "move": ("move", "follow", "orbit", "rotate", "pace", "order", "delete"), "spin": ("spin", "orbit", "rotate", "pace"
+    ""),
+    "amount": ("articulate", "pace", "move"), "open": ("articulate", "pace"), "close": ("articulate", "pace"),
+}  # fmt: skip
+_COURSED_BY = ("pace", "articulate", "order", "spin", "move")
 LEAST = 0.08  # probability of a kind that is tried
 MOST = 4  # kinds that are tried
 
@@ -35,6 +42,11 @@ def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
         known = [(kind, chance / rest) for kind, chance in known if kind not in COURSES]
     found = [(kind, chance) for kind, chance in known[:MOST] if chance >= LEAST]
     return [] if found and found[0][0] == NO_WISH else found
+
+
+def is_done_by(kind: str, op: str) -> bool:
+    """Whether an operation may be what a wish of a kind asks for."""
+    return op in _DONE_BY.get(kind, _COURSED_BY)
 
 
 def marked(words: Sequence[str]) -> tuple[Span, ...]:
