@@ -147,7 +147,7 @@ def test_halfway_rates_and_lengths_of_what_happens(text: str, plainly: str | Non
     "text",
     [
         "slow mo the blue book, like it takes 2 whole seconds to fall, and 4 for the red one",  # a number too many
-        "By the time the drawer is out I want the chair over at the bed, it can begin at 1 second.",
+        "By the time the drawer is out I want the chair over at the bed at 1 second, at 2 seconds.",
     ],
 )
 def test_no_time_number_or_colour_is_lost(text: str) -> None:

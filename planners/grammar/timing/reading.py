@@ -151,9 +151,11 @@ class TimeReader:
         return chosen(offers, words, least)
 
     def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields]) -> bool:
-        """Whether operations begin with one that no wish of the likeliest kind is done by: "get the robot there by 3 s"
-        hides nothing."""
-        kinds = likely(cleaned) if ops else []
+        """Whether operations of a time begin with one that no wish of the likeliest kind is done by: "get the robot
+        there by 3 s" hides nothing."""
+        if not ops or (ops[0].get("when") or When()).gradual or not moments.TIMED.search(cleaned):
+            return False
+        kinds = likely(cleaned)
         return bool(kinds) and kinds[0][1] >= _SAID_SO and not is_done_by(kinds[0][0], str(ops[0]["op"]))
 
     def is_still(self, ops: Sequence[Fields]) -> bool:
@@ -186,6 +188,8 @@ class TimeReader:
         they leave none out, or if that is not told."""
         if not ops or any(op.get("when") is not None or op["op"] not in _TIMELESS for op in ops):
             return None
+        if any(op["target"].moving is not None for op in ops):
+            return None  # "the second book that falls"
         words = _in_words(cleaned)
         told = any(tag in TIMES for tag, _, _ in marked(words.split(" ")))
         if not told and next(happenings.cut(words, self.thing), None) is None:
@@ -879,7 +883,7 @@ def _is_strange(ops: Sequence[Fields]) -> bool:
 _TIME_NOUNS = bag("pause break delay stop halt faster slower second seconds")
 _NO_NAMES = bag(
     "end start beginning motion slow once twice while finish closed falls walks opens stops moves appear flash blink "
-    "blinks flashes knock slower faster speed"
+    "blinks flashes knock slower faster speed second seconds"
 )
 
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from ..moments import DURATION
 from ..verbs import SENSES, any_of
-from .wording import CAUSING, COLOR, EVENT, ING, NUMBER, PASTS, PLAIN, POINT, Rules, S, plain_of, wished
+from .wording import CAUSING, COLOR, EVENT, ING, NUMBER, PASTS, PLAIN, POINT, Rules, S, plain_of, wished, with_article
 
 RULES: Rules = (
     # how it is written
+    (rf"^(?P<np>(?!the |my |all |both |every |it |he |she )[a-z]+(?: [a-z]+)??) (?:{S}) (?=(?:only |just |not )?(?:at|f"
+     rf"rom|"
+     r"when|once|after|until|till|for|in|too) )", with_article),
     (r" , (?:as )?(?:a )?permanent(?:ly)?(?: change)?$", ""),
     (rf"^(?P<np>(?:the |my )?[a-z]+(?: [a-z]+)??) in (?:a )?(?P<c>{COLOR}) , (?P<t>(?:the )?(?:whole|entire|full) "
      r"[a-z]+|all the time|always|throughout)$", r"make \g<np> \g<c>"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from .....gaussians import late_re as re
+from ...vocabulary.nouns import is_known
 from ..asides import HUES
 from ..manner import MOTION
 from ..moments import DURATION, seconds_of
@@ -31,6 +32,11 @@ NO_LENGTH = "".join(f"(?<!{w})" for w in LENGTHS.split())  # behind one of these
 CAUSING = {"letting": "let", "having": "have"}  # which no sense of a verb holds
 PASTS = {past: verb for verbs in SENSES.values() for verb in verbs.split(", ") for past, form in forms(verb)
           if form == "past" and " " not in verb}  # fmt: skip
+
+
+def with_article(found: re.Match[str]) -> str:
+    """ "green book falls at 3 s"."""
+    return f"the {found[0]}" if is_known(found["np"].split()[-1]) else found[0]
 
 
 def with_unit(time: str) -> str:

@@ -178,7 +178,9 @@ def _says_no_more(kind: str, said: Said, left: str) -> bool:
         left = HELD_BACK.sub(" ", left)
         if is_opened(said.things[0]):
             left = _BACK_IN.sub(" ", left)  # the beginning of its closing
-    if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY) or _WISHED.search(said.text):
+    if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY):
+        return False
+    if _WISHED.search(f"{said.text} {said.idle}"):
         return False
     if kind not in _NEGATED and _NOT.search(_without(left, _DISLIKES, _TOO_FAST, _TOO_SLOW, _NO_MORE)):
         return kind == "begin" and _LATER.search(left) is not None  # "not at once, it waits"
