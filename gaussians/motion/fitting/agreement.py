@@ -7,7 +7,6 @@ not explain are left out, as transient objects are in other work (RobustNeRF, Sa
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
@@ -22,7 +21,9 @@ from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
 from ...fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, REFINE_START_ITER, REFINE_STOP, Shot, morton_order
 from ...render.cpu import gradient
+from .budget import LASTING_UNTIL, Budget
 from .footage import DIFFERS, U8, differs, rounded
+from .sketch import STEREO_FRAMES
 from .start import PIXELS, ROOM, start_cloud
 
 F32 = NDArray[np.float32]
@@ -35,8 +36,7 @@ MARKS = (
     (0.55, 0.12),
     (0.75, DIFFERS),
 )  # share of the training, and difference from which pixels are left out
-LASTING = 0.3  # share of the training of a film that goes to what is there for most of the time
-ENOUGH = 32  # frames beyond which others show little that is new, and need no more Gaussians
+LASTING = 0.3  # share of the steps of a film that go to what is there for most of the time
 GROWN = 2  # pixels around these that are left out too
 
 
@@ -100,22 +100,22 @@ class Agreement:
 
 
 def lasting(
-    shots: Sequence[Shot], photos: Photos, settings: Settings, rng: np.random.Generator, tell: Tell
+    shots: Sequence[Shot], photos: Photos, settings: Settings, rng: np.random.Generator, budget: Budget, tell: Tell
 ) -> Agreement:  # fmt: skip
     """The completed training of the scene that is there for most of the time.
 
     Args:
+        budget: of which it takes its share, if the fit is not measured in steps.
         tell: is told the loss of each step, and the number of Gaussians.
     """
-    pixels = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in shots[:ENOUGH])
-    cloud = start_cloud(shots, photos, min(settings.max_gaussians, pixels // PIXELS), rng)
+    pixels = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in shots[:STEREO_FRAMES])
+    cloud = start_cloud(shots, photos, min(settings.max_gaussians, pixels // PIXELS), rng, settings.seconds)
     training = Agreement(shots, Parameters.of(cloud), int(ROOM * len(cloud)) + 1, photos.extent, rng)
     steps = settings.steps and max(1, round(LASTING * settings.steps))
-    started, share, marks = time.perf_counter(), 0.0, list(MARKS)
+    started, seconds, share, marks = budget.gone, budget.left(LASTING_UNTIL), 0.0, list(MARKS)
     while share < 1:
         if marks and share >= marks[0][0]:
             training.leave_out(range(len(shots)), marks.pop(0)[1])
         tell(training.step(share, SSIM if len(marks) < len(MARKS) else 0.0), len(cloud))
-        gone = time.perf_counter() - started
-        share = training.steps / steps if steps else gone / (LASTING * (settings.seconds or 1.0))
+        share = training.steps / steps if steps else (budget.gone - started) / (seconds or 1.0)
     return training

@@ -9,16 +9,20 @@ import torch
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...camera import Camera
 from ...cloud import GaussianCloud
 from ...errors import UserError
 from ...fit.densify import MCMCStrategy
+from ...fit.fitting import Settings
 from ...fit.initialize import initial_cloud
 from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
 from ...fit.train import Schedule, Shot, Trainer
 from ...harmonics import color_to_dc
+from .budget import START_UNTIL, Budget
 from .covering import uncovered
 from .footage import Footage
+from .sketch import covering, reduced, stereo_pixels
 from .stereo import Points, points_of
 
 I64 = NDArray[np.int64]
@@ -41,6 +45,7 @@ def start_points(
     """Gaussians at points whose depth pictures agree on, the best confirmed first; wide ones at what these leave bare.
 
     Args:
+        shots: of many, some that cover the film are taken.
         most: Gaussians.
         changing: `[H, W]` of each picture, where its colour is another one at later times: there may be something that
             moves, whose points are nearer to each other and come first.
@@ -48,6 +53,8 @@ def start_points(
     Raises:
         UserError: pictures agree on the depth of fewer than two points.
     """
+    chosen = covering([s.camera for s in shots])
+    shots, changing = [shots[k] for k in chosen], [changing[k] for k in chosen] if changing else []
     cameras = [s.camera for s in shots]
     found = points_of(cameras, [s.colors for s in shots], radius)
     budget = min(most, len(found.means) // PIXELS)
@@ -101,21 +108,39 @@ def _confirmed(found: Points, spacing: float, moves: NDArray[np.bool_], rng: np.
 
 
 def start_cloud(
-    shots: Sequence[Shot], photos: Photos, most: int, rng: np.random.Generator,
+    shots: Sequence[Shot], photos: Photos, most: int, rng: np.random.Generator, seconds: float | None,
     changing: Sequence[NDArray[np.bool_]] = (),
 ) -> GaussianCloud:  # fmt: skip
-    """Gaussians at surveyed points where the capture has them, else at those of the pictures' own stereo."""
+    """Gaussians at surveyed points where the capture has them, else at those of the pictures' own stereo.
+
+    Args:
+        seconds: of the whole fit, by which pictures are reduced for the stereo; None: one that is measured in steps.
+    """
     if len(photos.points.means):
         return initial_cloud(photos, most, rng)
-    return start_points(list(shots), photos.extent, most, rng, changing)
+    pixels = stereo_pixels(seconds, len(shots))
+    small = [reduced(shot, pixels) for shot in shots]
+    masks = [_sampled(mask, shot.camera) for mask, shot in zip(changing, small, strict=True)] if changing else ()
+    return start_points(small, photos.extent, most, rng, masks)
 
 
-def trainer(footage: Footage, photos: Photos, most: int, schedule: Schedule, rng: np.random.Generator) -> Trainer:
+def _sampled(mask: NDArray[np.bool_], camera: Camera) -> NDArray[np.bool_]:
+    """A mask `[H, W]` at the size of a camera, by the nearest pixels."""
+    rows, columns = (
+        ((np.arange(count) + 0.5) * of / count).astype(int)
+        for count, of in zip((camera.height, camera.width), mask.shape, strict=True)
+    )
+    return mask[rows[:, None], columns]
+
+
+def trainer(footage: Footage, photos: Photos, settings: Settings, rng: np.random.Generator, budget: Budget) -> Trainer:
     """A training on the first frames: from surveyed points where the capture has them, else from their own stereo."""
-    shots = [footage.shots[i] for i in footage.first]
-    cloud = start_cloud(shots, photos, most, rng, changing(footage))
-    budget = min(most, int(ROOM * len(cloud)) + 1)
-    return Trainer(shots, Parameters.of(cloud), MCMCStrategy(budget, rng), photos.extent, schedule, rng)
+    shots, most = [footage.shots[i] for i in footage.first], settings.max_gaussians
+    cloud = start_cloud(shots, photos, most, rng, settings.seconds, changing(footage))
+    steps = settings.steps and max(1, round(START_UNTIL * settings.steps))
+    schedule = Schedule(steps, budget.left(START_UNTIL), settings.coarse)
+    strategy = MCMCStrategy(min(most, int(ROOM * len(cloud)) + 1), rng)
+    return Trainer(shots, Parameters.of(cloud), strategy, photos.extent, schedule, rng)
 
 
 def changing(footage: Footage) -> list[NDArray[np.bool_]]:
