@@ -17,8 +17,11 @@ from ..terminal.output import terminal, time_left
 
 if TYPE_CHECKING:
     from ...gaussians.fit import Fitted, Photos, Settings, Status
+    from ...gaussians.motion.fitting.fit import Still
 
 MAX_NAMED = 8  # photographs named in a warning
+SHORT = "as its share of the time was gone; with more --minutes, more may be found"
+LEAST_LEFT = 0.3  # share of the time that is left to photographs after a search for what moves
 
 
 def command(
@@ -117,11 +120,14 @@ def command(
     if unposed_photos(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
     photos = load_photos(capture, scale, terminal.progress, poses, strict=strict)
-    if photos.film:
-        _fit_film(photos, settings, output, report, force)
-        return
-    terminal.say(_describe(photos) + (", on the GPU" if where == "cuda" else ""))
+    described = _describe(photos)
     kept = output.with_name(output.name + (".checkpoint" if parts == 1 else ".blocks"))
+    if photos.film and not (parts == 1 and kept.exists()):  # a checkpoint is of photographs: nothing moves
+        found = _fit_film(photos, settings, output, report, force)
+        if found is None:
+            return
+        photos, settings = found.photos, _shortened(settings, found.seconds)
+    terminal.say(described + (", on the GPU" if where == "cuda" else ""))
     if kept.exists():
         terminal.say(f"going on from {kept}")
     try:
@@ -159,19 +165,18 @@ def _blocks(said: str, settings: Settings, dialled: bool) -> int:
     return int(said)
 
 
-def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | None, force: bool) -> None:
-    """Fit a scene with motion to the frames of a film, and write it."""
+def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | None, force: bool) -> Still | None:
+    """Fit a scene with motion to the frames of a film, and write it; if nothing moves, what is to be fitted instead."""
     from ...gaussians.files import save
-    from ...gaussians.motion.fitting.fit import fit_film, stands
+    from ...gaussians.motion.fitting.fit import Still, fit_what_moves, stands
 
     times = {shot.time for shot in (*photos.shots, *photos.held_out)}
     standing = stands(photos)
-    by = "" if standing else " by a moving camera"
-    terminal.say(
-        f"a film of {len(times)} times{by}: what moves is fitted too, on the CPU, without harmonics and checkpoints; "
-        + _describe(photos)
-    )
-    done = fit_film(photos, settings, on_status=_show_status)
+    terminal.say(f"a film of {len(times)} times{'' if standing else ' by a moving camera'}: looking for what moves")
+    done = fit_what_moves(photos, settings, on_status=_show_status)
+    if isinstance(done, Still):
+        terminal.say(_still(done, standing))
+        return done
     save(done.scene, output, force=force)
     tracks = done.scene.motion.tracks if done.scene.motion is not None else ()
     data = {
@@ -187,14 +192,37 @@ def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | N
             file.write((json.dumps(data, indent=2) + "\n").encode())
     told = ", ".join(f"{t.name} ({t.kind}, {len(t.times)} keys, {len(t):,} Gaussians)" for t in tracks)
     how = f"{done.quality.psnr:.2f} dB, SSIM {done.quality.ssim:.3f} on {len(done.quality.each)} held-out frames"
-    nothing = "nothing that moves was found: the scene stands still"
-    if not standing:
-        nothing += "; of a moving camera, only what rests for a while at the start or at the end is followed"
-    moves = f"moves: {told}" if tracks else nothing
+    moves = f"moves: {told}" if tracks else "what was followed hardly moves: the scene stands still"
+    if done.cut:
+        moves += f"\nnote: the search for what moves ended early, {SHORT}"
     terminal.result(
-        f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s\n{moves}",
+        f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s, on the CPU "
+        f"and without harmonics, as all that moves\n{moves}",
         data,
     )
+    return None
+
+
+def _still(found: Still, standing: bool) -> str:
+    """Why a film is fitted as photographs are."""
+    if found.cut:
+        why = f"the search for what moves was given up after {found.seconds:.0f} s, {SHORT}"
+    elif found.tried or standing:
+        why = "no path was found that explains what the frames show"
+        if not standing:
+            why += ", and of a moving camera, only what rests for a while at the start or at the end is followed"
+    else:
+        why = "nothing that moves was found"
+    return f"{why}: the frames are fitted as photographs of a scene that stands still"
+
+
+def _shortened(settings: Settings, seconds: float) -> Settings:
+    """The settings of what is left after so many seconds."""
+    from dataclasses import replace
+
+    if settings.seconds is None:
+        return settings
+    return replace(settings, seconds=max(LEAST_LEFT * settings.seconds, settings.seconds - seconds))
 
 
 def _resume_hint(kept: Path) -> str:

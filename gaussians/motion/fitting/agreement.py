@@ -13,18 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ...cloud import GaussianCloud
 from ...fit.densify import MCMCStrategy
 from ...fit.engine import CpuEngine
-from ...fit.fitting import Settings
 from ...fit.loss import BLACK, photometric
 from ...fit.parameters import Parameters
-from ...fit.photographs.photos import Photos
 from ...fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, REFINE_START_ITER, REFINE_STOP, Shot, morton_order
 from ...render.cpu import gradient
 from .budget import LASTING_UNTIL, Budget
 from .footage import DIFFERS, U8, differs, rounded
-from .sketch import STEREO_FRAMES
-from .start import PIXELS, ROOM, start_cloud
+from .start import ROOM
 
 F32 = NDArray[np.float32]
 Mask = NDArray[np.bool_]
@@ -100,22 +98,24 @@ class Agreement:
 
 
 def lasting(
-    shots: Sequence[Shot], photos: Photos, settings: Settings, rng: np.random.Generator, budget: Budget, tell: Tell
+    shots: Sequence[Shot], start: GaussianCloud, extent: float, steps: int | None, rng: np.random.Generator,
+    budget: Budget, tell: Tell,
 ) -> Agreement:  # fmt: skip
     """The completed training of the scene that is there for most of the time.
 
     Args:
-        budget: of which it takes its share, if the fit is not measured in steps.
+        start: Gaussians.
+        extent: radius of the cameras, scene units.
+        steps: of the whole fit; None: it is measured in seconds.
+        budget: of the fit, of which it takes its share if it is measured in seconds.
         tell: is told the loss of each step, and the number of Gaussians.
     """
-    pixels = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in shots[:STEREO_FRAMES])
-    cloud = start_cloud(shots, photos, min(settings.max_gaussians, pixels // PIXELS), rng, settings.seconds)
-    training = Agreement(shots, Parameters.of(cloud), int(ROOM * len(cloud)) + 1, photos.extent, rng)
-    steps = settings.steps and max(1, round(LASTING * settings.steps))
+    training = Agreement(shots, Parameters.of(start), int(ROOM * len(start)) + 1, extent, rng)
+    most = steps and max(1, round(LASTING * steps))
     started, seconds, share, marks = budget.gone, budget.left(LASTING_UNTIL), 0.0, list(MARKS)
     while share < 1:
         if marks and share >= marks[0][0]:
             training.leave_out(range(len(shots)), marks.pop(0)[1])
-        tell(training.step(share, SSIM if len(marks) < len(MARKS) else 0.0), len(cloud))
-        share = training.steps / steps if steps else (budget.gone - started) / (seconds or 1.0)
+        tell(training.step(share, SSIM if len(marks) < len(MARKS) else 0.0), len(start))
+        share = training.steps / most if most else (budget.gone - started) / (seconds or 1.0)
     return training

@@ -9,7 +9,8 @@ what touches and goes at one time is one body. A body is kept if a path of it ex
 and all poses are trained together on the frames of every time.
 
 Before one moving camera the scene at its start is what all frames agree on, and what those of one end show otherwise
-(`agreement`, `resting`); things are followed from that end.
+(`agreement`, `resting`); things are followed from that end. Where nothing moves, the film is left to a fit of
+photographs (`fit_what_moves`).
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -25,11 +27,14 @@ import torch
 from numpy.typing import NDArray
 
 from ...cloud import NO_GROUP, GaussianCloud
-from ...fit.fitting import Settings, Status
+from ...files.captures.colmap import Points
+from ...fit.fitting import SECONDS, Settings, Status
+from ...fit.initialize import MIN_POINTS
 from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
 from ...fit.quality import Quality, measure
 from ...fit.train import Shot
+from ...harmonics import dc_to_color
 from ...scene import Scene
 from ..at import at
 from ..motion import Motion, Residual, Track
@@ -40,8 +45,9 @@ from .finding import Finder
 from .footage import Footage
 from .resting import Ends
 from .simplify import track_of
-from .sketch import MOST_PIXELS, at_all_times, sketched, stereo_pixels
-from .start import trainer
+from .sketch import MOST_PIXELS, STEREO_FRAMES, at_all_times, sketched, stereo_pixels
+from .start import PIXELS, changing, start_cloud, trainer
+from .stillness import nothing_moves
 from .training import Joint, Single
 
 F64 = NDArray[np.float64]
@@ -76,6 +82,23 @@ class FittedFilm:
     cut: bool
 
 
+@dataclass(frozen=True, eq=False)
+class Still:
+    """A film in which nothing was found that moves: frames to fit as photographs are.
+
+    Attributes:
+        photos: the same, with points of the film's own stereo where the capture has too few.
+        seconds: that the search took.
+        tried: how many bodies were tracked; none explained the frames.
+        cut: whether the search ended early, as its share of the time was gone.
+    """
+
+    photos: Photos
+    seconds: float
+    tried: int
+    cut: bool
+
+
 def fit_film(
     photos: Photos,
     settings: Settings | None = None,
@@ -95,13 +118,38 @@ def fit_film(
     Raises:
         UserError: a frame has no time or all have the same; or the frames agree on no depths.
     """
-    settings = settings or Settings(seconds=300.0)
-    return _Film(photos, settings, detail, on_status).fit()
+    film = _Film(photos, settings or Settings(seconds=SECONDS), detail, on_status)
+    return film.trained(film.searched())
+
+
+def fit_what_moves(
+    photos: Photos, settings: Settings | None = None, *, on_status: Callable[[Status], None] = lambda status: None
+) -> FittedFilm | Still:
+    """As `fit_film` if something moves; else what a fit of photographs starts with, before anything else is trained.
+
+    Frames of one moving camera are looked at first (`stillness`): where they show nothing that moves, none is searched.
+    """
+    film = _Film(photos, settings or Settings(seconds=SECONDS), "residual", on_status)
+    if film.stands_still():
+        return film.left(0)
+    found = film.searched()
+    return film.trained(found) if found.bodies else film.left(found.tried)
 
 
 def stands(photos: Photos) -> bool:
     """Whether the frames of a film are of cameras that stand; else one moves, or several do."""
     return Footage.of(photos.shots, [s.time for s in photos.shots]).stands
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """Gaussians with the number of their body, paths of these at the times of all frames, how many were tried, and the
+    steps of the training so far."""
+
+    labelled: Labelled
+    bodies: list[Body]
+    tried: int
+    steps: int
 
 
 class _Film:
@@ -113,42 +161,73 @@ class _Film:
         self._photos, self._settings, self._detail, self._on_status = photos, settings, detail, on_status
         self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
         self._rng, self._budget = np.random.default_rng(settings.seed), Budget(settings.seconds)
-        pixels = min(MOST_PIXELS, stereo_pixels(settings.seconds, len(photos.shots)))
-        self._pixels = MOST_PIXELS if self._footage.stands else pixels
-        small = sketched(photos.shots, self._pixels)
+        pixels = MOST_PIXELS
+        if not self._footage.stands:
+            pixels = min(pixels, stereo_pixels(settings.seconds, len(photos.shots)))
+        small = sketched(photos.shots, pixels)
         self._sketch = Footage.of(small, [s.time for s in small])
         self._told, self._loss, self._cut = 0.0, math.nan, False
 
-    def fit(self) -> FittedFilm:
-        """All steps."""
-        footage, settings = self._footage, self._settings
-        labelled, bodies, tried, before = self._before_standing() if footage.stands else self._before_moving()
-        budget = min(settings.max_gaussians, int(MORE * len(labelled)))
+    def stands_still(self) -> bool:
+        """Whether frames of one moving camera show that nothing moves; cameras that stand are not asked."""
+        photos = self._photos
+        return not self._footage.stands and nothing_moves(
+            self._sketch.shots, self._start, photos.extent, self._settings.seed
+        )
+
+    def left(self, tried: int) -> Still:
+        """The film for a fit of photographs."""
+        photos = self._photos
+        if len(photos.points.means) < MIN_POINTS:
+            colors = dc_to_color(self._start.sh[:, 0]).clamp(0, 1)
+            photos = replace(photos, points=Points(self._start.means.double().numpy(), colors.double().numpy()))
+        return Still(photos, self._budget.gone, tried, self._cut)
+
+    def searched(self) -> _Found:
+        """What moves."""
+        return self._before_standing() if self._footage.stands else self._before_moving()
+
+    def trained(self, found: _Found) -> FittedFilm:
+        """All together, and few keys."""
+        settings, labelled, bodies = self._settings, found.labelled, found.bodies
+        most = min(settings.max_gaussians, int(MORE * len(labelled)))
+        joint = Joint(labelled, bodies, self._footage, most, self._rng)
         single = self._detail == "residual" and bool(bodies) and bool(self._photos.held_out)
-        joint = Joint(labelled, bodies, footage, budget, self._rng)
         left = self._budget.left(least=LEAST_TOGETHER)
         if left is not None and single:
             left /= 1 + SINGLE
-        more = None if settings.steps is None else settings.steps - before
+        more = None if settings.steps is None else settings.steps - found.steps
         while (share := _share(joint, more, left)) < 1:
-            self._tell(joint.step(share), before + joint.steps, START + (1 - START) * share, len(labelled))
-        scene, steps = self._scene(labelled, bodies, None), before + joint.steps
+            self._tell(joint.step(share), found.steps + joint.steps, START + (1 - START) * share, len(labelled))
+        scene, steps = self._scene(labelled, bodies, None), found.steps + joint.steps
         if single and scene.motion is not None:
             scene, more = self._with_single(scene, labelled, bodies, round(SINGLE * joint.steps))
             steps += more
-        return FittedFilm(scene, measure_film(scene, self._photos.held_out), steps, self._budget.gone, tried, self._cut)
+        quality = measure_film(scene, self._photos.held_out)
+        return FittedFilm(scene, quality, steps, self._budget.gone, found.tried, self._cut)
 
-    def _before_standing(self) -> tuple[Labelled, list[Body], int, int]:
-        """What moves before cameras that stand, its paths, how many were tried, and the steps of the training."""
-        start = trainer(self._footage, self._photos, self._settings, self._rng, self._budget)
+    @cached_property
+    def _start(self) -> GaussianCloud:
+        """Gaussians to start from, at points of the first frames of cameras that stand, or of all of one that moves."""
+        footage, photos, settings = self._footage, self._photos, self._settings
+        if footage.stands:
+            first = [footage.shots[i] for i in footage.first]
+            return start_cloud(first, photos, settings.max_gaussians, self._rng, settings.seconds, changing(footage))
+        shots = self._sketch.shots
+        pixels = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in shots[:STEREO_FRAMES])
+        return start_cloud(shots, photos, min(settings.max_gaussians, pixels // PIXELS), self._rng, settings.seconds)
+
+    def _before_standing(self) -> _Found:
+        """What moves before cameras that stand."""
+        start = trainer(self._footage, self._start, self._photos.extent, self._settings, self._rng, self._budget)
         while start.progress < 1:
             self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
         labelled, bodies, tried = self._bodies(start.parameters, self._sketch)
-        return labelled, self._at_all_times(bodies), tried, start.steps
+        return _Found(labelled, self._at_all_times(bodies), tried, start.steps)
 
-    def _before_moving(self) -> tuple[Labelled, list[Body], int, int]:
+    def _before_moving(self) -> _Found:
         """The same before a camera that moves: the film is followed from the end at which more rests."""
-        told, budget, sketch = 0, self._budget, self._sketch
+        told, budget, sketch, start = 0, self._budget, self._sketch, self._start
 
         def tell(loss: float, gaussians: int) -> None:
             nonlocal told
@@ -160,22 +239,22 @@ class _Film:
             budget.check(ENDS_UNTIL)
             tell(loss, gaussians)
 
-        usual = lasting(sketch.shots, self._photos, self._settings, self._rng, budget, tell)
+        usual = lasting(sketch.shots, start, self._photos.extent, self._settings.steps, self._rng, budget, tell)
         still = Labelled.labelled(usual.parameters, np.zeros(len(usual.parameters), np.int32))
         if self._detail == "static":
-            return still, [], 0, usual.steps
+            return _Found(still, [], 0, usual.steps)
         ends = Ends(usual, sketch, self._photos.extent, self._rng, tell_end)
         try:
             resting = ends.best()
         except OutOfTime:
             self._cut = True
-            return still, [], 0, usual.steps
+            return _Found(still, [], 0, usual.steps)
         labelled, bodies, tried = self._bodies(deepcopy(resting.parameters), resting.footage)
         if not bodies:
-            return still, [], tried, usual.steps
+            return _Found(still, [], tried, usual.steps)
         if resting.backwards:
             turn_around(labelled, bodies)
-        return labelled, self._at_all_times(bodies), tried, usual.steps + ends.steps
+        return _Found(labelled, self._at_all_times(bodies), tried, usual.steps + ends.steps)
 
     def _bodies(self, start: Parameters, footage: Footage) -> tuple[Labelled, list[Body], int]:
         """What moves, by the number of its label, its paths, and how many were tried."""

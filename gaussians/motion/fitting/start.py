@@ -133,14 +133,20 @@ def _sampled(mask: NDArray[np.bool_], camera: Camera) -> NDArray[np.bool_]:
     return mask[rows[:, None], columns]
 
 
-def trainer(footage: Footage, photos: Photos, settings: Settings, rng: np.random.Generator, budget: Budget) -> Trainer:
-    """A training on the first frames: from surveyed points where the capture has them, else from their own stereo."""
+def trainer(
+    footage: Footage, cloud: GaussianCloud, extent: float, settings: Settings, rng: np.random.Generator, budget: Budget
+) -> Trainer:  # fmt: skip
+    """A training of Gaussians on the first frames.
+
+    Args:
+        extent: radius of the cameras, scene units.
+        budget: of which it takes its share, if the fit is not measured in steps.
+    """
     shots, most = [footage.shots[i] for i in footage.first], settings.max_gaussians
-    cloud = start_cloud(shots, photos, most, rng, settings.seconds, changing(footage))
     steps = settings.steps and max(1, round(START_UNTIL * settings.steps))
     schedule = Schedule(steps, budget.left(START_UNTIL), settings.coarse)
     strategy = MCMCStrategy(min(most, int(ROOM * len(cloud)) + 1), rng)
-    return Trainer(shots, Parameters.of(cloud), strategy, photos.extent, schedule, rng)
+    return Trainer(shots, Parameters.of(cloud), strategy, extent, schedule, rng)
 
 
 def changing(footage: Footage) -> list[NDArray[np.bool_]]:
