@@ -161,10 +161,10 @@ class _Film:
         self._photos, self._settings, self._detail, self._on_status = photos, settings, detail, on_status
         self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
         self._rng, self._budget = np.random.default_rng(settings.seed), Budget(settings.seconds)
-        pixels = MOST_PIXELS
+        self._pixels = MOST_PIXELS
         if not self._footage.stands:
-            pixels = min(pixels, stereo_pixels(settings.seconds, len(photos.shots)))
-        small = sketched(photos.shots, pixels)
+            self._pixels = min(MOST_PIXELS, stereo_pixels(settings.seconds, len(photos.shots)))
+        small = sketched(photos.shots, self._pixels)
         self._sketch = Footage.of(small, [s.time for s in small])
         self._told, self._loss, self._cut = 0.0, math.nan, False
 
@@ -212,10 +212,11 @@ class _Film:
         footage, photos, settings = self._footage, self._photos, self._settings
         if footage.stands:
             first = [footage.shots[i] for i in footage.first]
-            return start_cloud(first, photos, settings.max_gaussians, self._rng, settings.seconds, changing(footage))
-        shots = self._sketch.shots
-        pixels = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in shots[:STEREO_FRAMES])
-        return start_cloud(shots, photos, min(settings.max_gaussians, pixels // PIXELS), self._rng, settings.seconds)
+            pixels = stereo_pixels(settings.seconds, len(first))
+            return start_cloud(first, photos, settings.max_gaussians, self._rng, pixels, changing(footage))
+        small = self._sketch.shots[:STEREO_FRAMES]
+        most = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in small) // PIXELS
+        return start_cloud(photos.shots, photos, min(settings.max_gaussians, most), self._rng, self._pixels)
 
     def _before_standing(self) -> _Found:
         """What moves before cameras that stand."""

@@ -22,8 +22,8 @@ from ...harmonics import color_to_dc
 from .budget import START_UNTIL, Budget
 from .covering import uncovered
 from .footage import Footage
-from .sketch import covering, reduced, stereo_pixels
-from .stereo import Points, points_of
+from .sketch import covering, reduced
+from .stereo import Points, neighbours, points_of
 
 I64 = NDArray[np.int64]
 
@@ -40,26 +40,34 @@ ROOM = 1.1  # times the number of points: greatest number of Gaussians
 
 
 def start_points(
-    shots: list[Shot], radius: float, most: int, rng: np.random.Generator, changing: Sequence[NDArray[np.bool_]] = ()
+    shots: Sequence[Shot], radius: float, most: int, rng: np.random.Generator,
+    changing: Sequence[NDArray[np.bool_]] = (), pixels: int | None = None,
 ) -> GaussianCloud:  # fmt: skip
     """Gaussians at points whose depth pictures agree on, the best confirmed first; wide ones at what these leave bare.
 
     Args:
-        shots: of many, some that cover the film are taken.
+        shots: of many, the depth of some is searched that cover the film, beside the others.
         most: Gaussians.
         changing: `[H, W]` of each picture, where its colour is another one at later times: there may be something that
             moves, whose points are nearer to each other and come first.
+        pixels: to which pictures are reduced; None: they are not.
 
     Raises:
         UserError: pictures agree on the depth of fewer than two points.
     """
-    chosen = covering([s.camera for s in shots])
-    shots, changing = [shots[k] for k in chosen], [changing[k] for k in chosen] if changing else []
-    cameras = [s.camera for s in shots]
-    found = points_of(cameras, [s.colors for s in shots], radius)
+    every = [s.camera for s in shots]
+    chosen = covering(every)
+    asked = {k for i in chosen for k in neighbours(int(i), every, radius)} - set(chosen.tolist())
+    small, beside = (
+        [shots[k] if pixels is None else reduced(shots[k], pixels) for k in some] for some in (chosen, sorted(asked))
+    )
+    changing = [_sampled(changing[k], shot.camera) for k, shot in zip(chosen, small, strict=True)] if changing else []
+    cameras = [s.camera for s in small]
+    others = [s.camera for s in beside], [s.colors for s in beside]
+    found = points_of(cameras, [s.colors for s in small], radius, others)
     budget = min(most, len(found.means) // PIXELS)
     spacing = SPACING * radius / cameras[0].fx
-    share = CONFIRMED if len(shots) >= PICTURES else 1.0
+    share = CONFIRMED if len(small) >= PICTURES else 1.0
     moves = np.concatenate([c.reshape(-1) for c in changing]) if changing else np.zeros(len(found.means), bool)
     best = _confirmed(found, spacing, moves, rng)[: round(share * budget)]
     more, block = best[:0], 0
@@ -108,20 +116,17 @@ def _confirmed(found: Points, spacing: float, moves: NDArray[np.bool_], rng: np.
 
 
 def start_cloud(
-    shots: Sequence[Shot], photos: Photos, most: int, rng: np.random.Generator, seconds: float | None,
+    shots: Sequence[Shot], photos: Photos, most: int, rng: np.random.Generator, pixels: int,
     changing: Sequence[NDArray[np.bool_]] = (),
 ) -> GaussianCloud:  # fmt: skip
     """Gaussians at surveyed points where the capture has them, else at those of the pictures' own stereo.
 
     Args:
-        seconds: of the whole fit, by which pictures are reduced for the stereo; None: one that is measured in steps.
+        pixels: greatest number of each picture whose depth is searched.
     """
     if len(photos.points.means):
         return initial_cloud(photos, most, rng)
-    pixels = stereo_pixels(seconds, len(shots))
-    small = [reduced(shot, pixels) for shot in shots]
-    masks = [_sampled(mask, shot.camera) for mask, shot in zip(changing, small, strict=True)] if changing else ()
-    return start_points(small, photos.extent, most, rng, masks)
+    return start_points(shots, photos.extent, most, rng, changing, pixels)
 
 
 def _sampled(mask: NDArray[np.bool_], camera: Camera) -> NDArray[np.bool_]:

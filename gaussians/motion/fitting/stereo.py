@@ -27,6 +27,7 @@ APART = 1.0  # pixels of the nearest cameras between two depths that are tried, 
 FEWEST, MOST = 72, 256  # depths that are tried
 COSTS = 2**27  # of a picture at most (4 bytes each): fewer depths are tried of large pictures
 NEIGHBOURS = 4  # cameras that a picture is compared with
+ASIDE = 0.1  # of the radius of the cameras: pictures from nearer by hardly tell a depth, and are taken last
 WITNESSES = 12  # other pictures that may confirm the depths of one
 ASKEW = 1.2  # radians between two sights, beyond which pictures hardly show the same
 NEAREST, FARTHEST = 0.12, 4.0  # depths that are tried, of the radius of the cameras
@@ -59,7 +60,10 @@ class Points:
     denied: I64
 
 
-def points_of(cameras: Sequence[Camera], photos: Sequence[F32], radius: float) -> Points:
+def points_of(
+    cameras: Sequence[Camera], photos: Sequence[F32], radius: float,
+    beside: tuple[Sequence[Camera], Sequence[F32]] = ((), ()),
+) -> Points:  # fmt: skip
     """A point for each pixel of some pictures.
 
     The work is that of `NEIGHBOURS` and `WITNESSES` other pictures for each of them, and grows with the pixels.
@@ -67,9 +71,11 @@ def points_of(cameras: Sequence[Camera], photos: Sequence[F32], radius: float) -
     Args:
         photos: `[H, W, 3]` in [0, 1], one for each camera.
         radius: of the cameras around their middle, scene units.
+        beside: more cameras and photos, that these pictures are compared with too.
     """
     count = len(cameras)
-    depths = [_depth(i, cameras, photos, radius) for i in range(count)]
+    everything = [*cameras, *beside[0]], [*photos, *beside[1]]
+    depths = [_depth(i, *everything, radius) for i in range(count)]
     means = [unprojected(camera, depth) for camera, depth in zip(cameras, depths, strict=True)]
     agreed, denied = ([np.zeros(len(m), np.int64) for m in means] for _ in range(2))
     asked = [witnesses(i, cameras) for i in range(count)]
@@ -97,7 +103,7 @@ def unprojected(camera: Camera, depth: F64) -> F64:
 def _depth(own: int, cameras: Sequence[Camera], photos: Sequence[F32], radius: float) -> F64:
     """Depth `[H, W]` of one picture."""
     camera, photo = cameras[own], photos[own]
-    others = _nearest(own, cameras)
+    others = neighbours(own, cameras, radius)
     inverse = _inverse_depths(camera, [cameras[k] for k in others], radius)
     maps = np.stack([_mapping(camera, cameras[k]) for k in others]).astype(np.float32)
     costs = np.empty((camera.height, camera.width, len(inverse)), np.float32)
@@ -148,9 +154,12 @@ def witnesses(own: int, cameras: Sequence[Camera]) -> list[int]:
     return [order[k] for k in np.linspace(0, len(order) - 1, WITNESSES).round().astype(int)]
 
 
-def _nearest(own: int, cameras: Sequence[Camera]) -> list[int]:
-    """The cameras that stand nearest and look the same way."""
-    return _by_nearness(own, cameras)[0][:NEIGHBOURS]
+def neighbours(own: int, cameras: Sequence[Camera], radius: float) -> list[int]:
+    """The cameras that stand nearest and look the same way, of those that stand far enough aside to tell a depth."""
+    order, _ = _by_nearness(own, cameras)
+    place = cameras[own].position
+    near = [bool(np.linalg.norm(cameras[k].position - place) < ASIDE * radius) for k in order]
+    return [k for _, k in sorted(zip(near, order, strict=True), key=lambda pair: pair[0])][:NEIGHBOURS]
 
 
 def _by_nearness(own: int, cameras: Sequence[Camera]) -> tuple[list[int], list[float]]:

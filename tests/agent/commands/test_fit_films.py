@@ -28,7 +28,9 @@ def film(tmp_path: Path) -> Path:
     cameras, times = [], []
     for k in range(14):
         place = np.array([0.25 * k, -4.0, 0.0])
-        cameras.append(Camera.look_at(place, place + [0, 1, 0], (0, 0, 1), 48, 36, 2 * math.degrees(math.atan(0.375))))
+        cameras.append(
+            Camera.look_at(place, place + np.array([0, 1, 0]), (0, 0, 1), 48, 36, 2 * math.degrees(math.atan(0.375)))
+        )
         times.append(0.1 * k)
         x = round(0.25 * k * 48 / 4)  # 12 pixels for each unit at the wall's distance of 4
         Image.fromarray(squares[30 : 30 + 36, x : x + 48]).save(tmp_path / f"{k:02d}.png")

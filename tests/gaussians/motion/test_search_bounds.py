@@ -28,7 +28,7 @@ from scenewright.gaussians.motion.fitting.sketch import (
     sketched,
     stereo_pixels,
 )
-from scenewright.gaussians.motion.fitting.stereo import WITNESSES, points_of, witnesses
+from scenewright.gaussians.motion.fitting.stereo import WITNESSES, neighbours, points_of, witnesses
 
 
 def eyes(count: int, width: int = 16, height: int = 12) -> list[Camera]:
@@ -77,6 +77,14 @@ def test_pictures_that_are_asked_are_near_and_far_and_look_the_same_way():
     assert sorted(witnesses(2, cameras[:12])) == [k for k in range(12) if k != 2]
 
 
+def test_a_depth_is_searched_by_the_nearest_pictures_that_stand_far_enough_aside():
+    cameras = eyes(300)  # 0.005 radians from one to the next, at a distance of 3
+    found = neighbours(100, cameras, 3.0)
+    apart = [np.linalg.norm(cameras[k].position - cameras[100].position) for k in found]
+    assert min(apart) >= stereo.ASIDE * 3 and max(apart) < 1.2 * stereo.ASIDE * 3
+    assert sorted(neighbours(1, cameras[:5], 3.0)) == [0, 2, 3, 4]  # there are no others
+
+
 def test_the_cameras_that_cover_a_film_leave_no_gap():
     cameras = eyes(300)
     chosen = covering(cameras)
@@ -90,14 +98,16 @@ def test_the_cameras_that_cover_a_film_leave_no_gap():
 def test_the_depth_of_no_more_frames_than_cover_a_film_is_searched(monkeypatch):
     counts = []
 
-    def counted(cameras, photos, radius):
-        counts.append((len(cameras), sum(photo.shape[0] * photo.shape[1] for photo in photos)))
-        return points_of(cameras, photos, radius)
+    def counted(cameras, photos, radius, beside):
+        counts.append((len(cameras), {photo.shape for photo in (*photos, *beside[1])}, len(beside[0])))
+        return points_of(cameras, photos, radius, beside)
 
     monkeypatch.setattr(start, "points_of", counted)
     monkeypatch.setattr(start, "_confirmed", lambda found, *_: np.arange(50))
-    start.start_points(frames(STEREO_FRAMES + 30), 3.0, 1000, np.random.default_rng(0))
-    assert counts == [(STEREO_FRAMES, STEREO_FRAMES * 16 * 12)]
+    for count in (300, 600):
+        start.start_points(frames(count), 3.0, 1000, np.random.default_rng(0), pixels=8 * 6)
+    assert [(chosen, sizes) for chosen, sizes, _ in counts] == [(STEREO_FRAMES, {(6, 8, 3)})] * 2
+    assert max(beside for _, _, beside in counts) <= stereo.NEIGHBOURS * STEREO_FRAMES
 
 
 def test_a_short_fit_searches_depths_of_fewer_pixels():
