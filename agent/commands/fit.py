@@ -120,14 +120,16 @@ def command(
     if unposed_photos(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
     photos = load_photos(capture, scale, terminal.progress, poses, strict=strict)
-    described = _describe(photos)
+    on_gpu = ", on the GPU" if where == "cuda" else ""
     kept = output.with_name(output.name + (".checkpoint" if parts == 1 else ".blocks"))
-    if photos.film and not (parts == 1 and kept.exists()):  # a checkpoint is of photographs: nothing moves
+    if not photos.film or (parts == 1 and kept.exists()):  # a checkpoint: nothing that moves was found before it
+        terminal.say(_describe(photos) + on_gpu)
+    else:
         found = _fit_film(photos, settings, output, report, force)
         if found is None:
             return
+        terminal.say(_still(found, on_gpu))
         photos, settings = found.photos, _shortened(settings, found.seconds)
-    terminal.say(described + (", on the GPU" if where == "cuda" else ""))
     if kept.exists():
         terminal.say(f"going on from {kept}")
     try:
@@ -171,11 +173,10 @@ def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | N
     from ...gaussians.motion.fitting.fit import Still, fit_what_moves, stands
 
     times = {shot.time for shot in (*photos.shots, *photos.held_out)}
-    standing = stands(photos)
-    terminal.say(f"a film of {len(times)} times{'' if standing else ' by a moving camera'}: looking for what moves")
+    by = "" if stands(photos) else " by a moving camera"
+    terminal.say(f"a film of {len(times)} times{by}: looking for what moves, on the CPU; " + _describe(photos))
     done = fit_what_moves(photos, settings, on_status=_show_status)
     if isinstance(done, Still):
-        terminal.say(_still(done, standing))
         return done
     save(done.scene, output, force=force)
     tracks = done.scene.motion.tracks if done.scene.motion is not None else ()
@@ -196,24 +197,28 @@ def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | N
     if done.cut:
         moves += f"\nnote: the search for what moves ended early, {SHORT}"
     terminal.result(
-        f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s, on the CPU "
-        f"and without harmonics, as all that moves\n{moves}",
+        f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s, "
+        f"without harmonics, as all films of what moves\n{moves}",
         data,
     )
     return None
 
 
-def _still(found: Still, standing: bool) -> str:
+def _still(found: Still, on_gpu: str) -> str:
     """Why a film is fitted as photographs are."""
+    from ...gaussians.motion.fitting.fit import stands
+
+    why = "nothing that moves was found"
     if found.cut:
         why = f"the search for what moves was given up after {found.seconds:.0f} s, {SHORT}"
-    elif found.tried or standing:
+    elif found.tried and stands(found.photos):
         why = "no path was found that explains what the frames show"
-        if not standing:
-            why += ", and of a moving camera, only what rests for a while at the start or at the end is followed"
-    else:
-        why = "nothing that moves was found"
-    return f"{why}: the frames are fitted as photographs of a scene that stands still"
+    elif found.tried:
+        why = (
+            "no path was found that explains what the frames show; of a moving camera, only what rests for a while at "
+            "the start or at the end is followed"
+        )
+    return f"{why}: the frames are fitted as photographs of a scene that stands still{on_gpu}"
 
 
 def _shortened(settings: Settings, seconds: float) -> Settings:

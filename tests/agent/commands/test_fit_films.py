@@ -63,9 +63,10 @@ def test_a_checkpoint_of_photographs_is_gone_on_from_without_another_look(
 
 def test_a_search_that_was_given_up_says_that_more_time_is_needed(film: Path) -> None:
     photos = load_photos(film)
-    said = command._still(films.Still(photos, 12.3, 0, True), False)
+    said = command._still(films.Still(photos, 12.3, 0, True), "")
     assert "given up after 12 s" in said and "with more --minutes" in said and "as photographs" in said
-    assert "no path was found" in command._still(films.Still(photos, 12.3, 2, False), False)
+    said = command._still(films.Still(photos, 12.3, 2, False), ", on the GPU")
+    assert "no path was found" in said and "only what rests for a while" in said and said.endswith(", on the GPU")
 
 
 def test_photographs_get_the_time_that_is_left() -> None:
