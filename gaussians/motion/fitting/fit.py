@@ -209,12 +209,13 @@ class _Film:
     @cached_property
     def _start(self) -> GaussianCloud:
         """Gaussians to start from, at points of the first frames of cameras that stand, or of all of one that moves."""
-        footage, photos, settings = self._footage, self._photos, self._settings
-        if footage.stands:
-            first = [footage.shots[i] for i in footage.first]
-            pixels = stereo_pixels(settings.seconds, len(first))
-            return start_cloud(first, photos, settings.max_gaussians, self._rng, pixels, changing(footage))
-        small = self._sketch.shots[:STEREO_FRAMES]
+        sketch, photos, settings = self._sketch, self._photos, self._settings
+        if self._footage.stands:
+            whole = [shot for shot in photos.shots if shot.time in sketch.times]
+            pixels = stereo_pixels(settings.seconds, len(sketch.first))
+            first = [whole[i] for i in sketch.first]
+            return start_cloud(first, photos, settings.max_gaussians, self._rng, pixels, changing(sketch))
+        small = sketch.shots[:STEREO_FRAMES]
         most = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in small) // PIXELS
         return start_cloud(photos.shots, photos, min(settings.max_gaussians, most), self._rng, self._pixels)
 

@@ -8,10 +8,13 @@ import torch
 
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
+from scenewright.gaussians.files.captures.colmap import Points
+from scenewright.gaussians.fit import Photos, Settings
 from scenewright.gaussians.fit.parameters import Parameters
 from scenewright.gaussians.fit.train import Shot
 from scenewright.gaussians.harmonics import color_to_dc
 from scenewright.gaussians.motion.fitting import agreement, resting, start, stereo
+from scenewright.gaussians.motion.fitting import fit as fitting
 from scenewright.gaussians.motion.fitting.bodies import Body, Line, turned
 from scenewright.gaussians.motion.fitting.budget import LASTING_UNTIL, LEAST, Budget, OutOfTime
 from scenewright.gaussians.motion.fitting.finding import Finder
@@ -42,6 +45,10 @@ def eyes(count: int, width: int = 16, height: int = 12) -> list[Camera]:
 def frames(count: int, width: int = 16, height: int = 12) -> list[Shot]:
     photo = np.random.default_rng(0).integers(0, 255, (height, width, 3), dtype=np.uint8)
     return [Shot(camera, photo, 0.1 * k) for k, camera in enumerate(eyes(count, width, height))]
+
+
+def none() -> Points:
+    return Points(np.zeros((0, 3)), np.zeros((0, 3)))
 
 
 class Clock:
@@ -150,6 +157,30 @@ def test_a_path_of_the_sketch_has_poses_at_the_times_of_all_frames():
     on = at_all_times(body.on(line), some, times)
     assert np.allclose(on.line.values, np.interp(times, some, line.values)) and len(on.quats) == 17
     assert at_all_times(body, some, some) is body
+
+
+def test_the_start_of_cameras_that_stand_takes_first_frames_as_they_are_and_changes_in_reduced_ones(monkeypatch):
+    cameras, rng = eyes(3, 320, 240), np.random.default_rng(0)
+    moving = np.zeros((240, 320), bool)
+    moving[60:120, 80:200] = True
+    shots = []
+    for k in range(70):
+        for camera in cameras if k % 2 else cameras[::-1]:
+            photo = np.full((240, 320, 3), 100, np.uint8)
+            photo[moving] = 200 if k else 90
+            shots.append(Shot(camera, photo, 0.1 * k))
+    order = [shots[k] for k in rng.permutation(len(shots))]
+    told = []
+    monkeypatch.setattr(fitting, "start_cloud", lambda first, *more: told.append((first, more[-1])))
+    film = fitting._Film(
+        Photos(tuple(order), (), none(), 3.0), Settings(steps=10, degree=0), "rigid", lambda status: None
+    )
+    _ = film._start
+    ((first, masks),) = told
+    assert [shot.time for shot in first] == [0.0] * 3 and {shot.photo.shape for shot in first} == {(240, 320, 3)}
+    assert len({shot.camera.position.tobytes() for shot in first}) == 3
+    for mask in masks:
+        assert mask.size <= MOST_PIXELS and mask.mean() == pytest.approx(moving.mean(), abs=0.01)
 
 
 # --- shares of the time ------------------------------------------------------------------------------------------
