@@ -89,7 +89,7 @@ def command(
     Every eighth photograph is held out to measure the quality. An interrupted training resumes from its last checkpoint
     (OUTPUT.checkpoint). If the photographs have no poses, these are estimated first (extra sfm) and kept in
     OUTPUT.poses; they are estimated again only if the photographs change. Frames with different times, from cameras
-    that stand or one that moves, become a scene with motion.
+    that stand or one that moves, become a scene with motion if something moves in them, without checkpoints.
     """
     started = time.perf_counter()
     from ...gaussians.errors import FileError, UserError
