@@ -17,8 +17,11 @@ from ..terminal.output import terminal, time_left
 
 if TYPE_CHECKING:
     from ...gaussians.fit import Fitted, Photos, Settings, Status
+    from ...gaussians.motion.fitting.fit import Still
 
 MAX_NAMED = 8  # photographs named in a warning
+SHORT = "as its share of the time was gone; with more --minutes, more may be found"
+LEAST_LEFT = 0.3  # share of the time that is left to photographs after a search for what moves
 
 
 def command(
@@ -86,7 +89,7 @@ def command(
     Every eighth photograph is held out to measure the quality. An interrupted training resumes from its last checkpoint
     (OUTPUT.checkpoint). If the photographs have no poses, these are estimated first (extra sfm) and kept in
     OUTPUT.poses; they are estimated again only if the photographs change. Frames with different times, from cameras
-    that stand or one that moves, become a scene with motion.
+    that stand or one that moves, become a scene with motion if something moves in them, without checkpoints.
     """
     started = time.perf_counter()
     from ...gaussians.errors import FileError, UserError
@@ -117,11 +120,16 @@ def command(
     if unposed_photos(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
     photos = load_photos(capture, scale, terminal.progress, poses, strict=strict)
-    if photos.film:
-        _fit_film(photos, settings, output, report, force)
-        return
-    terminal.say(_describe(photos) + (", on the GPU" if where == "cuda" else ""))
+    on_gpu = ", on the GPU" if where == "cuda" else ""
     kept = output.with_name(output.name + (".checkpoint" if parts == 1 else ".blocks"))
+    if not photos.film or (parts == 1 and kept.exists()):  # a checkpoint: nothing that moves was found before it
+        terminal.say(_describe(photos) + on_gpu)
+    else:
+        found = _fit_film(photos, settings, output, report, force)
+        if found is None:
+            return
+        terminal.say(_still(found, on_gpu))
+        photos, settings = found.photos, _shortened(settings, found.seconds)
     if kept.exists():
         terminal.say(f"going on from {kept}")
     try:
@@ -159,19 +167,17 @@ def _blocks(said: str, settings: Settings, dialled: bool) -> int:
     return int(said)
 
 
-def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | None, force: bool) -> None:
-    """Fit a scene with motion to the frames of a film, and write it."""
+def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | None, force: bool) -> Still | None:
+    """Fit a scene with motion to the frames of a film, and write it; if nothing moves, what is to be fitted instead."""
     from ...gaussians.files import save
-    from ...gaussians.motion.fitting.fit import fit_film, stands
+    from ...gaussians.motion.fitting.fit import Still, fit_what_moves, stands
 
     times = {shot.time for shot in (*photos.shots, *photos.held_out)}
-    standing = stands(photos)
-    by = "" if standing else " by a moving camera"
-    terminal.say(
-        f"a film of {len(times)} times{by}: what moves is fitted too, on the CPU, without harmonics and checkpoints; "
-        + _describe(photos)
-    )
-    done = fit_film(photos, settings, on_status=_show_status)
+    by = "" if stands(photos) else " by a moving camera"
+    terminal.say(f"a film of {len(times)} times{by}: looking for what moves, on the CPU; " + _describe(photos))
+    done = fit_what_moves(photos, settings, on_status=_show_status)
+    if isinstance(done, Still):
+        return done
     save(done.scene, output, force=force)
     tracks = done.scene.motion.tracks if done.scene.motion is not None else ()
     data = {
@@ -187,14 +193,41 @@ def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | N
             file.write((json.dumps(data, indent=2) + "\n").encode())
     told = ", ".join(f"{t.name} ({t.kind}, {len(t.times)} keys, {len(t):,} Gaussians)" for t in tracks)
     how = f"{done.quality.psnr:.2f} dB, SSIM {done.quality.ssim:.3f} on {len(done.quality.each)} held-out frames"
-    nothing = "nothing that moves was found: the scene stands still"
-    if not standing:
-        nothing += "; of a moving camera, only what rests for a while at the start or at the end is followed"
-    moves = f"moves: {told}" if tracks else nothing
+    moves = f"moves: {told}" if tracks else "what was followed hardly moves: the scene stands still"
+    if done.cut:
+        moves += f"\nnote: the search for what moves ended early, {SHORT}"
     terminal.result(
-        f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s\n{moves}",
+        f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s, "
+        f"without harmonics, as all films of what moves\n{moves}",
         data,
     )
+    return None
+
+
+def _still(found: Still, on_gpu: str) -> str:
+    """Why a film is fitted as photographs are."""
+    from ...gaussians.motion.fitting.fit import stands
+
+    why = "nothing that moves was found"
+    if found.cut:
+        why = f"the search for what moves was given up after {found.seconds:.0f} s, {SHORT}"
+    elif found.tried and stands(found.photos):
+        why = "no path was found that explains what the frames show"
+    elif found.tried:
+        why = (
+            "no path was found that explains what the frames show; of a moving camera, only what rests for a while at "
+            "the start or at the end is followed"
+        )
+    return f"{why}: the frames are fitted as photographs of a scene that stands still{on_gpu}"
+
+
+def _shortened(settings: Settings, seconds: float) -> Settings:
+    """The settings of what is left after so many seconds."""
+    from dataclasses import replace
+
+    if settings.seconds is None:
+        return settings
+    return replace(settings, seconds=max(LEAST_LEFT * settings.seconds, settings.seconds - seconds))
 
 
 def _resume_hint(kept: Path) -> str:

@@ -7,23 +7,22 @@ not explain are left out, as transient objects are in other work (RobustNeRF, Sa
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ...cloud import GaussianCloud
 from ...fit.densify import MCMCStrategy
 from ...fit.engine import CpuEngine
-from ...fit.fitting import Settings
 from ...fit.loss import BLACK, photometric
 from ...fit.parameters import Parameters
-from ...fit.photographs.photos import Photos
 from ...fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, REFINE_START_ITER, REFINE_STOP, Shot, morton_order
 from ...render.cpu import gradient
+from .budget import LASTING_UNTIL, Budget
 from .footage import DIFFERS, U8, differs, rounded
-from .start import PIXELS, ROOM, start_cloud
+from .start import ROOM
 
 F32 = NDArray[np.float32]
 Mask = NDArray[np.bool_]
@@ -35,8 +34,7 @@ MARKS = (
     (0.55, 0.12),
     (0.75, DIFFERS),
 )  # share of the training, and difference from which pixels are left out
-LASTING = 0.3  # share of the training of a film that goes to what is there for most of the time
-ENOUGH = 32  # frames beyond which others show little that is new, and need no more Gaussians
+LASTING = 0.3  # share of the steps of a film that go to what is there for most of the time
 GROWN = 2  # pixels around these that are left out too
 
 
@@ -100,22 +98,24 @@ class Agreement:
 
 
 def lasting(
-    shots: Sequence[Shot], photos: Photos, settings: Settings, rng: np.random.Generator, tell: Tell
+    shots: Sequence[Shot], start: GaussianCloud, extent: float, steps: int | None, rng: np.random.Generator,
+    budget: Budget, tell: Tell,
 ) -> Agreement:  # fmt: skip
     """The completed training of the scene that is there for most of the time.
 
     Args:
+        start: Gaussians.
+        extent: radius of the cameras, scene units.
+        steps: of the whole fit; None: it is measured in seconds.
+        budget: of the fit, of which it takes its share if it is measured in seconds.
         tell: is told the loss of each step, and the number of Gaussians.
     """
-    pixels = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in shots[:ENOUGH])
-    cloud = start_cloud(shots, photos, min(settings.max_gaussians, pixels // PIXELS), rng)
-    training = Agreement(shots, Parameters.of(cloud), int(ROOM * len(cloud)) + 1, photos.extent, rng)
-    steps = settings.steps and max(1, round(LASTING * settings.steps))
-    started, share, marks = time.perf_counter(), 0.0, list(MARKS)
+    training = Agreement(shots, Parameters.of(start), int(ROOM * len(start)) + 1, extent, rng)
+    most = steps and max(1, round(LASTING * steps))
+    started, seconds, share, marks = budget.gone, budget.left(LASTING_UNTIL), 0.0, list(MARKS)
     while share < 1:
         if marks and share >= marks[0][0]:
             training.leave_out(range(len(shots)), marks.pop(0)[1])
-        tell(training.step(share, SSIM if len(marks) < len(MARKS) else 0.0), len(cloud))
-        gone = time.perf_counter() - started
-        share = training.steps / steps if steps else gone / (LASTING * (settings.seconds or 1.0))
+        tell(training.step(share, SSIM if len(marks) < len(MARKS) else 0.0), len(start))
+        share = training.steps / most if most else (budget.gone - started) / (seconds or 1.0)
     return training

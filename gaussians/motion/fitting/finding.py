@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ...fit.parameters import Parameters
 from .axes import agrees, line_of
 from .bodies import Body, Columns, Labelled
+from .budget import SEARCH_UNTIL, SEEDS_UNTIL, Budget, OutOfTime
 from .footage import Footage
 from .rolling import Ball
 from .seeds import LEAST, Flags, gone, halves, seeds
@@ -41,12 +42,18 @@ class Finder:
         footage: its first time is that of the scene from which bodies are tracked.
         seed: of the searches.
         rng: draws the order of frames.
+        budget: of the fit.
         tell: is called before each search.
+
+    Attributes:
+        cut: whether there was no time for all that could be searched or improved.
     """
 
-    def __init__(self, footage: Footage, seed: int, rng: np.random.Generator, tell: Callable[[], None]) -> None:
-        self._footage, self._seed, self._rng, self._tell = footage, seed, rng, tell
-        self._alone = bool(footage.at_first)
+    def __init__(
+        self, footage: Footage, seed: int, rng: np.random.Generator, budget: Budget, tell: Callable[[], None]
+    ) -> None:  # fmt: skip
+        self._footage, self._seed, self._rng, self._budget, self._tell = footage, seed, rng, budget, tell
+        self._alone, self._until, self.cut = bool(footage.at_first), SEEDS_UNTIL, False
 
     def find(self, start: Parameters) -> tuple[Labelled, list[Body], int]:
         """What moves, by the number of its label, its paths, and how many bodies were tried.
@@ -57,15 +64,26 @@ class Finder:
         columns = start.columns()
         labels, bodies, tried = self._found(columns, gone(columns, self._footage))
         labelled = Labelled.labelled(start, labels)
-        if not bodies:
-            return labelled, bodies, tried
+        self._until = SEARCH_UNTIL
+        try:
+            if bodies:
+                self._improve(labelled, bodies)
+        except OutOfTime:  # paths are as good as they are: all is trained together afterwards
+            self.cut = True
+        return labelled, bodies, tried
+
+    def _improve(self, labelled: Labelled, bodies: list[Body]) -> None:
+        """Sort out bodies, mend their paths and assign Gaussians to them; in place."""
         self._sort_out(labelled, bodies)
         for _ in range(SETTLED):
             self._follow(labelled, bodies)
             self._settle(labelled, bodies)
         self._sort_out(labelled, bodies)
         self._follow(labelled, bodies)
-        return labelled, bodies, tried
+
+    def _check(self) -> None:
+        """Raises OutOfTime if the share of the time is gone that the present part of the search has."""
+        self._budget.check(self._until)
 
     def _found(self, columns: Columns, flags: Flags) -> tuple[NDArray[np.int32], list[Body], int]:
         """Labels `[N]` of the seeds that a path explains, the paths, and how many were tried."""
@@ -74,16 +92,20 @@ class Finder:
         still, tried = np.ones(len(flags), bool), 0
         for rows in queue:
             still[rows] = False
-        while queue:
+        while queue and not self.cut:
             rows = queue.pop(0)
             self._tell()
-            tracker = Tracker(columns, rows, still, footage, self._seed + tried, found)
-            if _covered(tracker, np.flatnonzero(flags[rows].any(axis=0)), self._alone):
+            try:
+                tracker = Tracker(columns, rows, still, footage, self._seed + tried, found, self._check)
+                if _covered(tracker, np.flatnonzero(flags[rows].any(axis=0)), self._alone):
+                    continue
+                if (path := _goes_with(tracker, [body for _, body in found])) is not None:
+                    found.append((rows, path))
+                    continue
+                path = self._path(tracker)
+            except OutOfTime:
+                self.cut = True
                 continue
-            if (path := _goes_with(tracker, [body for _, body in found])) is not None:
-                found.append((rows, path))
-                continue
-            path = self._path(tracker)
             tried += 1
             if path is not None:
                 found.append((rows, path))
@@ -125,6 +147,7 @@ class Finder:
     def _follow(self, labelled: Labelled, bodies: list[Body]) -> None:
         """Mend the path of each body, put it on one axis where the frames tell no more, or let it roll; in place."""
         for k in range(len(bodies)):
+            self._check()
             tracker = self._tracker(labelled, bodies, k + 1)
             body = bodies[k].seen_from(tracker.pivot)
             if self._alone and body.line is None:
@@ -170,6 +193,7 @@ class Finder:
 
     def _settle(self, labelled: Labelled, bodies: list[Body]) -> None:
         """Assign Gaussians to bodies by the frames, in place; a body that keeps too few is dropped."""
+        self._check()
         labels = shared(labelled.columns(), labelled.labels, bodies, self._footage, self._rng)
         self._renumber(labelled, bodies, labels)
 
@@ -185,7 +209,7 @@ class Finder:
         labels = labelled.labels
         others = [(np.flatnonzero(labels == k), b) for k, b in enumerate(bodies, 1) if k != number]
         rows = np.flatnonzero(labels == number)
-        return Tracker(labelled.columns(), rows, labels == 0, self._footage, self._seed, others)
+        return Tracker(labelled.columns(), rows, labels == 0, self._footage, self._seed, others, self._check)
 
 
 def _covered(tracker: Tracker, times: NDArray[np.int64], alone: bool) -> bool:

@@ -9,16 +9,17 @@ what touches and goes at one time is one body. A body is kept if a path of it ex
 and all poses are trained together on the frames of every time.
 
 Before one moving camera the scene at its start is what all frames agree on, and what those of one end show otherwise
-(`agreement`, `resting`); things are followed from that end.
+(`agreement`, `resting`); things are followed from that end. Where nothing moves, the film is left to a fit of
+photographs (`fit_what_moves`).
 """
 
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -26,28 +27,35 @@ import torch
 from numpy.typing import NDArray
 
 from ...cloud import NO_GROUP, GaussianCloud
-from ...fit.fitting import Settings, Status
+from ...files.captures.colmap import Points
+from ...fit.fitting import SECONDS, Settings, Status
+from ...fit.initialize import MIN_POINTS
 from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
 from ...fit.quality import Quality, measure
-from ...fit.train import Schedule, Shot
+from ...fit.train import Shot
+from ...harmonics import dc_to_color
 from ...scene import Scene
 from ..at import at
 from ..motion import Motion, Residual, Track
 from .agreement import lasting
 from .bodies import Body, Labelled, turn_around
+from .budget import ENDS_UNTIL, Budget, OutOfTime
 from .finding import Finder
 from .footage import Footage
 from .resting import Ends
 from .simplify import track_of
-from .start import trainer
+from .sketch import MOST_PIXELS, STEREO_FRAMES, at_all_times, sketched, stereo_pixels
+from .start import PIXELS, changing, start_cloud, trainer
+from .stillness import nothing_moves
 from .training import Joint, Single
 
 F64 = NDArray[np.float64]
 Detail = Literal["static", "rigid", "residual"]  # the motion that may be fitted: none, paths, and single Gaussians' too
 
-START = 0.3  # share of the training that goes to the scene at its start
+START = 0.3  # share of the fit that is told as completed when all together are trained, at least
 TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
+LEAST_TOGETHER = 0.2  # share of the time that the training of all together has at least
 MORE = 1.2  # times the Gaussians of the start: greatest number at the end, for what was hidden at the start
 SINGLE = 0.15  # of the steps of all together, that displacements of single Gaussians are trained for
 GAIN = 0.05  # dB on held-out frames, for which displacements of single Gaussians are kept
@@ -63,6 +71,7 @@ class FittedFilm:
         quality: on held-out frames, each at its time.
         steps, seconds: of the training.
         tried: how many bodies were tracked; those that no path explained stand still.
+        cut: whether the search for what moves ended early, as its share of the time was gone.
     """
 
     scene: Scene
@@ -70,6 +79,24 @@ class FittedFilm:
     steps: int
     seconds: float
     tried: int
+    cut: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Still:
+    """A film in which nothing was found that moves: frames to fit as photographs are.
+
+    Attributes:
+        photos: the same, with points of the film's own stereo where the capture has too few.
+        seconds: that the search took.
+        tried: how many bodies were tracked; none explained the frames.
+        cut: whether the search ended early, as its share of the time was gone.
+    """
+
+    photos: Photos
+    seconds: float
+    tried: int
+    cut: bool
 
 
 def fit_film(
@@ -81,6 +108,9 @@ def fit_film(
 ) -> FittedFilm:
     """Fit a scene with time to frames whose `Shot.time` differ.
 
+    What moves is searched in reduced frames of some of the times (`sketch`), and each phase keeps to its share of
+    `settings.seconds` (`budget`); then all is trained on all frames.
+
     Args:
         settings: of the length, the greatest number of Gaussians and the seed; degree 0 only. Default: five minutes.
         detail: the motion that is fitted at most; residuals only where they improve held-out frames.
@@ -88,8 +118,22 @@ def fit_film(
     Raises:
         UserError: a frame has no time or all have the same; or the frames agree on no depths.
     """
-    settings = settings or Settings(seconds=300.0)
-    return _Film(photos, settings, detail, on_status).fit()
+    film = _Film(photos, settings or Settings(seconds=SECONDS), detail, on_status)
+    return film.trained(film.searched())
+
+
+def fit_what_moves(
+    photos: Photos, settings: Settings | None = None, *, on_status: Callable[[Status], None] = lambda status: None
+) -> FittedFilm | Still:
+    """As `fit_film` if something moves; else what a fit of photographs starts with, before anything else is trained.
+
+    Frames of one moving camera are looked at first (`stillness`): where they show nothing that moves, none is searched.
+    """
+    film = _Film(photos, settings or Settings(seconds=SECONDS), "residual", on_status)
+    if film.stands_still():
+        return film.left(0)
+    found = film.searched()
+    return film.trained(found) if found.bodies else film.left(found.tried)
 
 
 def stands(photos: Photos) -> bool:
@@ -97,67 +141,122 @@ def stands(photos: Photos) -> bool:
     return Footage.of(photos.shots, [s.time for s in photos.shots]).stands
 
 
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """Gaussians with the number of their body, paths of these at the times of all frames, how many were tried, and the
+    steps of the training so far."""
+
+    labelled: Labelled
+    bodies: list[Body]
+    tried: int
+    steps: int
+
+
 class _Film:
     """A fit in progress."""
 
     def __init__(
-        self, photos: Photos, settings: Settings, detail: Detail, on_status: Callable[[Status], None]
+        self, photos: Photos, settings: Settings, detail: Detail, on_status: Callable[[Status], None],
     ) -> None:  # fmt: skip
         self._photos, self._settings, self._detail, self._on_status = photos, settings, detail, on_status
         self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
-        self._rng = np.random.default_rng(settings.seed)
-        self._started, self._told, self._loss = time.perf_counter(), 0.0, math.nan
+        self._rng, self._budget = np.random.default_rng(settings.seed), Budget(settings.seconds)
+        self._pixels = MOST_PIXELS
+        if not self._footage.stands:
+            self._pixels = min(MOST_PIXELS, stereo_pixels(settings.seconds, len(photos.shots)))
+        small = sketched(photos.shots, self._pixels)
+        self._sketch = Footage.of(small, [s.time for s in small])
+        self._told, self._loss, self._cut = 0.0, math.nan, False
 
-    def fit(self) -> FittedFilm:
-        """All steps."""
-        footage, settings = self._footage, self._settings
-        labelled, bodies, tried, before = self._before_standing() if footage.stands else self._before_moving()
-        budget = min(settings.max_gaussians, int(MORE * len(labelled)))
-        joint = Joint(labelled, bodies, footage, budget, self._rng)
-        left = None if settings.seconds is None else max(0.2 * settings.seconds, settings.seconds - self._seconds)
-        more = None if settings.steps is None else settings.steps - before
+    def stands_still(self) -> bool:
+        """Whether frames of one moving camera show that nothing moves; cameras that stand are not asked."""
+        photos = self._photos
+        return not self._footage.stands and nothing_moves(
+            self._sketch.shots, self._start, photos.extent, self._settings.seed
+        )
+
+    def left(self, tried: int) -> Still:
+        """The film for a fit of photographs."""
+        photos = self._photos
+        if len(photos.points.means) < MIN_POINTS:
+            colors = dc_to_color(self._start.sh[:, 0]).clamp(0, 1)
+            photos = replace(photos, points=Points(self._start.means.double().numpy(), colors.double().numpy()))
+        return Still(photos, self._budget.gone, tried, self._cut)
+
+    def searched(self) -> _Found:
+        """What moves."""
+        return self._before_standing() if self._footage.stands else self._before_moving()
+
+    def trained(self, found: _Found) -> FittedFilm:
+        """All together, and few keys."""
+        settings, labelled, bodies = self._settings, found.labelled, found.bodies
+        most = min(settings.max_gaussians, int(MORE * len(labelled)))
+        joint = Joint(labelled, bodies, self._footage, most, self._rng)
+        single = self._detail == "residual" and bool(bodies) and bool(self._photos.held_out)
+        left = self._budget.left(least=LEAST_TOGETHER)
+        if left is not None and single:
+            left /= 1 + SINGLE
+        more = None if settings.steps is None else settings.steps - found.steps
         while (share := _share(joint, more, left)) < 1:
-            self._tell(joint.step(share), before + joint.steps, START + (1 - START) * share, len(labelled))
-        scene, steps = self._scene(labelled, bodies, None), before + joint.steps
-        if self._detail == "residual" and scene.motion is not None and self._photos.held_out:
+            self._tell(joint.step(share), found.steps + joint.steps, START + (1 - START) * share, len(labelled))
+        scene, steps = self._scene(labelled, bodies, None), found.steps + joint.steps
+        if single and scene.motion is not None:
             scene, more = self._with_single(scene, labelled, bodies, round(SINGLE * joint.steps))
             steps += more
-        return FittedFilm(scene, measure_film(scene, self._photos.held_out), steps, self._seconds, tried)
+        quality = measure_film(scene, self._photos.held_out)
+        return FittedFilm(scene, quality, steps, self._budget.gone, found.tried, self._cut)
 
-    def _before_standing(self) -> tuple[Labelled, list[Body], int, int]:
-        """What moves before cameras that stand, its paths, how many were tried, and the steps of the training."""
-        settings = self._settings
-        steps = settings.steps and max(1, round(START * settings.steps))
-        schedule = Schedule(steps, settings.seconds and START * settings.seconds, settings.coarse)
-        start = trainer(self._footage, self._photos, settings.max_gaussians, schedule, self._rng)
+    @cached_property
+    def _start(self) -> GaussianCloud:
+        """Gaussians to start from, at points of the first frames of cameras that stand, or of all of one that moves."""
+        sketch, photos, settings = self._sketch, self._photos, self._settings
+        if self._footage.stands:
+            whole = [shot for shot in photos.shots if shot.time in sketch.times]
+            pixels = stereo_pixels(settings.seconds, len(sketch.first))
+            first = [whole[i] for i in sketch.first]
+            return start_cloud(first, photos, settings.max_gaussians, self._rng, pixels, changing(sketch))
+        small = sketch.shots[:STEREO_FRAMES]
+        most = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in small) // PIXELS
+        return start_cloud(photos.shots, photos, min(settings.max_gaussians, most), self._rng, self._pixels)
+
+    def _before_standing(self) -> _Found:
+        """What moves before cameras that stand."""
+        start = trainer(self._footage, self._start, self._photos.extent, self._settings, self._rng, self._budget)
         while start.progress < 1:
             self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
-        return *self._bodies(start.parameters, self._footage), start.steps
+        labelled, bodies, tried = self._bodies(start.parameters, self._sketch)
+        return _Found(labelled, self._at_all_times(bodies), tried, start.steps)
 
-    def _before_moving(self) -> tuple[Labelled, list[Body], int, int]:
+    def _before_moving(self) -> _Found:
         """The same before a camera that moves: the film is followed from the end at which more rests."""
-        told = 0
+        told, budget, sketch, start = 0, self._budget, self._sketch, self._start
 
         def tell(loss: float, gaussians: int) -> None:
             nonlocal told
             told += 1
-            share = (
-                told / self._settings.steps if self._settings.steps else self._seconds / (self._settings.seconds or 1)
-            )
+            share = told / self._settings.steps if self._settings.steps else budget.gone / (budget.seconds or 1)
             self._tell(loss, told, min(share, START), gaussians)
 
-        usual = lasting(self._footage.shots, self._photos, self._settings, self._rng, tell)
+        def tell_end(loss: float, gaussians: int) -> None:
+            budget.check(ENDS_UNTIL)
+            tell(loss, gaussians)
+
+        usual = lasting(sketch.shots, start, self._photos.extent, self._settings.steps, self._rng, budget, tell)
         still = Labelled.labelled(usual.parameters, np.zeros(len(usual.parameters), np.int32))
         if self._detail == "static":
-            return still, [], 0, usual.steps
-        ends = Ends(usual, self._footage, self._photos.extent, self._rng, tell)
-        resting = ends.best()
+            return _Found(still, [], 0, usual.steps)
+        ends = Ends(usual, sketch, self._photos.extent, self._rng, tell_end)
+        try:
+            resting = ends.best()
+        except OutOfTime:
+            self._cut = True
+            return _Found(still, [], 0, usual.steps)
         labelled, bodies, tried = self._bodies(deepcopy(resting.parameters), resting.footage)
         if not bodies:
-            return still, [], tried, usual.steps
+            return _Found(still, [], tried, usual.steps)
         if resting.backwards:
             turn_around(labelled, bodies)
-        return labelled, bodies, tried, usual.steps + ends.steps
+        return _Found(labelled, self._at_all_times(bodies), tried, usual.steps + ends.steps)
 
     def _bodies(self, start: Parameters, footage: Footage) -> tuple[Labelled, list[Body], int]:
         """What moves, by the number of its label, its paths, and how many were tried."""
@@ -167,7 +266,14 @@ class _Film:
         def tell() -> None:
             self._tell(math.nan, 0, START, len(start))
 
-        return Finder(footage, self._settings.seed, self._rng, tell).find(start)
+        finder = Finder(footage, self._settings.seed, self._rng, self._budget, tell)
+        found = finder.find(start)
+        self._cut = finder.cut
+        return found
+
+    def _at_all_times(self, bodies: Sequence[Body]) -> list[Body]:
+        """Paths that were found in the sketch, at the times of all frames."""
+        return [at_all_times(body, self._sketch.times, self._footage.times) for body in bodies]
 
     def _with_single(
         self, scene: Scene, labelled: Labelled, bodies: list[Body], steps: int
@@ -181,10 +287,6 @@ class _Film:
         finer = self._scene(copy, bodies, single)
         before, after = (measure_film(s, self._photos.held_out).psnr for s in (self._scene(copy, bodies, None), finer))
         return (finer if after - before >= GAIN else scene), steps
-
-    @property
-    def _seconds(self) -> float:
-        return time.perf_counter() - self._started
 
     def _scene(self, labelled: Labelled, bodies: Sequence[Body], single: Single | None) -> Scene:
         """The scene, rows by body, with tracks of few keys."""
@@ -221,7 +323,7 @@ class _Film:
         """Report progress now and then."""
         if not math.isnan(loss):
             self._loss = loss if math.isnan(self._loss) else 0.95 * self._loss + 0.05 * loss
-        now = self._seconds
+        now = self._budget.gone
         if now - self._told >= REPORT_EVERY:
             self._told = now
             left = now * (1 / max(share, 1e-9) - 1)

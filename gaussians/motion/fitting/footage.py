@@ -63,11 +63,15 @@ class Footage:
         if len(times) < 2:
             raise UserError(f"all frames are of one time ({times[0]:g} s); a film needs two or more different times")
         cameras: list[Camera] = []
-        who = []
+        poses, who = np.zeros((len(shots), 4, 4)), []
         for shot in shots:
-            same = next((i for i, c in enumerate(cameras) if _same(c, shot.camera)), None)
+            near = np.abs(poses[: len(cameras)] - shot.camera.world_to_camera).max(axis=(1, 2))
+            same = next(
+                (int(i) for i in np.flatnonzero(near < _slack(shot.camera)) if _alike(cameras[i], shot.camera)), None
+            )
             if same is None:
                 same = len(cameras)
+                poses[same] = shot.camera.world_to_camera
                 cameras.append(shot.camera)
             who.append(same)
         return cls(tuple(shots), taken, times, when.reshape(-1), tuple(cameras), np.array(who))
@@ -142,8 +146,11 @@ def differs(drawn: U8, photo: U8, least: float = DIFFERS) -> NDArray[np.bool_]:
     return np.asarray(ndimage.median_filter(off > 255 * least, 3), dtype=bool)
 
 
-def _same(a: Camera, b: Camera) -> bool:
-    """Whether two frames are of one camera that stood still."""
-    size = 1 + float(np.abs(a.world_to_camera).max())
-    inner = (a.width, a.height) == (b.width, b.height) and abs(a.fx - b.fx) <= SAME_PLACE * a.fx
-    return inner and float(np.abs(a.world_to_camera - b.world_to_camera).max()) < SAME_PLACE * size
+def _slack(camera: Camera) -> float:
+    """Difference of the numbers of a pose up to which a camera stands where this one stood."""
+    return SAME_PLACE * (1 + float(np.abs(camera.world_to_camera).max()))
+
+
+def _alike(a: Camera, b: Camera) -> bool:
+    """Whether two cameras have the same size and focal length."""
+    return (a.width, a.height) == (b.width, b.height) and abs(a.fx - b.fx) <= SAME_PLACE * a.fx

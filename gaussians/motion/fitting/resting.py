@@ -19,7 +19,9 @@ from ...fit.loss import BLACK
 from ...fit.parameters import Parameters
 from ...render.cpu import gradient
 from .agreement import Agreement, Tell
+from .budget import OutOfTime
 from .footage import U8, Footage, differs, rounded
+from .sketch import covering
 from .start import at_points
 from .stereo import BEHIND, Points, points_of
 
@@ -68,7 +70,7 @@ class Ends:
         footage: of one moving camera.
         extent: radius of the cameras, scene units.
         rng: draws the order of frames, and copies and noise of Gaussians.
-        tell: is told the loss of each step, and the number of Gaussians.
+        tell: is told the loss of each step, and the number of Gaussians; raises OutOfTime if there is no time for more.
     """
 
     def __init__(
@@ -81,7 +83,11 @@ class Ends:
 
     def best(self) -> Resting:
         """The scene at the end at which more rests, as the first time of a footage that may be backwards; the lasting
-        scene if neither is another one for long enough."""
+        scene if neither is another one for long enough.
+
+        Raises:
+            OutOfTime: the time is gone before both ends are known.
+        """
         forward, backward = self._footage, self._footage.backwards()
         sides = [self._rested(forward, False, 0), self._rested(backward, True, 0)]
         found = max(sides, key=lambda side: side.beyond)
@@ -89,7 +95,10 @@ class Ends:
             usual = [self._usual[id(self._footage.shots[i])] for i in self._footage.first]
             return Resting(self._footage.beginning(usual), False, self._lasting, 0, 0)
         for _ in range(ROUNDS):
-            longer = self._rested(found.footage, found.backwards, found.frames)
+            try:
+                longer = self._rested(found.footage, found.backwards, found.frames)
+            except OutOfTime:
+                return found
             if longer.frames <= found.frames:
                 return longer
             found = longer
@@ -100,7 +109,7 @@ class Ends:
         order = np.argsort(footage.when, kind="stable")
         core = _core(footage, order, self._extent)
         count = max(count, core)
-        start = self._start(footage, order[:count])
+        start = self._start(footage, order[:count][covering([footage.shots[i].camera for i in order[:count]])])
         often = np.ones(len(order), np.int64)
         often[order[:count]] = OFTEN
         training = Agreement(footage.shots, start, int(1.1 * len(start)) + 1, self._extent, self._rng, often)

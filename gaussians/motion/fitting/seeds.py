@@ -6,6 +6,8 @@ explains a picture.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
@@ -30,8 +32,8 @@ BRIEF = 0.15  # share of the times: what one camera sees gone for less is taken 
 LEAST = 12  # Gaussians of the smallest thing
 
 
-def weights(columns: Columns, camera: Camera, masks: list[Flags]) -> F32:
-    """`[N, M]` blending weight of each Gaussian within masks of a picture, pixels."""
+def weights(columns: Columns, camera: Camera, masks: Sequence[Flags | F32]) -> F32:
+    """`[N, M]` blending weight of each Gaussian within masks `[H, W]` of a picture, pixels."""
     plain = (*columns[:4], np.zeros_like(columns[4][:, :1]))  # gray, so that no colour is clipped
     drawn = gradient.draw(plain, camera, (0.0, 0.0, 0.0))
     found = []

@@ -9,17 +9,21 @@ import torch
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...camera import Camera
 from ...cloud import GaussianCloud
 from ...errors import UserError
 from ...fit.densify import MCMCStrategy
+from ...fit.fitting import Settings
 from ...fit.initialize import initial_cloud
 from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
 from ...fit.train import Schedule, Shot, Trainer
 from ...harmonics import color_to_dc
+from .budget import START_UNTIL, Budget
 from .covering import uncovered
 from .footage import Footage
-from .stereo import Points, points_of
+from .sketch import covering, reduced
+from .stereo import Points, neighbours, points_of
 
 I64 = NDArray[np.int64]
 
@@ -36,23 +40,34 @@ ROOM = 1.1  # times the number of points: greatest number of Gaussians
 
 
 def start_points(
-    shots: list[Shot], radius: float, most: int, rng: np.random.Generator, changing: Sequence[NDArray[np.bool_]] = ()
+    shots: Sequence[Shot], radius: float, most: int, rng: np.random.Generator,
+    changing: Sequence[NDArray[np.bool_]] = (), pixels: int | None = None,
 ) -> GaussianCloud:  # fmt: skip
     """Gaussians at points whose depth pictures agree on, the best confirmed first; wide ones at what these leave bare.
 
     Args:
+        shots: of many, the depth of some is searched that cover the film, beside the others.
         most: Gaussians.
         changing: `[H, W]` of each picture, where its colour is another one at later times: there may be something that
             moves, whose points are nearer to each other and come first.
+        pixels: to which pictures are reduced; None: they are not.
 
     Raises:
         UserError: pictures agree on the depth of fewer than two points.
     """
-    cameras = [s.camera for s in shots]
-    found = points_of(cameras, [s.colors for s in shots], radius)
+    every = [s.camera for s in shots]
+    chosen = covering(every)
+    asked = {k for i in chosen for k in neighbours(int(i), every, radius)} - set(chosen.tolist())
+    small, beside = (
+        [shots[k] if pixels is None else reduced(shots[k], pixels) for k in some] for some in (chosen, sorted(asked))
+    )
+    changing = [_sampled(changing[k], shot.camera) for k, shot in zip(chosen, small, strict=True)] if changing else []
+    cameras = [s.camera for s in small]
+    others = [s.camera for s in beside], [s.colors for s in beside]
+    found = points_of(cameras, [s.colors for s in small], radius, others)
     budget = min(most, len(found.means) // PIXELS)
     spacing = SPACING * radius / cameras[0].fx
-    share = CONFIRMED if len(shots) >= PICTURES else 1.0
+    share = CONFIRMED if len(small) >= PICTURES else 1.0
     moves = np.concatenate([c.reshape(-1) for c in changing]) if changing else np.zeros(len(found.means), bool)
     best = _confirmed(found, spacing, moves, rng)[: round(share * budget)]
     more, block = best[:0], 0
@@ -101,21 +116,42 @@ def _confirmed(found: Points, spacing: float, moves: NDArray[np.bool_], rng: np.
 
 
 def start_cloud(
-    shots: Sequence[Shot], photos: Photos, most: int, rng: np.random.Generator,
+    shots: Sequence[Shot], photos: Photos, most: int, rng: np.random.Generator, pixels: int,
     changing: Sequence[NDArray[np.bool_]] = (),
 ) -> GaussianCloud:  # fmt: skip
-    """Gaussians at surveyed points where the capture has them, else at those of the pictures' own stereo."""
+    """Gaussians at surveyed points where the capture has them, else at those of the pictures' own stereo.
+
+    Args:
+        pixels: greatest number of each picture whose depth is searched.
+    """
     if len(photos.points.means):
         return initial_cloud(photos, most, rng)
-    return start_points(list(shots), photos.extent, most, rng, changing)
+    return start_points(shots, photos.extent, most, rng, changing, pixels)
 
 
-def trainer(footage: Footage, photos: Photos, most: int, schedule: Schedule, rng: np.random.Generator) -> Trainer:
-    """A training on the first frames: from surveyed points where the capture has them, else from their own stereo."""
-    shots = [footage.shots[i] for i in footage.first]
-    cloud = start_cloud(shots, photos, most, rng, changing(footage))
-    budget = min(most, int(ROOM * len(cloud)) + 1)
-    return Trainer(shots, Parameters.of(cloud), MCMCStrategy(budget, rng), photos.extent, schedule, rng)
+def _sampled(mask: NDArray[np.bool_], camera: Camera) -> NDArray[np.bool_]:
+    """A mask `[H, W]` at the size of a camera, by the nearest pixels."""
+    rows, columns = (
+        ((np.arange(count) + 0.5) * of / count).astype(int)
+        for count, of in zip((camera.height, camera.width), mask.shape, strict=True)
+    )
+    return mask[rows[:, None], columns]
+
+
+def trainer(
+    footage: Footage, cloud: GaussianCloud, extent: float, settings: Settings, rng: np.random.Generator, budget: Budget
+) -> Trainer:  # fmt: skip
+    """A training of Gaussians on the first frames.
+
+    Args:
+        extent: radius of the cameras, scene units.
+        budget: of which it takes its share, if the fit is not measured in steps.
+    """
+    shots, most = [footage.shots[i] for i in footage.first], settings.max_gaussians
+    steps = settings.steps and max(1, round(START_UNTIL * settings.steps))
+    schedule = Schedule(steps, budget.left(START_UNTIL), settings.coarse)
+    strategy = MCMCStrategy(min(most, int(ROOM * len(cloud)) + 1), rng)
+    return Trainer(shots, Parameters.of(cloud), strategy, extent, schedule, rng)
 
 
 def changing(footage: Footage) -> list[NDArray[np.bool_]]:

@@ -3,7 +3,8 @@
 For each picture: the cost of a pixel at each of a number of depths is how much its colour differs from where the
 nearest cameras see that point (plane sweep; Collins 1996). Costs are summed along paths in four directions with a
 penalty for changes of depth (Hirschmueller 2008), so that plain walls take the depth of their borders. Each depth is
-then compared with those of the other pictures, which confirm it or look through it.
+then compared with those of other pictures, which confirm it or look through it: of many pictures, with a dozen from
+near to far, so that the work grows with their number and not with its square.
 """
 
 from __future__ import annotations
@@ -26,6 +27,9 @@ APART = 1.0  # pixels of the nearest cameras between two depths that are tried, 
 FEWEST, MOST = 72, 256  # depths that are tried
 COSTS = 2**27  # of a picture at most (4 bytes each): fewer depths are tried of large pictures
 NEIGHBOURS = 4  # cameras that a picture is compared with
+ASIDE = 0.1  # of the radius of the cameras: pictures from nearer by hardly tell a depth, and are taken last
+WITNESSES = 12  # other pictures that may confirm the depths of one
+ASKEW = 1.2  # radians between two sights, beyond which pictures hardly show the same
 NEAREST, FARTHEST = 0.12, 4.0  # depths that are tried, of the radius of the cameras
 WORST = 0.2  # difference of colour beyond which it does not matter, and that of what no other camera sees
 BEND, JUMP = 0.02, 0.12  # penalties of a change by one depth, and of a larger one
@@ -44,8 +48,8 @@ class Points:
         colors: `[N, 3]` in [0, 1].
         sizes: `[N]` scene units, the side of a pixel at the point.
         depths: `[N]` from the camera of its picture.
-        agreed: `[N]` how many other pictures confirm its depth.
-        denied: `[N]` how many other pictures look through it: their depth there is confirmed, and behind it.
+        agreed: `[N]` how many of the pictures that are asked confirm its depth.
+        denied: `[N]` how many of these look through it: their depth there is confirmed, and behind it.
     """
 
     means: F64
@@ -56,23 +60,31 @@ class Points:
     denied: I64
 
 
-def points_of(cameras: Sequence[Camera], photos: Sequence[F32], radius: float) -> Points:
+def points_of(
+    cameras: Sequence[Camera], photos: Sequence[F32], radius: float,
+    beside: tuple[Sequence[Camera], Sequence[F32]] = ((), ()),
+) -> Points:  # fmt: skip
     """A point for each pixel of some pictures.
+
+    The work is that of `NEIGHBOURS` and `WITNESSES` other pictures for each of them, and grows with the pixels.
 
     Args:
         photos: `[H, W, 3]` in [0, 1], one for each camera.
         radius: of the cameras around their middle, scene units.
+        beside: more cameras and photos, that these pictures are compared with too.
     """
     count = len(cameras)
-    depths = [_depth(i, cameras, photos, radius) for i in range(count)]
+    everything = [*cameras, *beside[0]], [*photos, *beside[1]]
+    depths = [_depth(i, *everything, radius) for i in range(count)]
     means = [unprojected(camera, depth) for camera, depth in zip(cameras, depths, strict=True)]
     agreed, denied = ([np.zeros(len(m), np.int64) for m in means] for _ in range(2))
+    asked = [witnesses(i, cameras) for i in range(count)]
     for i in range(count):
-        for k in set(range(count)) - {i}:
+        for k in asked[i]:
             agreed[i] += _confirms(means[i], cameras[k], depths[k])
     sure = [(a > 0).reshape(d.shape) for a, d in zip(agreed, depths, strict=True)]
     for i in range(count):
-        for k in set(range(count)) - {i}:
+        for k in asked[i]:
             denied[i] += _denies(means[i], cameras[k], depths[k], sure[k])
     colors = np.concatenate([photo.reshape(-1, 3) for photo in photos]).astype(np.float64)
     sizes = np.concatenate([d.reshape(-1) / camera.fx for camera, d in zip(cameras, depths, strict=True)])
@@ -91,7 +103,7 @@ def unprojected(camera: Camera, depth: F64) -> F64:
 def _depth(own: int, cameras: Sequence[Camera], photos: Sequence[F32], radius: float) -> F64:
     """Depth `[H, W]` of one picture."""
     camera, photo = cameras[own], photos[own]
-    others = _nearest(own, cameras)
+    others = neighbours(own, cameras, radius)
     inverse = _inverse_depths(camera, [cameras[k] for k in others], radius)
     maps = np.stack([_mapping(camera, cameras[k]) for k in others]).astype(np.float32)
     costs = np.empty((camera.height, camera.width, len(inverse)), np.float32)
@@ -131,14 +143,33 @@ def _between(total: F32, best: NDArray[np.int64], inverse: F64) -> F64:
     return np.asarray(inverse[0] + place * (inverse[1] - inverse[0]))
 
 
-def _nearest(own: int, cameras: Sequence[Camera]) -> list[int]:
-    """The cameras that stand nearest and look the same way."""
+def witnesses(own: int, cameras: Sequence[Camera]) -> list[int]:
+    """The cameras whose depths are compared with those of one: all, or `WITNESSES`, evenly chosen from the nearest to
+    the farthest of those that look roughly the same way."""
+    order, turn = _by_nearness(own, cameras)
+    if len(order) <= WITNESSES:
+        return order
+    alike = sum(turn[k] < ASKEW for k in order)
+    order = sorted(order, key=lambda k: turn[k] >= ASKEW)[: max(WITNESSES, alike)]
+    return [order[k] for k in np.linspace(0, len(order) - 1, WITNESSES).round().astype(int)]
+
+
+def neighbours(own: int, cameras: Sequence[Camera], radius: float) -> list[int]:
+    """The cameras that stand nearest and look the same way, of those that stand far enough aside to tell a depth."""
+    order, _ = _by_nearness(own, cameras)
+    place = cameras[own].position
+    near = [bool(np.linalg.norm(cameras[k].position - place) < ASIDE * radius) for k in order]
+    return [k for _, k in sorted(zip(near, order, strict=True), key=lambda pair: pair[0])][:NEIGHBOURS]
+
+
+def _by_nearness(own: int, cameras: Sequence[Camera]) -> tuple[list[int], list[float]]:
+    """The other cameras, those that stand nearest and look the same way first; and the angle between each sight and
+    that of this camera, radians."""
     camera = cameras[own]
     away = [float(np.linalg.norm(c.position - camera.position)) for c in cameras]
     turn = [float(np.arccos(np.clip(c.forward @ camera.forward, -1, 1))) for c in cameras]
     reach = max(float(np.median(away)), 1e-9)
-    order = sorted((k for k in range(len(cameras)) if k != own), key=lambda k: (away[k] / reach + turn[k], k))
-    return order[:NEIGHBOURS]
+    return sorted((k for k in range(len(cameras)) if k != own), key=lambda k: (away[k] / reach + turn[k], k)), turn
 
 
 def _mapping(camera: Camera, other: Camera) -> F64:

@@ -8,7 +8,7 @@ body. A known path is mended from both ends by what the times around a time tell
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -73,12 +73,14 @@ class Tracker:
         footage: its first time is that of the columns.
         seed: of the search.
         moving: the rows of other bodies whose path is known, and their paths.
+        check: is called before each search and comparison; it may raise `budget.OutOfTime`.
     """
 
     def __init__(
         self, columns: Columns, rows: I64, still: NDArray[np.bool_], footage: Footage, seed: int,
-        moving: Sequence[tuple[I64, Body]] = (),
+        moving: Sequence[tuple[I64, Body]] = (), check: Callable[[], None] = lambda: None,
     ) -> None:  # fmt: skip
+        self._check = check
         self._footage, self._rng = footage, np.random.default_rng([seed, len(rows)])
         self._own: Columns = tuple(np.ascontiguousarray(c[rows]) for c in columns)  # type: ignore[assignment]
         self._rest: Columns = tuple(np.ascontiguousarray(c[still]) for c in columns)  # type: ignore[assignment]
@@ -195,6 +197,7 @@ class Tracker:
     def errors(self, t: int, choices: Sequence[Pose]) -> tuple[F64, int]:
         """`[M]` squared difference of the rendered to the taken pictures of a time with the body at poses, all in the
         same parts of the same pictures; and how many pixels these have."""
+        self._check()
         placed = [Body(self.pivot, q[None], o[None]).placed(0, self._own[0], self._own[1]) for q, o in choices]
         found, pixels = np.zeros(len(choices)), 0
         for view in self._views(np.concatenate([means for means, _ in placed]), t, 0.0):
@@ -223,6 +226,7 @@ class Tracker:
     def known(self, body: Body, t: int) -> tuple[float, F64, F64]:
         """Squared difference at a time, its gradient `[6]` and Gauss-Newton matrix `[6, 6]` by a shift and by a further
         turn times the body's size."""
+        self._check()
         value, slope, bend = 0.0, np.zeros(6), np.zeros((6, 6))
         pose, step = (body.quats[t], body.offsets[t]), DIFFERENCE * self.size
         poses = [pose]
@@ -301,6 +305,7 @@ class Tracker:
 
     def scores(self, turns: F64, offsets: F64, t: int, blur: float) -> F64:
         """`[M]` mean difference of colours of the body's points at poses, where cameras see them."""
+        self._check()
         matrices = keys.matrices(turns)
         points = np.einsum("mij,nj->mni", matrices, self._points) + self.pivot + offsets[:, None, :]
         total, count = np.zeros(len(turns)), np.zeros(len(turns))
@@ -349,6 +354,7 @@ class Tracker:
 
     def _refine(self, body: Body, t: int, steps: int = STEPS) -> None:
         """Adam on the pose, by the squared difference of the rendered to the taken pictures."""
+        self._check()
         views = self._views(body.placed(t, self._own[0], self._own[1])[0], t, 0.0)
         if not views:
             return

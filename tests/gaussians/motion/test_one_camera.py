@@ -1,18 +1,25 @@
 """Films of one moving camera: what frames agree on, what rests at an end, and paths that pictures tell in part."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from scenewright.gaussians.camera import Camera
+from scenewright.gaussians.files.captures.colmap import Points
+from scenewright.gaussians.fit import Photos, Settings
+from scenewright.gaussians.fit.initialize import MIN_POINTS
 from scenewright.gaussians.fit.parameters import Parameters
 from scenewright.gaussians.fit.train import Shot
 from scenewright.gaussians.harmonics import SH_C0
+from scenewright.gaussians.motion.fitting import fit as fitting
 from scenewright.gaussians.motion.fitting.agreement import Agreement
 from scenewright.gaussians.motion.fitting.bodies import Body, Labelled, Line, placed, turn_around, turned
 from scenewright.gaussians.motion.fitting.footage import Footage, differs, rounded
 from scenewright.gaussians.motion.fitting.resting import until
 from scenewright.gaussians.motion.fitting.seeds import gone
 from scenewright.gaussians.motion.fitting.smoothing import smoothed
+from scenewright.gaussians.motion.fitting.stillness import OFF, difference_of, nothing_moves, otherwise
 from scenewright.gaussians.motion.fitting.supposing import supposed
 from scenewright.gaussians.motion.fitting.tracking import Tracker
 from scenewright.gaussians.render.cpu import gradient
@@ -189,22 +196,78 @@ def test_a_leaf_that_swings_before_a_moving_camera_is_a_hinge_at_its_edge(room):
     assert np.abs(found.values * np.sign(found.axis[2]) - values).max() < 0.2  # radians
 
 
+def test_a_place_looks_otherwise_in_a_run_of_frames_that_show_it():
+    seen, off = np.ones((6, 12), bool), np.full((6, 12), 0.01, np.float32)
+    off[0, 3:6] = 0.3  # moved
+    off[1, [2, 5, 9]] = 0.3  # now and then
+    off[2] = 0.3  # never explained
+    seen[3, 1:9:2], off[3, 2:8] = False, 0.3  # three of the frames that show it
+    seen[4, 5:], off[4, 1:4] = False, 0.3  # too few show it
+    off[5, 7:] = 0.3
+    level = np.full(12, 0.01, np.float32)
+    level[7:] = 0.2  # frames that are explained badly all over
+    found = otherwise(seen, off, level)
+    assert np.flatnonzero(found[0]).tolist() == [3, 4, 5] and np.flatnonzero(found[3]).tolist() == [2, 4, 6]
+    assert not found[[1, 2, 4, 5]].any()
+
+
+def test_exposure_a_gloss_and_an_edge_that_is_a_pixel_off_are_no_difference_and_a_thing_is():
+    rng = np.random.default_rng(4)
+    drawn = np.kron(rng.integers(60, 180, (5, 6, 3)), np.ones((8, 8, 1))).astype(np.uint8)
+    taken = np.roll(drawn, 1, axis=1) * 0.8 + 20
+    y, x = np.mgrid[:40, :48]
+    taken += 35 * np.exp(-((x - 24) ** 2 + (y - 20) ** 2) / (2 * 15**2))[..., None]
+    off = difference_of(drawn, taken.round().clip(0, 255).astype(np.uint8))[3:-3, 3:-3]
+    assert np.quantile(off, 0.98) < OFF
+    taken[12:19, 20:27] = 250
+    assert difference_of(drawn, taken.round().clip(0, 255).astype(np.uint8))[14:17, 22:25].min() > OFF
+
+
+@pytest.mark.parametrize("exposed", [False, True])
+def test_whether_anything_moves_is_told_by_a_short_training(room, exposed):
+    columns, labels = room
+    rng, body = np.random.default_rng(3), Body.at_rest(np.zeros(3), FRAMES)
+    body.offsets[5:, 2] = 3.0
+    start = wall(columns).cloud()
+    for path, still in ((Body.at_rest(np.zeros(3), FRAMES), True), (body, False)):
+        shots = filmed(columns, labels, path).shots
+        if exposed:
+            bright = rng.uniform(0.8, 1.1, (FRAMES, 3))
+            shots = [Shot(s.camera, rounded(s.colors * b), s.time) for s, b in zip(shots, bright, strict=True)]
+        assert nothing_moves(shots, start, 1.2, 0) == still
+    again = [nothing_moves(shots, start, 1.2, 0) for _ in range(2)]
+    assert again == [False, False]
+
+
+def test_a_film_in_which_nothing_moves_is_left_to_photographs_with_points_of_its_stereo(room, monkeypatch):
+    columns, labels = room
+    shots = filmed(columns, labels, Body.at_rest(np.zeros(3), FRAMES)).shots
+    none = Points(np.zeros((0, 3)), np.zeros((0, 3)))
+    photos = Photos(shots, (), none, 1.2)
+    monkeypatch.setattr(fitting, "nothing_moves", lambda *_: True)
+    left = fitting.fit_what_moves(photos, Settings(steps=50, degree=0))
+    assert isinstance(left, fitting.Still) and left.tried == 0 and not left.cut
+    assert len(left.photos.points.means) >= MIN_POINTS and left.photos.shots == shots
+    colors = left.photos.points.colors
+    assert colors.shape == left.photos.points.means.shape and colors.min() >= 0 and colors.max() <= 1
+    surveyed = Points(np.random.default_rng(0).normal(size=(200, 3)), np.full((200, 3), 0.5))
+    kept = fitting.fit_what_moves(replace(photos, points=surveyed), Settings(steps=50, degree=0))
+    assert isinstance(kept, fitting.Still) and kept.photos.points is surveyed
+
+
 def film_of(name: str, **options):
     """A small film of one moving camera as photographs, and the film."""
     from scenewright.benchmarks._motion import films
-    from scenewright.gaussians.files.captures import colmap
-    from scenewright.gaussians.fit import Photos
 
     film = films.film(name, "1", (128, 96), **options)
     shots = tuple(Shot(f.camera, f.photo, f.time) for f in film.frames)
     held = tuple(Shot(f.camera, f.photo, f.time) for f in film.held_out[::4])
-    return film, Photos(shots, held, colmap.Points(np.zeros((0, 3)), np.zeros((0, 3))), 2.6)
+    return film, Photos(shots, held, Points(np.zeros((0, 3)), np.zeros((0, 3))), 2.6)
 
 
 @pytest.mark.slow
 def test_a_robot_that_walks_before_one_moving_camera_is_found_and_followed():
     from scenewright.benchmarks._motion import films
-    from scenewright.gaussians.fit import Settings
     from scenewright.gaussians.motion.fitting.fit import fit_film
     from scenewright.gaussians.motion.motion import poses
 
