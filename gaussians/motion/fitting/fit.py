@@ -26,6 +26,7 @@ import torch
 from numpy.typing import NDArray
 
 from ...cloud import NO_GROUP, GaussianCloud
+from ...fit.densify import MCMCStrategy
 from ...fit.fitting import Settings, Status
 from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
@@ -35,10 +36,12 @@ from ...scene import Scene
 from ..at import at
 from ..motion import Motion, Residual, Track
 from .agreement import lasting
+from .carving import Carving, Sight
 from .bodies import Body, Labelled, turn_around
 from .finding import Finder
 from .footage import Footage
 from .resting import Ends
+from .sharing import shown_later
 from .simplify import track_of
 from .start import trainer
 from .training import Joint, Single
@@ -48,6 +51,7 @@ Detail = Literal["static", "rigid", "residual"]  # the motion that may be fitted
 
 START = 0.3  # share of the training that goes to the scene at its start
 TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
+SHOWN = (0.3, 0.6)  # shares of the training of all together, at which bodies get what they show later
 MORE = 1.2  # times the Gaussians of the start: greatest number at the end, for what was hidden at the start
 SINGLE = 0.15  # of the steps of all together, that displacements of single Gaussians are trained for
 GAIN = 0.05  # dB on held-out frames, for which displacements of single Gaussians are kept
@@ -106,6 +110,7 @@ class _Film:
         self._photos, self._settings, self._detail, self._on_status = photos, settings, detail, on_status
         self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
         self._rng = np.random.default_rng(settings.seed)
+        self._sight: Sight | None = None
         self._started, self._told, self._loss = time.perf_counter(), 0.0, math.nan
 
     def fit(self) -> FittedFilm:
@@ -113,10 +118,14 @@ class _Film:
         footage, settings = self._footage, self._settings
         labelled, bodies, tried, before = self._before_standing() if footage.stands else self._before_moving()
         budget = min(settings.max_gaussians, int(MORE * len(labelled)))
-        joint = Joint(labelled, bodies, footage, budget, self._rng)
+        joint = Joint(labelled, bodies, footage, Carving(budget, self._rng, sight=self._sight), self._rng)
         left = None if settings.seconds is None else max(0.2 * settings.seconds, settings.seconds - self._seconds)
         more = None if settings.steps is None else settings.steps - before
+        turns = list(SHOWN)
         while (share := _share(joint, more, left)) < 1:
+            if turns and share >= turns[0]:
+                shown_later(labelled, bodies, footage, self._rng)
+                turns.pop(0)
             self._tell(joint.step(share), before + joint.steps, START + (1 - START) * share, len(labelled))
         scene, steps = self._scene(labelled, bodies, None), before + joint.steps
         if self._detail == "residual" and scene.motion is not None and self._photos.held_out:
@@ -129,7 +138,9 @@ class _Film:
         settings = self._settings
         steps = settings.steps and max(1, round(START * settings.steps))
         schedule = Schedule(steps, settings.seconds and START * settings.seconds, settings.coarse)
-        start = trainer(self._footage, self._photos, settings.max_gaussians, schedule, self._rng)
+        shots = [self._footage.shots[i] for i in self._footage.first]
+        self._sight = Sight.of(shots, self._photos.extent)
+        start = trainer(self._footage, self._photos, settings.max_gaussians, schedule, self._sight, self._rng)
         while start.progress < 1:
             self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
         return *self._bodies(start.parameters, self._footage), start.steps
@@ -175,7 +186,7 @@ class _Film:
         """The scene with displacements of single Gaussians if held-out frames gain by them, and the steps it took."""
         single = Single.none(np.flatnonzero(labelled.labels > 0), self._footage.times)
         copy = Labelled.labelled(Parameters.load(deepcopy(labelled.state())), labelled.labels.copy())
-        joint = Joint(copy, bodies, self._footage, len(copy), self._rng, single)
+        joint = Joint(copy, bodies, self._footage, MCMCStrategy(len(copy), self._rng), self._rng, single)
         while joint.steps < steps:
             joint.step(1.0)
         finer = self._scene(copy, bodies, single)

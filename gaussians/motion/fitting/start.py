@@ -11,12 +11,12 @@ from scipy.spatial import cKDTree
 
 from ...cloud import GaussianCloud
 from ...errors import UserError
-from ...fit.densify import MCMCStrategy
 from ...fit.initialize import initial_cloud
 from ...fit.parameters import Parameters
 from ...fit.photographs.photos import Photos
 from ...fit.train import Schedule, Shot, Trainer
 from ...harmonics import color_to_dc
+from .carving import Carving, Sight
 from .covering import uncovered
 from .footage import Footage
 from .stereo import Points, points_of
@@ -110,12 +110,14 @@ def start_cloud(
     return start_points(list(shots), photos.extent, most, rng, changing)
 
 
-def trainer(footage: Footage, photos: Photos, most: int, schedule: Schedule, rng: np.random.Generator) -> Trainer:
+def trainer(
+    footage: Footage, photos: Photos, most: int, schedule: Schedule, sight: Sight, rng: np.random.Generator
+) -> Trainer:
     """A training on the first frames: from surveyed points where the capture has them, else from their own stereo."""
     shots = [footage.shots[i] for i in footage.first]
     cloud = start_cloud(shots, photos, most, rng, changing(footage))
     budget = min(most, int(ROOM * len(cloud)) + 1)
-    return Trainer(shots, Parameters.of(cloud), MCMCStrategy(budget, rng), photos.extent, schedule, rng)
+    return Trainer(shots, Parameters.of(cloud), Carving(budget, rng, sight=sight), photos.extent, schedule, rng)
 
 
 def changing(footage: Footage) -> list[NDArray[np.bool_]]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...fit.adam import Adam
-from ...fit.densify import MCMCStrategy
+from ...fit.densify import Strategy
 from ...fit.loss import BLACK, photometric
 from ...fit.parameters import parameter_gradients
 from ...fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, morton_order
@@ -21,7 +21,7 @@ from .footage import Footage
 F64 = NDArray[np.float64]
 
 SSIM = 0.2
-OFFSETS_LR, TURNS_LR = 4e-4, 3e-3  # of poses: of the radius of the cameras, and radians
+OFFSETS_LR = 4e-4  # of poses, of the radius of the cameras; a turn moves the Gaussians of a body as far
 LINE_LR = 0.3  # of a line's pivot and axis, of those of poses: they step at every frame
 SINGLE_LR = 2e-5  # of displacements of single Gaussians, of the radius of the cameras
 RANK = 3  # of those displacements: a drift, and a there and back
@@ -94,17 +94,17 @@ class Joint:
         parameters: changed in place.
         bodies: changed in place; those of label 1, 2, ...
         footage: frames to train on.
-        budget: greatest number of Gaussians.
-        rng: draws the order of frames, and copies and noise of Gaussians.
+        strategy: densifies and prunes.
+        rng: draws the order of frames.
         single: displacements of single Gaussians; with them no Gaussians are added, and poses stay.
     """
 
     def __init__(
-        self, parameters: Labelled, bodies: list[Body], footage: Footage, budget: int, rng: np.random.Generator,
+        self, parameters: Labelled, bodies: list[Body], footage: Footage, strategy: Strategy, rng: np.random.Generator,
         single: Single | None = None,
     ) -> None:  # fmt: skip
         self.parameters, self.bodies, self._footage, self._rng, self._single = parameters, bodies, footage, rng, single
-        self._strategy = MCMCStrategy(budget, rng)
+        self._strategy = strategy
         self._moments = [_Moments.none(len(footage.times)) for _ in bodies]
         self._runs = [{t: run for run in body.runs for t in range(*run)} for body in bodies]
         self._order: list[int] = []
@@ -157,18 +157,21 @@ class Joint:
             if self._single is None and self._runs[number - 1][t][0] > 0 and np.any(d_means):
                 centre = body.pivot + body.offsets[t]
                 turn, shift = pose_gradient(columns[0][rows], columns[1][rows], centre, d_means, d_quats)
-                self._step_pose(number - 1, t, turn, shift, rate)
+                reach = float(np.sqrt(((columns[0][rows] - centre) ** 2).sum(axis=1).mean()))
+                self._step_pose(number - 1, t, turn, shift, rate, reach)
             matrix = keys.matrices(body.quats[t])
             found.means[rows] = (d_means @ matrix).astype(np.float32)
             found.quats[rows] = (d_quats @ left(body.quats[t])).astype(np.float32)
 
-    def _step_pose(self, number: int, t: int, turn: F64, shift: F64, rate: float) -> None:
+    def _step_pose(self, number: int, t: int, turn: F64, shift: F64, rate: float, reach: float) -> None:
         """A step of the pose of a body at a time by its gradient, or of its place on its line and of the line.
 
-        The pose is the same at all times of a rest."""
+        The pose is the same at all times of a rest. A turn moves what is at a distance of `reach` (scene units) as far
+        as a shift does."""
         body, moments = self.bodies[number], self._moments[number]
         run = slice(*self._runs[number][t])
-        far, wide = OFFSETS_LR * self._footage.radius * rate / WARM, TURNS_LR * rate / WARM
+        far = OFFSETS_LR * self._footage.radius * rate / WARM
+        wide = far / max(reach, 1e-9)
         if body.line is None:
             move = moments.direction(run.start, np.r_[shift, turn])
             body.offsets[run] -= far * move[:3]
