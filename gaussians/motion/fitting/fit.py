@@ -36,8 +36,8 @@ from ...scene import Scene
 from ..at import at
 from ..motion import Motion, Residual, Track
 from .agreement import lasting
-from .carving import Carving, Sight
 from .bodies import Body, Labelled, turn_around
+from .carving import Carving, Sight
 from .finding import Finder
 from .footage import Footage
 from .resting import Ends
