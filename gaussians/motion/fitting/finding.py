@@ -186,9 +186,11 @@ class Finder:
                 labelled.labels[labelled.labels == number] = 0
                 continue
             errors = np.sum([tracker.errors(t, [(p.quats[t], p.offsets[t]) for p in paths])[0] for t in some], axis=0)
-            best = int(errors[1:].argmin())
-            if errors[1 + best] <= self._as_well(own) * errors[0]:
-                labelled.labels[labelled.labels == number] = others[best - 1] if best else 0
+            enough = self._as_well(own) * errors[0]
+            if errors[1] <= enough:  # as little motion as needed: what stands still joins nothing
+                labelled.labels[labelled.labels == number] = 0
+            elif errors[1:].min() <= enough:
+                labelled.labels[labelled.labels == number] = others[int(errors[2:].argmin())]
         self._renumber(labelled, bodies, labelled.labels)
 
     def _settle(self, labelled: Labelled, bodies: list[Body]) -> None:

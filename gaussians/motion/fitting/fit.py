@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from ...cloud import NO_GROUP, GaussianCloud
 from ...files.captures.colmap import Points
+from ...fit.densify import MCMCStrategy
 from ...fit.fitting import SECONDS, Settings, Status
 from ...fit.initialize import MIN_POINTS
 from ...fit.parameters import Parameters
@@ -41,11 +42,13 @@ from ..motion import Motion, Residual, Track
 from .agreement import lasting
 from .bodies import Body, Labelled, turn_around
 from .budget import ENDS_UNTIL, Budget, OutOfTime
+from .carving import Carving, Sight
 from .finding import Finder
 from .footage import Footage
 from .resting import Ends
+from .sharing import shown_later
 from .simplify import track_of
-from .sketch import MOST_PIXELS, STEREO_FRAMES, at_all_times, sketched, stereo_pixels
+from .sketch import MOST_PIXELS, STEREO_FRAMES, at_all_times, covering, reduced, sketched, stereo_pixels
 from .start import PIXELS, changing, start_cloud, trainer
 from .stillness import nothing_moves
 from .training import Joint, Single
@@ -56,6 +59,7 @@ Detail = Literal["static", "rigid", "residual"]  # the motion that may be fitted
 START = 0.3  # share of the fit that is told as completed when all together are trained, at least
 TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
 LEAST_TOGETHER = 0.2  # share of the time that the training of all together has at least
+SHOWN = (0.3, 0.6)  # shares of the training of all together, at which bodies get what they show later
 MORE = 1.2  # times the Gaussians of the start: greatest number at the end, for what was hidden at the start
 SINGLE = 0.15  # of the steps of all together, that displacements of single Gaussians are trained for
 GAIN = 0.05  # dB on held-out frames, for which displacements of single Gaussians are kept
@@ -166,6 +170,7 @@ class _Film:
             self._pixels = min(MOST_PIXELS, stereo_pixels(settings.seconds, len(photos.shots)))
         small = sketched(photos.shots, self._pixels)
         self._sketch = Footage.of(small, [s.time for s in small])
+        self._sight: Sight | None = None
         self._told, self._loss, self._cut = 0.0, math.nan, False
 
     def stands_still(self) -> bool:
@@ -191,13 +196,20 @@ class _Film:
         """All together, and few keys."""
         settings, labelled, bodies = self._settings, found.labelled, found.bodies
         most = min(settings.max_gaussians, int(MORE * len(labelled)))
-        joint = Joint(labelled, bodies, self._footage, most, self._rng)
+        joint = Joint(labelled, bodies, self._footage, Carving(most, self._rng, sight=self._sight), self._rng)
         single = self._detail == "residual" and bool(bodies) and bool(self._photos.held_out)
         left = self._budget.left(least=LEAST_TOGETHER)
         if left is not None and single:
             left /= 1 + SINGLE
         more = None if settings.steps is None else settings.steps - found.steps
+        small = Footage.of(
+            [reduced(s, self._pixels) for s in self._footage.shots], [s.time for s in self._footage.shots]
+        )
+        turns = list(SHOWN) if bodies else []
         while (share := _share(joint, more, left)) < 1:
+            if turns and share >= turns[0]:
+                shown_later(labelled, bodies, small, self._rng)
+                turns.pop(0)
             self._tell(joint.step(share), found.steps + joint.steps, START + (1 - START) * share, len(labelled))
         scene, steps = self._scene(labelled, bodies, None), found.steps + joint.steps
         if single and scene.motion is not None:
@@ -221,7 +233,13 @@ class _Film:
 
     def _before_standing(self) -> _Found:
         """What moves before cameras that stand."""
-        start = trainer(self._footage, self._start, self._photos.extent, self._settings, self._rng, self._budget)
+        photos, first = self._photos, [self._sketch.shots[i] for i in self._sketch.first]
+        first = [first[i] for i in covering([shot.camera for shot in first])]
+        pixels = stereo_pixels(self._settings.seconds, len(first))
+        self._sight = Sight.of([reduced(shot, pixels) for shot in first], photos.extent)
+        start = trainer(
+            self._footage, self._start, photos.extent, self._settings, self._sight, self._rng, self._budget
+        )  # fmt: skip
         while start.progress < 1:
             self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))
         labelled, bodies, tried = self._bodies(start.parameters, self._sketch)
@@ -281,7 +299,7 @@ class _Film:
         """The scene with displacements of single Gaussians if held-out frames gain by them, and the steps it took."""
         single = Single.none(np.flatnonzero(labelled.labels > 0), self._footage.times)
         copy = Labelled.labelled(Parameters.load(deepcopy(labelled.state())), labelled.labels.copy())
-        joint = Joint(copy, bodies, self._footage, len(copy), self._rng, single)
+        joint = Joint(copy, bodies, self._footage, MCMCStrategy(len(copy), self._rng), self._rng, single)
         while joint.steps < steps:
             joint.step(1.0)
         finer = self._scene(copy, bodies, single)

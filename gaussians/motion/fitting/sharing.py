@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from ...fit.loss import BLACK
 from ...render.cpu import gradient
-from .bodies import Body, Columns
+from .bodies import Body, Columns, Labelled, placed
 from .footage import Footage
 from .tracking import unlike
 
@@ -68,18 +68,45 @@ def shared(
     return found
 
 
+def shown_later(labelled: Labelled, bodies: list[Body], footage: Footage, rng: np.random.Generator) -> None:
+    """Give to bodies what goes along with them from where they rest later on; in place.
+
+    Sides of a body that no first frame shows have no Gaussians at the start. What stands still where the body comes to
+    rest is trained to show them, and is not there when the body goes on. It is put where the body had it at first.
+    """
+    for number, body in enumerate(bodies, 1):
+        t = _rest(labelled.means[labelled.labels == number], body, footage)
+        if t is None:
+            continue
+        columns = placed(labelled.columns(), labelled.labels, bodies, t)
+        labels = shared(columns, labelled.labels, [b.started_at(t) for b in bodies], footage, rng)
+        new = np.flatnonzero((labelled.labels == 0) & (labels == number))
+        back = body.started_at(t)
+        labelled.means[new], labelled.quats[new] = back.placed(0, labelled.means[new], labelled.quats[new])
+        labelled.labels[new] = number
+
+
+def _rest(own: F32, body: Body, footage: Footage) -> int | None:
+    """The time at which a body begins its longest rest away from where it was at first; None: it rests nowhere."""
+    away = _away(own, body, footage)
+    rests = [(stop - start, start) for start, stop in body.runs if away[start] and stop - start > 1]
+    return max(rests)[1] if rests else None
+
+
+def _away(own: F32, body: Body, footage: Footage) -> NDArray[np.bool_]:
+    """`[T]` whether Gaussians of a body with means `[N, 3]` at first are then elsewhere."""
+    least = MOVED * footage.radius / footage.cameras[0].fx
+    away = np.zeros(len(footage.times), bool)
+    for t in range(len(away) if len(own) else 0):
+        means, _ = body.placed(t, own, np.ones((len(own), 4), np.float32))
+        away[t] = float(np.linalg.norm(means - own, axis=1).max()) > least
+    return away
+
+
 def _telling(columns: Columns, labels: NDArray[np.int32], bodies: list[Body], footage: Footage) -> I64:
     """Frames at whose time a body is not where it was at first."""
-    least = MOVED * footage.radius / footage.cameras[0].fx
-    far = np.zeros(len(footage.times), bool)
-    for number, body in enumerate(bodies, 1):
-        own = columns[0][labels == number]
-        if not len(own):
-            continue
-        for t in range(len(far)):
-            means, _ = body.placed(t, own, np.ones((len(own), 4), np.float32))
-            far[t] |= float(np.linalg.norm(means - own, axis=1).max()) > least
-    return np.flatnonzero(far[footage.when])
+    away = [_away(columns[0][labels == number], body, footage) for number, body in enumerate(bodies, 1)]
+    return np.flatnonzero(np.any([np.zeros(len(footage.times), bool), *away], axis=0)[footage.when])
 
 
 def _candidates(columns: Columns, labels: NDArray[np.int32], footage: Footage) -> _Shares:

@@ -12,7 +12,6 @@ from scipy.spatial import cKDTree
 from ...camera import Camera
 from ...cloud import GaussianCloud
 from ...errors import UserError
-from ...fit.densify import MCMCStrategy
 from ...fit.fitting import Settings
 from ...fit.initialize import initial_cloud
 from ...fit.parameters import Parameters
@@ -20,6 +19,7 @@ from ...fit.photographs.photos import Photos
 from ...fit.train import Schedule, Shot, Trainer
 from ...harmonics import color_to_dc
 from .budget import START_UNTIL, Budget
+from .carving import Carving, Sight
 from .covering import uncovered
 from .footage import Footage
 from .sketch import covering, reduced
@@ -139,18 +139,20 @@ def _sampled(mask: NDArray[np.bool_], camera: Camera) -> NDArray[np.bool_]:
 
 
 def trainer(
-    footage: Footage, cloud: GaussianCloud, extent: float, settings: Settings, rng: np.random.Generator, budget: Budget
+    footage: Footage, cloud: GaussianCloud, extent: float, settings: Settings, sight: Sight, rng: np.random.Generator,
+    budget: Budget,
 ) -> Trainer:  # fmt: skip
     """A training of Gaussians on the first frames.
 
     Args:
         extent: radius of the cameras, scene units.
+        sight: how far the first frames see.
         budget: of which it takes its share, if the fit is not measured in steps.
     """
     shots, most = [footage.shots[i] for i in footage.first], settings.max_gaussians
     steps = settings.steps and max(1, round(START_UNTIL * settings.steps))
     schedule = Schedule(steps, budget.left(START_UNTIL), settings.coarse)
-    strategy = MCMCStrategy(min(most, int(ROOM * len(cloud)) + 1), rng)
+    strategy = Carving(min(most, int(ROOM * len(cloud)) + 1), rng, sight=sight)
     return Trainer(shots, Parameters.of(cloud), strategy, extent, schedule, rng)
 
 

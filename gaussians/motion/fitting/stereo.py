@@ -81,11 +81,11 @@ def points_of(
     asked = [witnesses(i, cameras) for i in range(count)]
     for i in range(count):
         for k in asked[i]:
-            agreed[i] += _confirms(means[i], cameras[k], depths[k])
+            agreed[i] += confirms(means[i], cameras[k], depths[k])
     sure = [(a > 0).reshape(d.shape) for a, d in zip(agreed, depths, strict=True)]
     for i in range(count):
         for k in asked[i]:
-            denied[i] += _denies(means[i], cameras[k], depths[k], sure[k])
+            denied[i] += denies(means[i], cameras[k], depths[k], sure[k])
     colors = np.concatenate([photo.reshape(-1, 3) for photo in photos]).astype(np.float64)
     sizes = np.concatenate([d.reshape(-1) / camera.fx for camera, d in zip(cameras, depths, strict=True)])
     each = np.concatenate([d.reshape(-1) for d in depths])
@@ -183,13 +183,13 @@ def _mapping(camera: Camera, other: Camera) -> F64:
     return np.concatenate([turn, (inner(other) @ between[:3, 3])[:, None]], axis=1)
 
 
-def _confirms(world: F64, camera: Camera, depth: F64) -> NDArray[np.bool_]:
+def confirms(world: F64, camera: Camera, depth: F64) -> NDArray[np.bool_]:
     """`[N]` whether a camera's own depth is that of the point."""
     inside, x, y, z = _pixels(world, camera)
     return np.asarray(inside & (np.abs(depth[y, x] - z) < AGREE * z))
 
 
-def _denies(world: F64, camera: Camera, depth: F64, sure: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def denies(world: F64, camera: Camera, depth: F64, sure: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """`[N]` whether a camera's own depth is sure and behind the point."""
     inside, x, y, z = _pixels(world, camera)
     return np.asarray(inside & sure[y, x] & (z < depth[y, x] * (1 - BEHIND)))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...fit.adam import Adam
-from ...fit.densify import MCMCStrategy
+from ...fit.densify import Strategy
 from ...fit.loss import BLACK, photometric
 from ...fit.parameters import parameter_gradients
 from ...fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, morton_order
@@ -21,7 +21,8 @@ from .footage import Footage
 F64 = NDArray[np.float64]
 
 SSIM = 0.2
-OFFSETS_LR, TURNS_LR = 4e-4, 3e-3  # of poses: of the radius of the cameras, and radians
+OFFSETS_LR = 8e-4  # of poses, of the radius of the cameras; a turn moves the Gaussians of a body as far
+POSES_DECAY = 0.1  # that rate at the end: a pose is trained by the frames of its time alone, in few steps
 LINE_LR = 0.3  # of a line's pivot and axis, of those of poses: they step at every frame
 SINGLE_LR = 2e-5  # of displacements of single Gaussians, of the radius of the cameras
 RANK = 3  # of those displacements: a drift, and a there and back
@@ -94,17 +95,17 @@ class Joint:
         parameters: changed in place.
         bodies: changed in place; those of label 1, 2, ...
         footage: frames to train on.
-        budget: greatest number of Gaussians.
-        rng: draws the order of frames, and copies and noise of Gaussians.
+        strategy: densifies and prunes.
+        rng: draws the order of frames.
         single: displacements of single Gaussians; with them no Gaussians are added, and poses stay.
     """
 
     def __init__(
-        self, parameters: Labelled, bodies: list[Body], footage: Footage, budget: int, rng: np.random.Generator,
+        self, parameters: Labelled, bodies: list[Body], footage: Footage, strategy: Strategy, rng: np.random.Generator,
         single: Single | None = None,
     ) -> None:  # fmt: skip
         self.parameters, self.bodies, self._footage, self._rng, self._single = parameters, bodies, footage, rng, single
-        self._strategy = MCMCStrategy(budget, rng)
+        self._strategy = strategy
         self._moments = [_Moments.none(len(footage.times)) for _ in bodies]
         self._runs = [{t: run for run in body.runs for t in range(*run)} for body in bodies]
         self._order: list[int] = []
@@ -130,7 +131,7 @@ class Joint:
         loss, slope = photometric(drawn.rgb, shot.colors, SSIM)
         found = gradient.draw_backward(drawn, slope, np.zeros(slope.shape[:2], np.float32))
         rate = WARM * LR_DECAY**progress
-        self._pull_back(columns, found, t, rate)
+        self._pull_back(columns, found, t, OFFSETS_LR * self._footage.radius * POSES_DECAY**progress)
         if self._single is not None and t > 0:
             self._single.step(found.means, t, SINGLE_LR * self._footage.radius)
         gradients = parameter_gradients(found, columns[2], columns[3])
@@ -146,9 +147,9 @@ class Joint:
         return loss
 
     def _pull_back(
-        self, columns: tuple[NDArray[np.float32], ...], found: gradient.Gradients, t: int, rate: float
+        self, columns: tuple[NDArray[np.float32], ...], found: gradient.Gradients, t: int, far: float
     ) -> None:
-        """Step the poses of this time, and turn the gradients of bodies back to the start."""
+        """Step the poses of this time by `far` (scene units), and turn the gradients of bodies back to the start."""
         for number, body in enumerate(self.bodies, 1):
             rows = np.flatnonzero(self.parameters.labels == number)
             if not len(rows):
@@ -157,18 +158,23 @@ class Joint:
             if self._single is None and self._runs[number - 1][t][0] > 0 and np.any(d_means):
                 centre = body.pivot + body.offsets[t]
                 turn, shift = pose_gradient(columns[0][rows], columns[1][rows], centre, d_means, d_quats)
-                self._step_pose(number - 1, t, turn, shift, rate)
+                reach = float(np.sqrt(((columns[0][rows] - centre) ** 2).sum(axis=1).mean()))
+                self._step_pose(number - 1, t, turn, shift, far, far / max(reach, 1e-9))
             matrix = keys.matrices(body.quats[t])
             found.means[rows] = (d_means @ matrix).astype(np.float32)
             found.quats[rows] = (d_quats @ left(body.quats[t])).astype(np.float32)
 
-    def _step_pose(self, number: int, t: int, turn: F64, shift: F64, rate: float) -> None:
+    def _step_pose(self, number: int, t: int, turn: F64, shift: F64, far: float, wide: float) -> None:
         """A step of the pose of a body at a time by its gradient, or of its place on its line and of the line.
 
-        The pose is the same at all times of a rest."""
+        The pose is the same at all times of a rest.
+
+        Args:
+            turn, shift: the gradient by a further turn and a further shift.
+            far, wide: of the step, scene units and radians.
+        """
         body, moments = self.bodies[number], self._moments[number]
         run = slice(*self._runs[number][t])
-        far, wide = OFFSETS_LR * self._footage.radius * rate / WARM, TURNS_LR * rate / WARM
         if body.line is None:
             move = moments.direction(run.start, np.r_[shift, turn])
             body.offsets[run] -= far * move[:3]
