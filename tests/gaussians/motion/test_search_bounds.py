@@ -65,8 +65,8 @@ class Clock:
 
 def test_the_pairs_of_pictures_that_are_compared_grow_with_their_number_and_not_with_its_square(monkeypatch):
     pairs, sources = [], []
-    confirms, mapping = stereo._confirms, stereo._mapping
-    monkeypatch.setattr(stereo, "_confirms", lambda *a: pairs.append(1) or confirms(*a))
+    confirms, mapping = stereo.confirms, stereo._mapping
+    monkeypatch.setattr(stereo, "confirms", lambda *a: pairs.append(1) or confirms(*a))
     monkeypatch.setattr(stereo, "_mapping", lambda *a: sources.append(1) or mapping(*a))
     for count in (8, 20, 40):
         pairs.clear(), sources.clear()
