@@ -182,8 +182,11 @@ def _understand(cleaned: str, previous: str | None, moves: Moves | None = None) 
         return _guessed(supposed)
     if reader.is_still(outcome.ops) and (supposed := reader.supposed(cleaned)) and not reader.is_still(supposed):
         return _guessed(supposed)
-    if reader.is_of_another_kind(cleaned, outcome.ops) and (supposed := reader.supposed(cleaned)):
-        return _guessed(supposed)
+    if reader.is_of_another_kind(cleaned, outcome.ops):
+        if supposed := reader.supposed(cleaned):
+            return _guessed(supposed)
+        if reader.is_of_another_kind(cleaned, outcome.ops, SURE):
+            raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
     if not _names_things(outcome.ops, previous) and (supposed := reader.supposed(cleaned)):
         return _guessed(supposed) if _names_things(supposed, previous) else outcome
     return outcome

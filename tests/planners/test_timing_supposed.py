@@ -264,3 +264,94 @@ def test_times_by_what_things_do() -> None:
     assert op["when"]["during"] == {"state": "moving", "of": {"text": "book"}, "part": "until_end"}
     (op,) = planned("make the wardrobe green while the drawer is going out")
     assert op["when"]["during"] == {"state": "opening", "of": {"text": "drawer"}}
+
+
+@pytest.mark.parametrize(
+    ("text", "when"),
+    [
+        (
+            "make the robot red from when it turns until it reaches the bed",
+            {
+                "during": {"state": "turning", "part": "from"},
+                "until": {"state": "touches", "anchors": [{"text": "bed"}], "part": "until"},
+            },
+        ),
+        (
+            "turn the bed blue when the drawer has come out until it starts to go in again",
+            {
+                "during": {"state": "opening", "of": {"text": "drawer"}, "part": "after"},
+                "until": {"state": "closing", "of": {"text": "drawer"}, "part": "until"},
+            },
+        ),
+        (
+            "could the sofa turn green from 2 s until the ball comes to rest?",
+            {"start": 2.0, "until": {"state": "moving", "of": {"text": "ball"}, "part": "until_end"}},
+        ),
+        (
+            "have the robot go blue after it turns, then green again when it gets to the bed",
+            {
+                "during": {"state": "turning", "part": "after"},
+                "until": {"state": "touches", "anchors": [{"text": "bed"}], "part": "until"},
+            },
+        ),
+    ],
+)
+def test_a_time_may_begin_and_end_with_what_happens(text: str, when: dict[str, Any]) -> None:
+    (op,) = planned(text)
+    assert op["op"] == "recolor" and op["when"] == when
+
+
+@pytest.mark.parametrize(
+    ("text", "change"),
+    [
+        ("the red book should float down, give it two full seconds to reach the floor", {"when": {"lasting": 2.0}}),
+        ("The ball crawls. It should take half a second.", {"when": {"lasting": 0.5}}),
+        (
+            "the train ought to start only after one second; until then it should be motionless",
+            {"when": {"start": 1.0}},
+        ),
+        ("make the ball wait another second before it sets off", {"change": "later", "seconds": 1.0}),
+        ("Hold the drawer back a touch, everything it does half a second later", {"change": "later", "seconds": 0.5}),
+    ],
+)
+def test_how_long_and_how_much_later(text: str, change: dict[str, Any]) -> None:
+    (op,) = planned(text)
+    assert op["op"] == "pace" and change.items() <= op.items()
+
+
+@pytest.mark.parametrize(
+    ("text", "op", "color"),
+    [
+        ("for the first second and a half I want the bed in navy blue", "recolor", "navy"),
+        ("could the sofa read as a deep green from 2 s on", "recolor", "deep green"),
+        ("white door please, from the moment it begins to move", "recolor", "white"),
+    ],
+)
+def test_colours_of_several_words(text: str, op: str, color: str) -> None:
+    (made,) = planned(text)
+    assert (made["op"], made["color"]) == (op, color)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "get the robot there by 3 seconds, he's dawdling",  # hides nothing
+        "I think the ball should only roll about two metres and then have a rest",  # puts no rest in
+    ],
+)
+def test_operations_are_those_of_the_likeliest_kind(text: str) -> None:
+    (op,) = planned(text)
+    assert op["op"] == "pace"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "it is the blue book who must fall the first, before the red and the green",  # paints none
+        "hide the bed while the robot is walking towards it",  # no state tells that
+        "let the ball roll to the wall in 2 s, I want it to explode there",
+        "when the robot has finished the first part, I want him to turn red for a second",
+    ],
+)
+def test_what_no_operation_tells_is_refused(text: str) -> None:
+    assert planned(text) == []

@@ -27,6 +27,9 @@ def followed(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
         return [*ops, {**then, "when": _afterwards(last["when"])}]
     if last.get("change") == then.get("change") == "stop" and then.get("when") is None and then["target"] == IT:
         return list(ops)  # "freeze it at 2 s and do not let it move again", "... for 1 s, then let it finish"
+    rests = last.get("change") == "stop" and isinstance(last.get("when"), When) and last["when"].lasting is not None
+    if rests and then.get("change") in ("go_on", "begin") and then.get("when") is None and then["target"] == IT:
+        return list(ops)  # "freeze it for one second, then let it keep rolling"
     hidden = last.get("op") in ("opacity", "delete") and _is_from(last)
     if hidden and then.get("change") == "return" and isinstance(then.get("when"), When) and then["target"] == IT:
         if then["when"].start is None or then["when"].during is not None:

@@ -39,10 +39,12 @@ class Happening:
         """This with what ends the time that it begins; None if one of both does not begin or end a time."""
         if self.during.part not in ("from", "after", "while") or other.during.part not in ("until", "until_end"):
             return None
-        until = other.during
-        if until.of == IT and self.during.of not in (None, IT):
-            until = until.model_copy(update={"of": self.during.of})
-        return replace(self, until=until)
+        during, until = self.during, other.during
+        if until.of == IT and during.of not in (None, IT):
+            until = until.model_copy(update={"of": during.of})
+        elif during.of == IT and until.of not in (None, IT):
+            during = during.model_copy(update={"of": until.of})  # "after the turn and until the robot stops"
+        return replace(self, during=during, until=until)
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ _ONCE = (
     r"(?:(?:right |just )as|(?:on|at|from) the (?:frame|point|instant|moment|time) (?:where|when|that|at which)|"
     r"the (?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|once|when|as soon as|the moment|"
     r"the instant|the second|at the moment when|at the moment|immediately when|right when|from when|from the moment|"
-    r"exactly when|directly when|each time|every time|from the time)"
+    r"exactly when|directly when|immediately(?= the )|directly(?= the )|the minute|each time|every time|from the time)"
 )
 _WHILE = (
     r"(?:while|whilst|as long as|so long as|whenever|during the time|for as long as|the whole time|all the time|as|"
@@ -122,14 +124,18 @@ _AT_TURN = re.compile(
 )
 _IS_THERE = re.compile(r" (?:gets|has got|is|arrives|has arrived|comes|has come) there$")
 _APPROACHES = re.compile(r"\b[a-z]+ing (?:back |over )?(?:to|towards?) (?:the|my|its|it|him|her)\b")  # no state
+_WHOLLY = re.compile(r"\b(?:totally|completely|entirely|wholly)\b")
+_LEG = r"(?:first|second|last|other|next) (?:part|half|leg|bit|stretch|section|stage)"  # of a way
+_A_LEG = re.compile(rf".*\b{_LEG}$|(?:the|its|his|her) {_LEG}\b")
 _FULLY = re.compile(r"\b(?:full|fully|completely|all the way|wide|entirely|totally)\b")
 _NEXT = ("touching", "in contact with", "resting against")
 
 
 def clause_of(word: str, said: str, thing: Thing) -> During | None:
     """What a clause behind a conjunction tells of; None if the whole of it is not understood."""
-    if _PEOPLE.match(said) or (_APPROACHES.search(said) and re.fullmatch(_WHILE, word)):
+    if _PEOPLE.match(said) or _A_LEG.match(said) or (_APPROACHES.search(said) and re.fullmatch(_WHILE, word)):
         return None
+    said = _WHOLLY.sub("fully", said)
     said = _USUALLY.sub(" ", _UNDER_WAY.sub(" is moving", _DONE.sub("has stopped", said)))
     said = _IS_THERE.sub(" has stopped", said)
     if (over := _EVENT_OVER.match(said)) is not None:
@@ -323,6 +329,8 @@ def cut(said: str, thing: Thing) -> Iterator[tuple[str, Happening]]:
             if during is None:
                 continue
             left, right = said[:start].strip(" ,"), " ".join(words[end:]).strip(" ,.")
+            if _A_LEG.match(right):
+                continue  # "when it has finished the first part"
             right = re.sub(r"^(?:then|,) ", "", right) if not left else right
             rest = f"{left} {right}".strip() if not left or not right else f"{left} , {right}"
             if rest:

@@ -54,6 +54,9 @@ Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain comm
 Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
 
 
+_SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
+
+
 def may_be_timed(cleaned: str) -> bool:
     """Whether any word could be about time or motion."""
     said = cleaned.lower()
@@ -150,13 +153,19 @@ class TimeReader:
                 return found  # else it is told that the thing does not move
         return chosen(offers, words, least)
 
-    def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields]) -> bool:
-        """Whether operations of a time begin with one that no wish of the likeliest kind is done by: "get the robot
-        there by 3 s" hides nothing."""
-        if not ops or (ops[0].get("when") or When()).gradual or not moments.TIMED.search(cleaned):
+    def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields], least: float = _SAID_SO) -> bool:
+        """Whether operations of a time, or of a look or a new thing, begin with one that no wish of the likeliest kind
+        is done by: "get the robot there by 3 s" hides nothing.
+
+        Args:
+            least: probability from which a kind counts.
+        """
+        if not ops or (ops[0].get("when") or When()).gradual:
+            return False
+        if ops[0]["op"] not in _LOOKS_OR_THINGS and not moments.TIMED.search(cleaned):
             return False
         kinds = likely(cleaned)
-        return bool(kinds) and kinds[0][1] >= _SAID_SO and not is_done_by(kinds[0][0], str(ops[0]["op"]))
+        return bool(kinds) and kinds[0][1] >= least and not is_done_by(kinds[0][0], str(ops[0]["op"]))
 
     def is_still(self, ops: Sequence[Fields]) -> bool:
         """Whether operations change how something moves that stands still in the scene."""
@@ -613,8 +622,8 @@ _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
 _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
 _PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
 _LOOKS = ("opacity", "recolor", "restyle")
+_LOOKS_OR_THINGS = ("insert", "recolor")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
-_SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 _LONGEST = 45  # words of an instruction with one wish
 _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b")
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
@@ -654,7 +663,7 @@ def _spelt_out(said: str) -> str:
     return _SHORT_VERB.sub(lambda m: f" {verb(m)} {m['then']}", _FILLER.sub(" ", said))
 
 
-_FILLER = re.compile(r"(?: ,)? (?:uh|um|uhm|er|erm|hmm|well)(?: ,)?(?= )")
+_FILLER = re.compile(r"(?: ,)? (?:uh|um|uhm|er|erm|hmm|(?<! as )well)(?: ,)?(?= )")
 _SHORT_VERB = re.compile(
     r" 's (?P<then>[a-z]+(?:ing|ed)|fully|completely|all|just|already|been|done|open|closed|shut|out|in|gone|hit|left|"
     r"fallen|come|begun|slid|stopped|reached|way|too|so|not)\b"

@@ -93,7 +93,10 @@ def _is_paced(op: Fields) -> bool:
 
 _TO_THE_END = re.compile(r"\b(?:to|until|till) the (?:very )?end\b")
 _BOTH = re.compile(r"\b(?:in and out|out and in|both|opening and closing|open and close)\b")
-HELD_BACK = re.compile(r"\b(?:hold|held|keep|kept)(?: (?:the|that|this|my|our)(?: [a-z]+){1,3}| it| \|)? back\b")
+HELD_BACK = re.compile(
+    r"\b(?:hold|held|keep|kept|push|move|shift)(?: (?:the|that|this|my|our)(?: [a-z]+){1,3}| it| \|)?(?: [a-z]+)? "
+    r"back\b(?! in\b| to\b)"
+)
 _OPENS = re.compile(r"\b(?:open(?:s|ing)?|out)\b")
 _CLOSES = re.compile(
     r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back(?: in)?|(?:go|goes|slides?|comes?|going|sliding) in)\b"

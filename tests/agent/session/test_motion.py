@@ -9,6 +9,7 @@ import torch
 
 from scenewright.agent.session.session import Session
 from scenewright.gaussians.files import load
+from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.motion.at import at
 from scenewright.gaussians.motion.motion import Motion, Track
 from scenewright.gaussians.scene import Scene
@@ -32,3 +33,17 @@ def test_motion_survives_edits_undo_save_and_load(boxes: Scene, encoder: Any, tm
     assert torch.equal(at(back, 2.0).cloud.means, at(session.scene, 2.0).cloud.means)
     assert torch.equal(back.cloud.means, session.scene.cloud.means)
     assert not torch.equal(at(back, 2.0).cloud.means, back.cloud.means)
+
+
+def test_a_wish_for_what_stands_still_is_none_about_its_motion(boxes: Scene, encoder: Any) -> None:
+    """ "Leave it out between 1 and 2 s" stops what moves, and hides what does not."""
+    green = boxes.cloud.ids[boxes.cloud.group == 1].numpy()
+    moving = boxes.replace(motion=Motion((Track.slide(green, [0, 3], [0, 1], (0, 0, 1)),), stop=3.0))
+    session = Session(moving, encoder=encoder, viewer=boxes.cameras[0])
+    assert (
+        session.moves(Query(colors=("green",))) is True and session.moves(Query(colors=("red",), pick="all")) is False
+    )
+    assert Session(boxes, encoder=encoder).moves(Query(colors=("green",))) is None
+    wish = "I'd rather nobody saw the left red thing until the green thing has stopped"
+    (op,) = session.plan(wish).ops
+    assert op.op == "opacity"

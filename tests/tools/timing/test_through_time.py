@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import torch
 
-from scenewright.gaussians.errors import InstructionError
+from scenewright.gaussians.errors import InstructionError, UserError
 from scenewright.gaussians.motion.at import at
 from scenewright.gaussians.motion.courses import course_of
 from scenewright.gaussians.motion.events import movements
@@ -485,3 +485,42 @@ def test_what_closes_by_itself_may_close_by_half(drawn: Scene, context: Context)
     made = done(drawn, data, context).scene
     way = [float(np.linalg.norm(middle(made, t) - middle(drawn, 0.0))) for t in (1.4, 4.0)]
     assert way[1] == pytest.approx(way[0] / 2, rel=0.02)  # it stays there
+
+
+@pytest.mark.parametrize(
+    ("when", "red"),
+    [
+        ({"during": {"state": "opening", "part": "after"}, "until": {"state": "closing", "part": "until"}}, (1.0, 2.0)),
+        (
+            {"during": {"state": "opening", "part": "from"}, "until": {"state": "closing", "part": "until_end"}},
+            (0.5, 3.0),
+        ),
+        ({"start": 1.5, "until": {"state": "closing", "part": "until"}}, (1.5, 2.0)),
+    ],
+)
+def test_what_happens_may_end_a_time(
+    drawn: Scene, context: Context, when: dict[str, Any], red: tuple[float, float]
+) -> None:
+    when = {key: {**told, "of": A_CHAIR} if isinstance(told, dict) else told for key, told in when.items()}
+    data = {"op": "recolor", "target": {"groups": [VASE]}, "color": "red", "when": when}
+    made = done(drawn, data, context).scene
+    for t in np.arange(0.05, 4.0, 0.1):
+        assert bool(len(differs(drawn, made, float(t)))) == (red[0] < t < red[1]), t
+
+
+def test_a_time_that_nothing_ends_is_told(drawn: Scene, context: Context) -> None:
+    until = {"state": "opening", "of": A_CHAIR, "part": "until"}
+    data = {"op": "recolor", "target": {"groups": [VASE]}, "color": "red", "when": {"start": 1.5, "until": until}}
+    with pytest.raises(InstructionError, match=r"does not happen after 1\.5 s"):
+        done(drawn, data, context)
+
+
+def test_only_an_end_ends_a_time() -> None:
+    with pytest.raises(UserError, match="until or until_end"):
+        parse({"op": "recolor", "target": A_CHAIR, "color": "red", "when": {"until": {"state": "moving"}}})
+
+
+def test_what_is_to_be_shut_by_a_time_is_shut_then(drawn: Scene, context: Context) -> None:
+    data = {"op": "articulate", "target": A_CHAIR, "change": "close", "when": {"stop": 2.5}}
+    spans = movements(course_of(done(drawn, data, context).scene, CHAIR))
+    assert [tuple(round(t, 1) for t in span) for span in spans] == [(0.5, 1.0), (2.0, 2.5)]

@@ -8,13 +8,18 @@ from .wording import CAUSING, COLOR, EVENT, ING, NUMBER, PASTS, PLAIN, POINT, Ru
 
 RULES: Rules = (
     # how it is written
+    (r"\b(?P<u>seconds?)ll\b", r"\g<u> will"),
+    (r"\bhesitate(?P<s>s?)\b", r"pause\g<s>"),
+    (rf"\b(?P<d>{DURATION})(?:ll| will| would|'ll) do(?: it| nicely| for (?:it|that))?$", r"\g<d> is enough"),
+    (rf" , (?P<d>{DURATION}) and (?:it is|its|it 's|that is it ,? ?it is) (?:done|over|open|shut|closed|there|finished)"
+     rf"$", r" in \g<d>"),
     (rf"^(?P<np>(?!the |my |all |both |every |it |he |she )[a-z]+(?: [a-z]+)??) (?:{S}) (?=(?:only |just |not )?(?:at|f"
      rf"rom|"
      r"when|once|after|until|till|for|in|too) )", with_article),
     (r" , (?:as )?(?:a )?permanent(?:ly)?(?: change)?$", ""),
     (rf"^(?P<np>(?:the |my )?[a-z]+(?: [a-z]+)??) in (?:a )?(?P<c>{COLOR}) , (?P<t>(?:the )?(?:whole|entire|full) "
      r"[a-z]+|all the time|always|throughout)$", r"make \g<np> \g<c>"),
-    (r"\bfirst ,? ?(?:so |i e |that is )?(?P<w>before|ahead of) (?=(?:the|my) )", r"\g<w> "),
+    (r"(?<!the )\bfirst ,? ?(?:so |i e |that is )?(?P<w>before|ahead of) (?=(?:the|my) )", r"\g<w> "),
     (r" , (?:love|lads|lass|folks|guys|darling|sweetheart|sweetie|boss|sir|madam|buddy|dear|duck|pal|chaps|my dear|my "
      r"friend|chef|doc|captain|hun|babe|everyone|team)(?= ,|$)", ""),
     (rf"(?P<c>\b{COLOR})(?: ,)? (?:and )?(?:leave|keep) it (?:{COLOR}|that way|so|like that)$", r"\g<c>"),

@@ -39,6 +39,38 @@ RULES: Rules = (
      r"(?: \. (?:leave|keep) it (?:open|out)(?: please)?)?",
      lambda m: f"do not close the {re.sub('^the ', '', m['np'])}"),
     # how a time is named
+    (rf"(?: ,)? (?:and |but )?(?:then|after that|afterwards|later)(?: ,)? (?:(?:it |he |she )?(?:should |must |can |may"
+     rf" |is to "
+     rf")?(?:go|goes|turn|turns|change|changes|be|return|returns) back to|(?:return|turn|change|set|bring|put) (?:it|hi"
+     rf"m|her)"
+     rf"(?: back)? to|(?:back )?(?:in|to|into) its (?:usual|own|normal|old|original)) (?:{COLOR}|normal|colou?r)(?: aga"
+     rf"in)?$", ""),
+    (rf"(?: ,)?(?: and| then)+ when (?P<c>(?:it|he|she|the|its) .+?) (?:make|turn|put|set|change|have|paint) (?:it|him|"
+     rf"her) "
+     rf"(?:back )?(?:to )?(?:normal|{COLOR})(?: again)?$", lambda m: f" until {re.sub('^its ', 'it is ', m['c'])}"),
+    (rf"\b(?:when|once) (?:we|you|i) (?:get|come|are) (?:to|at) (?P<d>{POINT})", r"at \g<d>"),
+    (r"\bin stead of\b", "instead of"),
+    (r"\b(?:all|right) (?:the way )?through(?: (?:the|this) (?:film|clip|video|movie|scene|shot|whole thing))?\b"
+     r"(?! the [a-z]+)", "for the whole film"),
+    (r"\bover the (?:length|course|duration) of the (?:film|clip|video|movie|shot)\b", "over the whole film"),
+    (rf" ,(?: and)? (?:give (?:it|him|her)|allow(?: it)?|take) (?:about |only |just |around )?(?P<d>{POINT})(?: over it"
+     rf"| for it"
+     rf"| for that)?$", lambda m: f" in {with_unit(m['d'])}"),
+    (r"^with (?P<np>(?:all )?(?:the|my) [a-z]+(?: [a-z]+)?) (?P<s>down|open|out|shut|closed|gone|still) ,",
+     lambda m: f"once {m['np']} {'have landed' if m['s'] == 'down' else 'is ' + m['s']} ,"),
+    (rf"^(?P<v>let|make|have) (?P<np>(?:the |my )?[a-z ]+?) (?:wait|hold on|stay|stand still) (?:for )?(?:another|one m"
+     rf"ore|a "
+     rf"further) (?P<d>second|{DURATION})(?: before (?:it|he|she) [a-z ]+)?$",
+     lambda m: f"start {m['np']} {'one second' if m['d'] == 'second' else m['d']} later"),
+    (r"\bin mid ?-?air\b(?=.*\b(?:for|sec|second|seconds)\b)(?: on (?:its|the) way down)?", "halfway"),
+    (r"(?P<x>\bhalfway\b.*?)(?: ,)? on (?:its|the|his) way (?:down|up)\b", r"\g<x>"),
+    (rf"^for the first (?P<d>second|{DURATION}) (?P<np>(?:the|my) [a-z ]+?|it) (?:should |must |shall |may |has to |is "
+     rf"to |can )?"
+     r"(?:just |only |simply )*(?:stands?|stays?|sits?|waits?|remains?|be|is)(?: still| there| put| motionless| where ("
+     r"?:it|he|"
+     r"she) is)*(?: ,)?(?: and)? (?:only )?then (?:it |he |she )?(?:starts?|begins?|goes|moves|sets off|gets going)\b.*"
+     r"$",
+     lambda m: f"start {m['np']} at {'1 second' if m['d'] == 'second' else m['d']}"),
     (r"\b(?:only )?(?:until|till|up to|as far as) (?:only )?(?=\d+(?:\.\d+)? ?(?:degrees?|deg|°|cm|centimet))", "by "),
     (r"\b(?:straight|right) off the bat\b", "from the start"),
     (r"\b(?:come|comes|fall|falls|drop|drops|go|goes|roll|rolls) (?P<w>down )?a second time (?=(?:at|from|when|after) "
@@ -78,10 +110,10 @@ RULES: Rules = (
     (rf"(?P<w>\b(?:waits?|holds?|pauses?|stays?)\b.*? (?:till|until) .+?)(?: ,)? before {IT} (?:sets? off|{BEGIN}|{S})"
      r"(?: (?:down|off|out|to move|moving))*$", r"\g<w>"),
     (r"\b(?P<w>when|once|until|till|as soon as|after) (?:at last|finally|eventually|at long last) ", r"\g<w> "),
-    (r"^(?P<x>(?=.*\b(?:pause|wait|stop|halt|freeze|rest|stand)s?\b)(?=.* (?:for|at|when) ).+?)(?: ,)? (?:and |then )+"
-     r"(?:go|goes|walks?|continues?|carry|carries|moves?|heads?|rolls?) (?:on|onwards?)(?: (?:to|toward|towards|into) ("
-     r"?:the|its|"
-     r"his) [a-z]+)?$", r"\g<x>"),
+    (r"^(?P<x>(?=.*\b(?:pause|wait|stop|halt|freeze|rest|stand)s?\b)(?=.* (?:for|at|when) ).+?)(?: ,)? (?:and |then |af"
+     r"ter "
+     r"that )+(?:go|goes|walks?|continues?|carry|carries|moves?|heads?|rolls?) (?:on|onwards?|further)(?: "
+     r"(?:to|toward|towards|into) (?:the|its|his) [a-z]+)?$", r"\g<x>"),
     (r"\b(?:at|in) the (?:exact |very )?middle of the (?:film|clip|video|movie|shot|scene|sequence)\b",
      "halfway through the film"),
     (r"\b(?:for|through|throughout|during) the (?:whole|entire|full|complete) (?:story|show|piece|thing|sequence|"

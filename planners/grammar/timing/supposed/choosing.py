@@ -23,7 +23,8 @@ _BY_WORDS = {  # words of which one at least says that a wish is of a kind
     "recolor": r"colou?r\w*|paint\w*|turn\w*|go(?:es)?|become\w*|be|make|made|in|tint\w*|dye\w*",
     "hide": r"hid\w*|invisible|gone|vanish\w*|disappear\w*|appear\w*|see|seen|sight|visible|show\w*|lose|there|view|"
     r"away|eyes",
-    "remove": r"remov\w*|delet\w*|rid|away|out|without|gone|lose|drop|absent|no|not",
+    "remove": r"strike|scrap|ditch|bin|chuck|dump|toss|cut|take|"
+    r"remov\w*|delet\w*|rid|away|out|without|gone|lose|drop|absent|no|not",
     "move": r"move\w*|push\w*|slid\w*|lift\w*|rais\w*|put|bring|drive|drives|roll\w*|float\w*|carr\w*|drift\w*|go|goes|"
     r"travel\w*|glid\w*|shift\w*|to|over",
     "spin": r"spin\w*|twirl\w*|turn\w*|rotat\w*|whirl\w*|pirouette\w*|revolv\w*|circle\w*",

@@ -42,7 +42,10 @@ _BARE = re.compile(
 _AS = re.compile(r"^(?:all the while|the whole time(?: that)?|for the time(?: that)?) (?=\w)")
 _WHERE = re.compile(r"^(?:at )?(?:the (?:point|place|spot|corner) )?(?:where|upon) (?=\w)")
 _WHERE_IN = re.compile(r"\bwhere\b(?= (?:it|he|she|they|the) )")
-_ALL = re.compile(r"\b(?:whole|entire|throughout|all the time|always|(?:beginning|start) to (?:the )?(?:end|finish))\b")
+_ALL = re.compile(
+    r"\b(?:whole|entire|throughout|all (?:the way )?through|over the length of|all the time|always|"
+    r"(?:beginning|start) to (?:the )?(?:end|finish))\b"
+)
 _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     (re.compile(r"\b(?:middle|half ?way|half time|midway|half the)\b"), "middle"),
     (re.compile(r"\b(?:end|finish|close|last frame|over|finale)\b"), "end"),
@@ -287,7 +290,8 @@ def _loses_colors(words: Sequence[str], ops: Sequence[Fields]) -> bool:
     held = set(re.findall(r"[a-z]+", str(ops)))
     for at, word in enumerate(words):
         around = {*words[max(0, at - 4) : at], *words[at + 1 : at + 3]}
-        if word in hues() and word not in held and not around & _NOT_WANTED:
+        beside = held & hues() & {*words[max(0, at - 1) : at], *words[at + 1 : at + 2]}  # "mint green" is one colour
+        if word in hues() and word not in held and not beside and not around & _NOT_WANTED:
             return True
     return False
 

@@ -42,6 +42,7 @@ _REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _TIMES_LEFT = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
     rf"except|unless|if)\b|\bwhere (?:the|(?:it|he|she|they) (?!is\b|are\b|was\b|were\b|stood\b|used\b|came\b))|"
+    r"\b(?:first|second|last|other|next) (?:part|leg|half|bit|stretch|stage)\b|"
     rf"\bat the (?:very )?(?:end|start|beginning)\b|\b(?:once|after|before|as)\b "
     rf"(?=(?:the|a|my|it|he|she|they|that|this)\b)|{DURATION}"
 )
@@ -284,6 +285,7 @@ _RATE = re.compile(
     r"\b(?:once|twice|(?:[a-z]+|\d+(?:\.\d+)?) (?:times|turns?|rounds?|rotations?|revolutions?)) "
     r"(?:a|per|every|each) second\b"
 )
+_IN_REVERSE = re.compile(r"\b(?:backwards?|in reverse|rewind|rewound)\b")
 _OTHER_WAY = re.compile(
     r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction)|way (?:round|around)|direction|clockwise|anti|"
     r"counter)\b"
@@ -306,13 +308,13 @@ def _spin(said: Said) -> Iterator[Wish]:
 def _to_the_end(moment: Moment) -> Moment:
     """A time "in the last two seconds", all of which a turn takes."""
     last = isinstance(moment.start, float) and moment.start < 0 and moment.stop is None
-    return replace(moment, stop="end") if last else moment
+    return replace(moment, stop="end") if last or moment.always else moment
 
 
 def _reverse(said: Said) -> Iterator[Wish]:
     if not _BACKWARDS.search(said.text) and not _OTHER_WAY.search(said.text):
         return  # "roll up the wall"
-    if not said.told and _OTHER_WAY.search(said.text):
+    if not said.told and _OTHER_WAY.search(said.text) and not _IN_REVERSE.search(said.text):
         yield Wish(f"let {said.things[0]} turn the other way round", said.moment)
     elif not said.told:
         whose = ALL_OF_IT if said.things[0] in (MOVING, "everything") else said.whose
@@ -408,7 +410,8 @@ def _sign(text: str) -> float | None:
     """1 if something is to be later, -1 if earlier; None if neither is said, or both."""
     if (late := _TOO_LATE.search(text)) is not None:
         return -1.0 if late[1] == "late" else 1.0
-    later, earlier = _LATER.search(text) is not None, _EARLIER.search(text) is not None
+    held = HELD_BACK.search(text) is not None
+    later, earlier = held or _LATER.search(text) is not None, _EARLIER.search(text) is not None
     return None if later == earlier else 1.0 if later else -1.0
 
 
@@ -482,7 +485,8 @@ def _pause(said: Said) -> Iterator[Wish]:
         return
     if moment.lasting is not None or moment.stop is not None:
         if moment.start is not None or moment.stop is not None or said.event:
-            yield Wish(rest, replace(moment, taken=False, slowly=False))
+            where = 1 if _STANDS_ON.search(said.beside) is None else 2
+            yield Wish(rest, replace(moment, taken=False, slowly=False), where)
     elif said.event or moment.start is not None:
         for seconds, words in _durations(said.text):
             yield Wish(rest, replace(moment, lasting=seconds), holds=words)
@@ -505,9 +509,13 @@ def _still(said: Said) -> Iterator[Wish]:
         yield Wish(pace(said.whose, "stop"), Moment(), things=2 if _STAYS.search(said.text) else 1)
 
 
+_OPEN = re.compile(r"\b(?:open|out|ajar)\b")
+
+
 def _stay(said: Said) -> Iterator[Wish]:
     moment = said.moment
-    if _RESTS.search(said.text) and not said.event:
+    stands = is_opened(said.things[0]) and _OPEN.search(said.text) is not None
+    if _RESTS.search(said.text) and not said.event and not stands:
         yield from _still(said)
     elif moment.lasting is None and moment.stop in (None, "end") and moment.start in (None, "end"):
         if moment.start == "end" and not _KEPT.search(said.text):
@@ -526,7 +534,7 @@ _DEGREES = re.compile(r"(?:\d+|[a-z]+) (?:degrees?|deg|°)")
 _SHARES = tuple(
     (re.compile(pattern), opened, way)
     for pattern, opened, way in (
-        (r"\bhalf ?way|\bhalf (?:as|the|that|of|open)|\bhalf\b", "halfway", "half the way"),
+        (r"\bhalf ?way|\bhalf (?:as|the|that|of|open)|\bhalf\b(?! an? )", "halfway", "half the way"),
         (r"\b(?:a|one) third\b", "a third of the way", "a third of the way"),
         (r"\b(?:a|one) quarter\b", "a quarter of the way", "a quarter of the way"),
     )
@@ -556,6 +564,9 @@ def _opening(said: Said, verb: str) -> Iterator[Wish]:
     if verb == "open" and (_LATER.search(said.text) or _EARLIER.search(said.text)):
         yield from _begin(said)
     elif said.moment.start != "end":
+        how_far = _DEGREES.search(said.text) or _LENGTH.search(said.text)
+        if how_far is not None and verb == "open":
+            yield Wish(f"open {said.things[0]} by {how_far[0]}", said.moment, holds=how_far[0])
         yield Wish(f"{verb} {said.things[0]}", said.moment)
 
 
