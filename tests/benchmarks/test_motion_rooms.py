@@ -103,3 +103,12 @@ def test_what_moves_is_counted_by_when_it_begins() -> None:
     session.do("drop all the books at the same time")
     with pytest.raises(InstructionError, match="same time"):
         session.do("hide the book that falls first")
+
+
+def test_a_name_of_a_family_means_the_kind_that_fits() -> None:
+    """The lamp on the desk, half a metre high, is called "lamp"."""
+    session = Session(rooms.moving_room("books", 0.1))
+    assert session.scene.language is not None
+    lamp = next(g.id for g in session.scene.language.groups if g.label == "lamp")
+    assert session.select("the desk lamp").groups == session.select("the lamp").groups == (lamp,)
+    assert session.select("the floor lamp").verdict == "absent"
