@@ -173,6 +173,10 @@ class Observation(Protocol):
         """Whether any of what a query names moves at some time; None if that cannot be told."""
         ...
 
+    def lacks(self, query: Query) -> bool:
+        """Whether a scene with motion has nothing that a query names; no of others, where that is not asked."""
+        ...
+
 
 class Planner(Protocol):
     """Turns an instruction into a plan. Words it does not understand are no error: the verdict reports them."""

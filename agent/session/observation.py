@@ -86,3 +86,7 @@ class GraphObservation:
     def moves(self, query: Query) -> None:
         """None: a written graph does not tell what moves."""
         return None
+
+    def lacks(self, query: Query) -> bool:
+        """No: it is not asked of a written graph, which has no motion."""
+        return False

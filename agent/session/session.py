@@ -298,6 +298,14 @@ class Session:
         self.embed()
         return any_moves(self.scene, self._context(self.last).resolve(self.scene, query))
 
+    def lacks(self, query: Query) -> bool:
+        """Whether a scene with motion has nothing that a query names; no of others. Embeds the scene if it is not
+        embedded yet."""
+        if self.scene.motion is None:
+            return False
+        self.embed()
+        return self._context(self.last).resolve(self.scene, query).verdict == "absent"
+
     @property
     def references(self) -> tuple[str, ...]:
         """The names of the photographs that instructions may name."""

@@ -35,7 +35,7 @@ from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
-from .timing.reading import Moves, TimeReader, is_misread, may_be_timed
+from .timing.reading import TimeReader, is_misread, may_be_timed
 from .timing.supposed.wishes import SURE
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
@@ -90,7 +90,7 @@ class GrammarPlanner:
         cleaned = clean(text)
         told: dict[str, Any]
         try:
-            outcome = _understand(cleaned, previous, observation.moves if observation is not None else None)
+            outcome = _understand(cleaned, previous, observation)
             told = {"ops": tuple(_valid(op) for op in outcome.ops), "reason": "; ".join(outcome.remarks)[:2000]}
         except Refusal as refusal:
             told = {"verdict": refusal.verdict, "reason": str(refusal), "unknown": _shortened(refusal.words)}
@@ -152,11 +152,11 @@ def _shortened(words: Sequence[str]) -> tuple[str, ...]:
     return tuple(w[:200] for w in words if w)[:64]
 
 
-def _understand(cleaned: str, previous: str | None, moves: Moves | None = None) -> _Outcome:
+def _understand(cleaned: str, previous: str | None, scene: Observation | None = None) -> _Outcome:
     """Parse a cleaned instruction.
 
     Args:
-        moves: whether what a query names moves in the scene; None if there is none.
+        scene: asked what moves in it, and what it lacks; None if there is none.
 
     Raises:
         Refusal: any part of it is not understood, or none of it is an edit.
@@ -165,7 +165,7 @@ def _understand(cleaned: str, previous: str | None, moves: Moves | None = None) 
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):
         return _timeless(cleaned, previous)
-    reader = TimeReader(_operations, _thing, moves)
+    reader = TimeReader(_operations, _thing, scene.moves if scene is not None else None)
     try:
         outcome = _timed(reader, cleaned, previous)
     except Refusal as refusal:
@@ -187,6 +187,8 @@ def _understand(cleaned: str, previous: str | None, moves: Moves | None = None) 
             return _guessed(supposed)
         if reader.is_of_another_kind(cleaned, outcome.ops, SURE):
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
+    if scene is not None and _lacks(scene, outcome.ops) and (supposed := reader.supposed(cleaned)):
+        return outcome if _lacks(scene, supposed) else _guessed(supposed)
     if not _names_things(outcome.ops, previous) and (supposed := reader.supposed(cleaned)):
         return _guessed(supposed) if _names_things(supposed, previous) else outcome
     return outcome
@@ -204,6 +206,11 @@ def _timed(reader: TimeReader, cleaned: str, previous: str | None) -> _Outcome:
     if is_misread([op for op in outcome.ops if op["op"] != "select"]):
         raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
     return outcome
+
+
+def _lacks(scene: Observation, ops: Sequence[Fields]) -> bool:
+    """Whether a scene has nothing of what operations are about: "let the fan go the other way" is about no "fan go"."""
+    return any(scene.lacks(query) for op in ops for query in _targets(op) if not query.last and query.text)
 
 
 def _names_things(ops: Sequence[Fields], previous: str | None) -> bool:

@@ -87,6 +87,9 @@ class _Later:
     def moves(self, query: Query) -> bool | None:
         return self.before.moves(query)
 
+    def lacks(self, query: Query) -> bool:
+        return self.before.lacks(query)
+
 
 def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) -> Resolved:
     """What a plan would touch on a graph."""

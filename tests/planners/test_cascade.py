@@ -65,6 +65,9 @@ class Blind:
     def moves(self, query: Query) -> bool | None:
         raise AssertionError("nothing here is about motion")
 
+    def lacks(self, query: Query) -> bool:
+        raise AssertionError("nothing here is about motion")
+
 
 @pytest.mark.parametrize("first", spread(range(3), 3))
 def test_where_the_grammar_answers_nobody_else_is_asked(first: int) -> None:

@@ -140,7 +140,9 @@ def _ended(spans: list[Span], until: During, scene: Scene, target: Selection, co
     for start, stop in spans:
         end = next((t for t in ends if t > start + SHORTEST and t < last - SHORTEST), None)
         if end is None:
-            raise InstructionError(f"that does not happen after {start:.3g} s: {until.describe().split(' ', 1)[1]}")
+            told = until.model_copy(update={"part": "while"}).describe().removeprefix("while ")
+            how = "end" if until.part == "until_end" else "happen"
+            raise InstructionError(f"that does not {how} after {start:.3g} s: {told}")
         ended.append((start, min(stop, end)))
     return ended
 

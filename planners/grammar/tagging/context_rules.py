@@ -36,10 +36,7 @@ _AWAY = phrases(
     "away from, face away from, to face away from, facing away from, so that it faces away from, so it faces away "
     "from, so they face away from, its back to, to look away from"
 )
-_OUTSIDE = phrases(
-    "out of here, out of the room, out of the scene, out of sight, out of my sight, out of there, "
-    f"{', '.join(f'out of the {room}' for room in lexicon.ROOMS)}"
-)
+_OUTSIDE = phrases("out of here, out of the room, out of the scene, out of sight, out of my sight, out of there")
 _IT_IS = phrases("it is, this is, that is, there is, they are, these are")
 
 

@@ -65,6 +65,8 @@ def _afterwards(when: When) -> When:
     """
     if when.stop is not None:
         return When(start=when.stop)
+    if when.until is not None and when.lasting is None:
+        return When(during=when.until.model_copy(update={"part": _ENDS[when.until.part]}))
     if when.lasting is not None and when.during is None and not isinstance(when.start, str):
         return When(start=(when.start or 0.0) + when.lasting)
     if when.lasting is None and when.during is not None and when.during.part in _ENDS:

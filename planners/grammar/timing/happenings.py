@@ -100,7 +100,8 @@ _DONE = re.compile(
 )
 _UNDER_WAY = re.compile(
     r"(?: (?:is|are)|'s) (?:still |up )*(?:in (?:the air|mid ?air|flight|motion|transit)|airborne|under way|"
-    r"on (?:its|his|her|their|the) way(?: down| up)?)$"
+    r"(?:on (?:its|his|her|their|the) way|heading)(?: down| up| back)?(?: (?:to|towards?|for) (?:the|its|my) [a-z ]+)?)"
+    r"$"
 )
 _USUALLY = re.compile(r" (?:would |will |does )?(?:normally|usually|ordinarily) (?=[a-z])")
 _THEY_ALL = re.compile(
@@ -119,12 +120,11 @@ _EVENT_OVER = re.compile(
 )
 _AT_TURN = re.compile(
     r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at|turns|rounds|goes (?:a)?round|has "
-    r"turned|has rounded|has reached) (?:its|his|her|the|that) "
+    r"turned|has rounded|has reached) (?:its|his|her|the|that) (?:left |right |sharp )?"
     r"(?:turn|turning point|corner|bend|curve)$"
 )
 _IS_THERE = re.compile(r" (?:gets|has got|is|arrives|has arrived|comes|has come) there$")
-_APPROACHES = re.compile(r"\b[a-z]+ing (?:back |over )?(?:to|towards?) (?:the|my|its|it|him|her)\b")  # no state
-_WHOLLY = re.compile(r"\b(?:totally|completely|entirely|wholly)\b")
+_WHOLLY = re.compile(r"\b(?:totally|completely|entirely|wholly|all(?= (?:open|out|shut|closed)\b))\b")
 _LEG = r"(?:first|second|last|other|next) (?:part|half|leg|bit|stretch|section|stage)"  # of a way
 _A_LEG = re.compile(rf".*\b{_LEG}$|(?:the|its|his|her) {_LEG}\b")
 _FULLY = re.compile(r"\b(?:full|fully|completely|all the way|wide|entirely|totally)\b")
@@ -133,7 +133,7 @@ _NEXT = ("touching", "in contact with", "resting against")
 
 def clause_of(word: str, said: str, thing: Thing) -> During | None:
     """What a clause behind a conjunction tells of; None if the whole of it is not understood."""
-    if _PEOPLE.match(said) or _A_LEG.match(said) or (_APPROACHES.search(said) and re.fullmatch(_WHILE, word)):
+    if _PEOPLE.match(said) or _A_LEG.match(said):
         return None
     said = _WHOLLY.sub("fully", said)
     said = _USUALLY.sub(" ", _UNDER_WAY.sub(" is moving", _DONE.sub("has stopped", said)))

@@ -41,7 +41,7 @@ from .moments import Moment
 from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
-from .supposed.choosing import Offer, chosen
+from .supposed.choosing import Offer, chosen, says_plainly
 from .supposed.kinds import COURSES, is_done_by, likely, marked
 from .supposed.names import with_nouns
 from .supposed.parts import TIMES, divided, leaves_out
@@ -144,11 +144,15 @@ class TimeReader:
             readings.insert(0, by_marks)
 
         def offered(kinds: Sequence[tuple[str, float]]) -> list[Offer]:
-            return [Offer(kind, p, next(self._wished(kind, p, readings, wording), ())) for kind, p in kinds]
+            told = [
+                (kind, p) for kind, p in kinds if kind != "hide" or kind == kinds[0][0] or says_plainly(kind, words)
+            ]
+            return [Offer(kind, p, next(self._wished(kind, p, readings, wording), ())) for kind, p in told]
 
         offers = offered(kinds)
         if any(self.is_still(offer.made) for offer in offers):
-            found = chosen(offered(likely(cleaned, still=True)), words, least)
+            said_so = [offer for offer in offered(likely(cleaned, still=True)) if says_plainly(offer.kind, words)]
+            found = chosen(said_so, words, least)
             if found is not None:
                 return found  # else it is told that the thing does not move
         return chosen(offers, words, least)
@@ -160,7 +164,7 @@ class TimeReader:
         Args:
             least: probability from which a kind counts.
         """
-        if not ops or (ops[0].get("when") or When()).gradual:
+        if len(ops) != 1 or (ops[0].get("when") or When()).gradual:
             return False
         if ops[0]["op"] not in _LOOKS_OR_THINGS and not moments.TIMED.search(cleaned):
             return False
@@ -447,6 +451,9 @@ class TimeReader:
         begins = happening is not None and happening.during.part in ("from", "after")
         if happening is not None and not begins and moment.stop is not None and moment.lasting is None:
             return None
+        ends = happening is not None and happening.during.part in ("until", "until_end")
+        if ends and moment.start is not None and len(_parts(said)) > 1:
+            return None  # "open the door at 1 s, paint it red until it is open" has a time for each
         if happening is not None and happening.said.startswith("before ") and phrases.RIDDING.match(said):
             return None  # "delete the vase before it falls" gives a reason
         for command in commands(said, self.thing, moment, told):

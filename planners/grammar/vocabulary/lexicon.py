@@ -391,14 +391,8 @@ ATTRIBUTES: dict[str, Entry] = {
     **same(("SIZE", "narrow"), "narrow, thin, slim, skinny, narrower"),
 }  # fmt: skip
 
-# What a scene may be of: "take the chair out of the bedroom" takes it away.
-ROOMS = (
-    "bedroom", "kitchen", "hallway", "hall", "study", "playroom", "nursery", "lounge", "living room", "dining room",
-    "office", "bathroom", "garage", "attic", "house", "flat", "apartment",
-)  # fmt: skip
 # Filler: dropped at any position.
 FILLER = phrases(
-    f"{', '.join(f'out of the {room}' for room in ROOMS)}, "
     "please, kindly, just, now, actually, for me, if you can, if possible, if you could, would you, will you, "
     "thanks, thank you, thank you very much, ok, okay, well, so, hey, hi, hello, also, as well, right now, "
     "straight away, go ahead and, from the scene, in the scene, from the room, in the room, from this scene, "

@@ -20,15 +20,17 @@ RULES: Rules = (
     (rf"^(?P<np>(?:the |my )?[a-z]+(?: [a-z]+)??) in (?:a )?(?P<c>{COLOR}) , (?P<t>(?:the )?(?:whole|entire|full) "
      r"[a-z]+|all the time|always|throughout)$", r"make \g<np> \g<c>"),
     (r"(?<!the )\bfirst ,? ?(?:so |i e |that is )?(?P<w>before|ahead of) (?=(?:the|my) )", r"\g<w> "),
-    (r" , (?:love|lads|lass|folks|guys|darling|sweetheart|sweetie|boss|sir|madam|buddy|dear|duck|pal|chaps|my dear|my "
-     r"friend|chef|doc|captain|hun|babe|everyone|team)(?= ,|$)", ""),
+    (r" , (?:lads|folks|guys|darling|sweetheart|sweetie|sir|madam|buddy|dear|pal|chaps|my dear|my "
+     r"friend)(?= ,|$)", ""),
     (rf"(?P<c>\b{COLOR})(?: ,)? (?:and )?(?:leave|keep) it (?:{COLOR}|that way|so|like that)$", r"\g<c>"),
     (rf"^(?P<c>{COLOR}) (?P<np>[a-z]+(?: [a-z]+)??)(?: please)?(?: ,)? (?=(?:from|when|once|as soon as|until|till|"
      r"while|during|after|for|between|at|in) )", r"make the \g<np> \g<c> "),
     (rf"\bthe {COLOR} (?:colou?r )?of (?=(?:the|that|this|my) )", ""),
-    (r"^(?:leave|keep) (?P<np>(?:the|my) [a-z ]+?)(?: up| right| just)?(?: there)? (?:on|in) (?:the|its) [a-z]+(?: "
-     r"[a-z]+)?(?:(?: ,| ;| \.| and)+ (?:just |only )*(?:let )?the (?:others?|rest|other (?:two|ones?))(?: (?:should|"
-     r"may|can|must|could|are to))? (?:fall|drop|come down|move|go|come|tumble)s?(?: down)?)?$", r"keep \g<np> still"),
+    (r"^(?:leave|keep) (?P<np>(?:the|my) [a-z ]+?) up(?: there)? (?:on|in) (?:the|its) [a-z]+(?: [a-z]+)?(?:(?: ,| ;| "
+     r"\.|"
+     r" and)+ (?:just |only )*(?:let )?the (?:others?|rest|other (?:two|ones?))(?: (?:should|may|can|must|could|are to)"
+     r")? "
+     r"(?:fall|drop|come down|move|go|come|tumble)s?(?: down)?)?$", r"keep \g<np> still"),
     (r"(?: ,)* [.!?;] (?:it|he|she|they) (?:does|do) not (?:need|have) to [a-z ]+$", ""),
     (rf"\b(?:only )?(?:when|once|after) (?P<d>{DURATION}) (?:ha(?:s|ve) (?:passed|gone|elapsed)|(?:is|are) (?:over|up|"
      r"gone|past))(?: by)?\b", r"at \g<d>"),

@@ -34,8 +34,9 @@ RULES: Rules = (
      r"mucking|pausing)(?: (?:around|about))?$", ""),
     (r"(?P<x>\btoo [a-z]+) for (?:my|our|the|his|her|their) [a-z]+ to (?:follow|see|watch|enjoy|understand|take in|"
      r"catch|keep up|notice|believe)(?: it| with it)?\b", r"\g<x>"),
-    (r"\b(?:to|at) (?P<f>half|a third|a quarter|double|twice) (?:of )?(?:what it is|what it was|that)(?: now| at "
-     r"present| at the moment)?$", r"to \g<f> the speed"),
+    (r"(?<=slow it) (?:down )?(?:to|at) (?P<f>half|a third|a quarter) (?:of )?(?:what it is|what it was|that)(?: now| a"
+     r"t "
+     r"present| at the moment)?$", r" to \g<f> the speed"),
     (r"\b(?:complete|finish|do|make|perform)s? (?:its|his|her|the) [a-z]+ in half the (?:usual |present |current )?time"
      r"(?: it (?:takes|needs))?(?: (?:now|at present|currently|at the moment))?$", "move twice as fast"),
     (rf" , (?:it |he |she )?should (?:take|last|need) (?:about |only |just )*(?P<d>{DURATION})$", r" in \g<d>"),

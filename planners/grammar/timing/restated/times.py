@@ -39,6 +39,13 @@ RULES: Rules = (
      r"(?: \. (?:leave|keep) it (?:open|out)(?: please)?)?",
      lambda m: f"do not close the {re.sub('^the ', '', m['np'])}"),
     # how a time is named
+    (r"\b(?P<v>(?:hit|touch|reach|strik|bump|meet|gets?|arriv)[a-z]*) (?P<at>(?:to |at |into |against )?)the (?:far|opp"
+     r"osite|other|"
+     r"farther|further) wall\b", r"\g<v> \g<at>the wall"),
+    (r"\b(?P<s>seconds?) and half\b", r"\g<s> and a half"),
+    (r"\bup to (?:where|when|the (?:point|moment|place) (?:where|when|at which)) ", "until "),
+    (r"\b(?:sit|stand|stay)s? and (?=waits?\b)", ""),
+    (r"(?: ,)? and stays? (?:that way|so|like that)$", ""),
     (rf"(?: ,)? (?:and |but )?(?:then|after that|afterwards|later)(?: ,)? (?:(?:it |he |she )?(?:should |must |can |may"
      rf" |is to "
      rf")?(?:go|goes|turn|turns|change|changes|be|return|returns) back to|(?:return|turn|change|set|bring|put) (?:it|hi"
@@ -73,21 +80,15 @@ RULES: Rules = (
      lambda m: f"start {m['np']} at {'1 second' if m['d'] == 'second' else m['d']}"),
     (r"\b(?:only )?(?:until|till|up to|as far as) (?:only )?(?=\d+(?:\.\d+)? ?(?:degrees?|deg|°|cm|centimet))", "by "),
     (r"\b(?:straight|right) off the bat\b", "from the start"),
-    (r"\b(?:come|comes|fall|falls|drop|drops|go|goes|roll|rolls) (?P<w>down )?a second time (?=(?:at|from|when|after) "
-     r")",
-     "move once more "),
-    (r"^(?P<x>.*\bmove .+?)(?: to (?:the|its) (?:left|right))? until (?:it|he|she) (?:sits|stands|is|rests) (?=(?:next "
+    (r"^(?P<x>.*\bmove .+?)(?: to (?:the|its) (?:left|right))? until (?:it|he|she) (?:sits|stands|rests) (?=(?:next "
      r"to|"
      r"beside|by|near|in front of|behind) (?:the|my) )", r"\g<x> "),
-    (r"^(?:the|my) (?P<np>[a-z]+(?: [a-z]+)?) (?:may|should|must|can|could|has to|needs to) (?:close|open|start|move|st"
-     r"op)s? "
-     r"(?:sooner|earlier|later|faster|slower)(?: ,| :| ;| \.)? (?P<v>let|have|make) it (?P<r>.+)$", r"\g<v> the \g<np> "
-     r"\g<r>"),
     (rf"(?: ,)?(?: and| then| but)+ (?:(?:turn |make )?it )?(?:back to )?(?:{COLOR}|normal|its (?:own|old|usual|normal)"
      rf" "
      r"colou?r) again (?:when|once|as soon as|from when) (?=(?:it|he|she|the|my) )", " until "),
     (r"\b(?:for|in|during|through) the (?:bit|part|moment|section|stretch|time) (?:where|when|in which) ", "while "),
-    (r"(?P<x>\b(?:two times|twice))(?: ,)? (?:the )?second (?:time|one|go|round) (?=from|at|when|after)", "again "),
+    (r"(?P<x>\b(?:fall|drop|roll|open|walk|move)s? )(?:two times|twice)(?: ,)? (?:the )?second (?:time|one|go|round) "
+     r"(?=from|at|when|after)", r"\g<x>again "),
     (r"(?P<x>\b(?:at|from|until|till|by|in|after) \d+(?:\.\d+)?)(?: ,)? (?:and )?(?:not|instead of|rather than) (?:at |"
      r"from "
      r"|in |after )?\d+(?:\.\d+)?$", r"\g<x> seconds"),
@@ -144,7 +145,8 @@ RULES: Rules = (
      rf")?(?:open|out) for (?P<d>{DURATION})", r"\g<d> after \g<x> is fully open"),
     (r"\bfor (?:a|one|the first|the) sec(?:ond)? (?:right )?at the (?:very )?(?:start|beginning)\b",
      "for the first second"),
-    (r"\b(?P<v>fall|falls|drop|drops|roll|rolls|walk|walks|tumble|tumbles|jump|jumps|hop|hops) (?:a second time|one "
+    (r"\b(?P<v>fall|falls|drop|drops|roll|rolls|walk|walks|tumble|tumbles|jump|jumps|hop|hops|come down|comes down) (?:"
+     r"a second time|one "
      r"more time|another time|once again|again(?= (?:at|from|when|once|as soon as|after) )) ", r"\g<v> once more "),
     (rf"\bwhen (?:it|the (?:clock|film|time|video|clip)|time) (?:gets|comes|reaches)(?: to| up to)? (?P<d>{POINT})",
      r"at \g<d>"),

@@ -103,7 +103,7 @@ def in_order(found: re.Match[str]) -> str:
     hues = re.findall(rf"\b(?:{HUES})\b", found["list"])
     noun = re.search(rf"\b(?:{HUES}) (?!{_NO_NOUN})([a-z]+)", found[0])
     noun = noun or re.search(
-        r"\b(?:the|all|my|two|three|four) ([a-z]+)s\b(?= (?:[a-z]+ )*?(?:fall|drop|come|tumble|in))", found[0]
+        r"\b(?:the|all|my|two|three|four) ([a-z]+)s\b(?= (?:[a-z:,]+ )*?(?:fall|drop|come|tumble|in))", found[0]
     )
     if noun is None or len(set(hues)) != len(hues) or re.search(rf"\b(?:{HUES})\b", found["head"]):
         return found[0]

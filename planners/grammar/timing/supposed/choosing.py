@@ -46,6 +46,10 @@ _BY_WORDS = {  # words of which one at least says that a wish is of a kind
     "return": r"back|return\w*|again|home",
     "longer": r"longer|keep\w*|until|till|whole|entire|full|on|continue\w*|all the|end",
 }
+_HIDES = re.compile(
+    r"\b(?:hid\w*|invisible|gone|vanish\w*|disappear\w*|appear\w*|seen?|saw|sight|visible|show\w*|lose|view|"
+    r"(?:leave|keep) (?:it|him|her|the [a-z ]+?) out)\b"
+)
 _EVIDENCE = {kind: re.compile(rf"(?<!\S)(?:{words})(?!\S)") for kind, words in _BY_WORDS.items()}
 
 
@@ -86,3 +90,8 @@ def _is_timed(offer: Offer, said: str) -> bool:
 def says(kind: str, words: str) -> bool:
     """Whether one of some words says that a wish is of a kind."""
     return _EVIDENCE[kind].search(words) is not None
+
+
+def says_plainly(kind: str, words: str) -> bool:
+    """As `says`, and that something is not to be seen only by words for seeing: "keep the bed still" hides nothing."""
+    return _HIDES.search(words) is not None if kind == "hide" else says(kind, words)

@@ -39,7 +39,7 @@ def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
     known = classifier().kinds_of(said)
     if still:
         rest = 1.0 - sum(chance for kind, chance in known if kind in COURSES)
-        known = [(kind, chance / rest) for kind, chance in known if kind not in COURSES]
+        known = [(kind, chance / rest) for kind, chance in known if kind not in COURSES and chance >= LEAST]
     found = [(kind, chance) for kind, chance in known[:MOST] if chance >= LEAST]
     return [] if found and found[0][0] == NO_WISH else found
 

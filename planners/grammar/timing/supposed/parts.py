@@ -56,6 +56,7 @@ _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
 )
 _HALF = re.compile(r"\b(first|second|last|latter|other) half\b")
 _UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
+_LASTS = re.compile(r"^(?:and )?(?:tak(?:es?|ing)|last(?:s|ing)?)\b")  # how long it is said to take
 _HALFWAY = re.compile(
     r"^(?:when |once |at |as soon as )?(?:(?P<who>.+?) (?:is|has (?:gone|got)|gets) )?"
     r"(?:half ?way|midway|half the way|in the middle of|(?:in )?mid (?:fall|air|flight|swing|walk|roll|turn))"
@@ -87,6 +88,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         phrase = " ".join(words[start:stop]).strip(" ,.;:")
         if tag == "from" and _UNTIL.match(phrase):
             tag = "to"
+        if tag in ("from", "to") and _LASTS.match(phrase):
+            tag = "for"
         phrase = _LEADING.sub("", phrase)
         if (delay := _DELAY.match(phrase)) is not None and (seconds := seconds_of(delay["delay"])) is not None:
             phrase, moment = phrase[delay.end() :], replace(moment, start=seconds)

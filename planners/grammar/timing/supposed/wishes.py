@@ -152,11 +152,16 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
 }
 _THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
 _BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")
+_BY_HOW_MUCH = re.compile(r"\b(?:earlier|sooner|later)\b")
 _BACK_IN = re.compile(r"\bback(?: in)?\b")
 _NEGATED = ("hide", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")
 _WISHED = re.compile(r" , (?:and |but )?(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b")
+_TWO_ORDERS = re.compile(  # "open it, and once it is open paint it red"
+    r"^(?:open|close|shut|push|pull|move|slide|roll|lift|spin|turn|stop|start|freeze|hide|remove|delete) \|.*"
+    r"(?:,|\band\b|\bthen\b) ?(?:paint|make|turn|colou?r|hide|show|spin|move|stop|open|close) (?:it|him|her|them|\|)"
+)
 _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
 
 
@@ -175,13 +180,15 @@ def _says_no_more(kind: str, said: Said, left: str) -> bool:
         left = f"{left} {then['rest']}"  # "let it stand for a second, then shut it"
     if kind == "move" and len(said.things) > 1:
         left = _BACK_TO.sub(" ", left)
+    if kind in ("open", "close") and isinstance(said.moment.start, float):
+        left = _BY_HOW_MUCH.sub(" ", left)  # "a bit sooner, at 2 s"
     if kind == "begin":
         left = HELD_BACK.sub(" ", left)
         if is_opened(said.things[0]):
             left = _BACK_IN.sub(" ", left)  # the beginning of its closing
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY):
         return False
-    if _WISHED.search(f"{said.text} {said.idle}"):
+    if _WISHED.search(f"{said.text} {said.idle}") or _TWO_ORDERS.search(left):
         return False
     if kind not in _NEGATED and _NOT.search(_without(left, _DISLIKES, _TOO_FAST, _TOO_SLOW, _NO_MORE)):
         return kind == "begin" and _LATER.search(left) is not None  # "not at once, it waits"
@@ -263,7 +270,7 @@ def _remove(said: Said) -> Iterator[Wish]:
 
 
 def _move(said: Said) -> Iterator[Wish]:
-    if len(said.things) == 2 and _TOWARDS.search(said.beside.split("|")[1]):
+    if len(said.things) == 2 and _TOWARDS.search(said.beside.split("|")[-2]):
         yield Wish(f"move {said.things[0]} to {said.things[1]}", said.moment, things=2)
     length = _LENGTH.search(said.text)
     ways = {_WAYS[word] for word in said.beside.split() if word in _WAYS}
@@ -463,7 +470,9 @@ def _duration(said: Said) -> Iterator[Wish]:
 
 # -- rests -----------------------------------------------------------------------------------------------------------
 
-_STAYS = re.compile(r"\b(?:stay|remain|keep|leave|sit|stand|rest)(?:s|ing)?\b.* (?:on|in|at|by|where|put)\b")
+_STAYS = re.compile(
+    r"\b(?:stay|remain|keep|leave|sit|stand|rest)(?:s|ing)?\b.* (?:on|in|at|by|where|put)(?! the (?:floor|ground))\b"
+)
 _KEPT = re.compile(r"\b(?:stay|remain|keep|leave|not|never)\b")
 _RESTS = re.compile(
     r"\b(?:not|never|no) (?:ever )?(?:(?:let|have|want) (?:[a-z]+ ){1,3}?)?"
