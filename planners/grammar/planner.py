@@ -18,6 +18,7 @@ from ...gaussians.language.query.nested import queries, with_queries
 from ...gaussians.language.query.query import Query
 from ...gaussians.world import kinds
 from ...tools.operation import EditOp
+from ...tools.registry import OPS
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
 from .lighting.splitting import Part, may_be_light, parts_of
@@ -210,7 +211,8 @@ def _timed(reader: TimeReader, cleaned: str, previous: str | None) -> _Outcome:
 
 def _lacks(scene: Observation, ops: Sequence[Fields]) -> bool:
     """Whether a scene has nothing of what operations are about: "let the fan go the other way" is about no "fan go"."""
-    return any(scene.lacks(query) for op in ops for query in _targets(op) if not query.last and query.text)
+    timed = any(op.get("when") is not None or OPS[op["op"]].makes_motion for op in ops)
+    return timed and any(scene.lacks(query) for op in ops for query in _targets(op) if not query.last and query.text)
 
 
 def _names_things(ops: Sequence[Fields], previous: str | None) -> bool:

@@ -348,7 +348,6 @@ def test_operations_are_those_of_the_likeliest_kind(text: str) -> None:
     "text",
     [
         "it is the blue book who must fall the first, before the red and the green",  # paints none
-        "hide the bed while the robot is walking towards it",  # no state tells that
         "let the ball roll to the wall in 2 s, I want it to explode there",
         "when the robot has finished the first part, I want him to turn red for a second",
     ],

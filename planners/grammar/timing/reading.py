@@ -54,6 +54,7 @@ Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain comm
 Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
 
 
+_HIDDEN = 0.6  # probability from which something is to be hidden though no word says so
 _SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 
 
@@ -144,9 +145,7 @@ class TimeReader:
             readings.insert(0, by_marks)
 
         def offered(kinds: Sequence[tuple[str, float]]) -> list[Offer]:
-            told = [
-                (kind, p) for kind, p in kinds if kind != "hide" or kind == kinds[0][0] or says_plainly(kind, words)
-            ]
+            told = [(kind, p) for kind, p in kinds if kind != "hide" or p >= _HIDDEN or says_plainly(kind, words)]
             return [Offer(kind, p, next(self._wished(kind, p, readings, wording), ())) for kind, p in told]
 
         offers = offered(kinds)
@@ -164,7 +163,7 @@ class TimeReader:
         Args:
             least: probability from which a kind counts.
         """
-        if len(ops) != 1 or (ops[0].get("when") or When()).gradual:
+        if len(ops) != 1 or ops[0]["op"] not in _NO_MOTION or (ops[0].get("when") or When()).gradual:
             return False
         if ops[0]["op"] not in _LOOKS_OR_THINGS and not moments.TIMED.search(cleaned):
             return False
@@ -629,6 +628,7 @@ _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
 _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
 _PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
 _LOOKS = ("opacity", "recolor", "restyle")
+_NO_MOTION = ("opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate")
 _LOOKS_OR_THINGS = ("insert", "recolor")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 _LONGEST = 45  # words of an instruction with one wish
