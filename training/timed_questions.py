@@ -2,8 +2,9 @@
 
     python -m scenewright.training.timed_questions
 
-Reads `timed_questions.tsv` (ten writers knew the kinds and no code), tells how often the questions of a writer are
-told right by what the others wrote, and writes the weights of `planners/questions/reading/time/supposed/`.
+Reads `timed_questions.tsv` (writers 1 to 9 and 12 knew the kinds and asked about any films, the others about six
+rooms), tells how often the questions of a writer are told right by what the others wrote, and writes the weights of
+`planners/questions/reading/time/supposed/`.
 """
 
 from __future__ import annotations

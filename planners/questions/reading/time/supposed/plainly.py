@@ -28,7 +28,7 @@ _LONGEST = 40  # words
 _DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|your|his|her|its|their|all|both|any|every)\b")
 _PLURAL = re.compile(r"^(?:all |both )?(?:of )?(?:the |these |those |my |our )?")
 _IN_UNIT = re.compile(rf"\b(?:{UNIT}|rpm|revs? (?:a|per) minute)\b")
-_HARD = (HARD - {"one"}) | bag("after before further until while")
+_HARD = (HARD - {"one"}) | bag("after before further until while backwards backward reverse")
 
 
 @dataclass(frozen=True)
