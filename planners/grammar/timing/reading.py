@@ -165,10 +165,11 @@ class TimeReader:
         """
         if len(ops) != 1 or ops[0]["op"] not in _NO_MOTION or (ops[0].get("when") or When()).gradual:
             return False
-        if ops[0]["op"] not in _LOOKS_OR_THINGS and not moments.TIMED.search(cleaned):
-            return False
-        kinds = likely(cleaned)
-        return bool(kinds) and kinds[0][1] >= least and not is_done_by(kinds[0][0], str(ops[0]["op"]))
+        kind, chance = next(iter(likely(cleaned)), ("", 0.0))
+        told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
+        if told is None and not (ops[0]["op"] in _LOOKS_OR_THINGS and kind in _PACED):
+            return False  # "three more blocks, all green" are put in
+        return chance >= least and not is_done_by(kind, str(ops[0]["op"]))
 
     def is_still(self, ops: Sequence[Fields]) -> bool:
         """Whether operations change how something moves that stands still in the scene."""
@@ -629,6 +630,8 @@ _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of o
 _PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
 _LOOKS = ("opacity", "recolor", "restyle")
 _NO_MOTION = ("opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate")
+_THROUGHOUT = re.compile(r"\b(?:throughout|all the (?:way|time)|(?:whole|entire) (?:film|time|clip|video))\b")
+_PACED = (*COURSES, "amount")
 _LOOKS_OR_THINGS = ("insert", "recolor")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 _LONGEST = 45  # words of an instruction with one wish
