@@ -293,18 +293,21 @@ class Session:
     def moves(self, query: Query) -> bool | None:
         """Whether any of what a query names moves at some time; None in a scene without motion, or if it names nothing
         there. Embeds the scene if it is not embedded yet."""
-        if self.scene.motion is None:
-            return None
-        self.embed()
-        return any_moves(self.scene, self._context(self.last).resolve(self.scene, query))
+        found = self._in_motion(query)
+        return None if found is None else any_moves(self.scene, found)
 
     def lacks(self, query: Query) -> bool:
         """Whether a scene with motion has nothing that a query names; no of others. Embeds the scene if it is not
         embedded yet."""
+        found = self._in_motion(query)
+        return found is not None and found.verdict == "absent"
+
+    def _in_motion(self, query: Query) -> Selection | None:
+        """What a query names in a scene with motion; None in others, which are not embedded for that."""
         if self.scene.motion is None:
-            return False
+            return None
         self.embed()
-        return self._context(self.last).resolve(self.scene, query).verdict == "absent"
+        return self._context(self.last).resolve(self.scene, query)
 
     @property
     def references(self) -> tuple[str, ...]:

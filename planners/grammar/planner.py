@@ -81,8 +81,8 @@ class GrammarPlanner:
     name = NAME
 
     def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
-        """The plan for an instruction; see `Planner.plan`. The scene is only asked what moves in it, where that
-        tells which of several wishes is meant.
+        """The plan for an instruction; see `Planner.plan`. The scene is only asked what moves in it and what it
+        lacks, where that tells which of several wishes is meant.
 
         Raises:
             UserError: the text is too long.

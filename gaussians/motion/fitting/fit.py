@@ -202,13 +202,10 @@ class _Film:
         if left is not None and single:
             left /= 1 + SINGLE
         more = None if settings.steps is None else settings.steps - found.steps
-        small = Footage.of(
-            [reduced(s, self._pixels) for s in self._footage.shots], [s.time for s in self._footage.shots]
-        )
         turns = list(SHOWN) if bodies else []
         while (share := _share(joint, more, left)) < 1:
             if turns and share >= turns[0]:
-                shown_later(labelled, bodies, small, self._rng)
+                shown_later(labelled, bodies, self._reduced, self._rng)
                 turns.pop(0)
             self._tell(joint.step(share), found.steps + joint.steps, START + (1 - START) * share, len(labelled))
         scene, steps = self._scene(labelled, bodies, None), found.steps + joint.steps
@@ -230,6 +227,12 @@ class _Film:
         small = sketch.shots[:STEREO_FRAMES]
         most = sum(shot.photo.shape[0] * shot.photo.shape[1] for shot in small) // PIXELS
         return start_cloud(photos.shots, photos, min(settings.max_gaussians, most), self._rng, self._pixels)
+
+    @cached_property
+    def _reduced(self) -> Footage:
+        """All frames, reduced as those of the search are."""
+        shots = [reduced(shot, self._pixels) for shot in self._footage.shots]
+        return Footage.of(shots, [shot.time for shot in shots])
 
     def _before_standing(self) -> _Found:
         """What moves before cameras that stand."""

@@ -53,7 +53,6 @@ from .whens import closes_later, inverse, of_one_movement, settled, when_of
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
 Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
 
-
 _HIDDEN = 0.6  # probability from which something is to be hidden though no word says so
 _SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 
@@ -165,9 +164,11 @@ class TimeReader:
         """
         if len(ops) != 1 or ops[0]["op"] not in _NO_MOTION or (ops[0].get("when") or When()).gradual:
             return False
-        kind, chance = next(iter(likely(cleaned)), ("", 0.0))
         told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
-        if told is None and not (ops[0]["op"] in _LOOKS_OR_THINGS and kind in _PACED):
+        if told is None and ops[0]["op"] not in _LOOKS_OR_THINGS:
+            return False
+        kind, chance = next(iter(likely(cleaned)), ("", 0.0))
+        if told is None and kind not in _PACED:
             return False  # "three more blocks, all green" are put in
         return chance >= least and not is_done_by(kind, str(ops[0]["op"]))
 

@@ -20,8 +20,8 @@ COURSES = (  # kinds that are about how what is there moves by itself
 )  # fmt: skip
 _DONE_BY = {  # the operations by which a wish of a kind is done; the other kinds are about how something moves
     "recolor": ("recolor", "restyle"), "hide": ("opacity", "delete"), "remove": ("delete", "opacity"),
-    "move": ("move", "follow", "orbit", "rotate", "pace", "order", "delete"), "spin": ("spin", "orbit", "rotate", "pace"
-    ""),
+    "move": ("move", "follow", "orbit", "rotate", "pace", "order", "delete"),
+    "spin": ("spin", "orbit", "rotate", "pace"),
     "amount": ("articulate", "pace", "move"), "open": ("articulate", "pace"), "close": ("articulate", "pace"),
 }  # fmt: skip
 _COURSED_BY = ("pace", "articulate", "order", "spin", "move")

@@ -243,7 +243,7 @@ def _recolor(said: Said) -> Iterator[Wish]:
         return
     hue = " ".join(takewhile(hues().__contains__, words[first:]))  # "navy blue"
     if set(words) & hues() <= set(hue.split()):
-        shown = re.search(rf"\b(?P<as>as (?:an? )?)?(?P<hue>(?:(?:{_SHADE}) )?{hue})\b", said.text)
+        shown = re.search(rf"\b(?:as (?:an? )?)?(?P<hue>(?:(?:{_SHADE}) )?{hue})\b", said.text)
         named = hue if shown is None else shown["hue"]
         holds = hue if shown is None else shown[0]
         yield Wish(Command(kind="look", text=f"make {said.things[0]} {named}"), said.moment, holds=holds)
@@ -302,14 +302,18 @@ _OTHER_WAY = re.compile(
 _STANDS_ON = re.compile(r"\| (?:\w+ ){0,3}(?:on|in|by|near|at|behind|under|beside) \|")  # "it spins on the table"
 
 
+def _with_its_place(said: Said) -> int:
+    """How many names are those of a thing and of what it stands on or beside meanwhile."""
+    return 1 if _STANDS_ON.search(said.beside) is None else 2
+
+
 def _spin(said: Said) -> Iterator[Wish]:
     rate, times, full = (p.search(said.beside) for p in (_RATE, _TIMES, _ROUND))
     how, moment = ("", "") if rate is None else (rate[0], rate[0]), said.moment
     if rate is None and (often := times or full) is not None:
         how = ("once" if often is full or often[0] in _ONCE else often[0], often[0])
         moment = _to_the_end(moment)
-    where = 1 if _STANDS_ON.search(said.beside) is None else 2
-    yield Wish(f"spin {said.things[0]} {how[0]}".strip(), moment, where, how[1])
+    yield Wish(f"spin {said.things[0]} {how[0]}".strip(), moment, _with_its_place(said), how[1])
 
 
 def _to_the_end(moment: Moment) -> Moment:
@@ -494,8 +498,7 @@ def _pause(said: Said) -> Iterator[Wish]:
         return
     if moment.lasting is not None or moment.stop is not None:
         if moment.start is not None or moment.stop is not None or said.event:
-            where = 1 if _STANDS_ON.search(said.beside) is None else 2
-            yield Wish(rest, replace(moment, taken=False, slowly=False), where)
+            yield Wish(rest, replace(moment, taken=False, slowly=False), _with_its_place(said))
     elif said.event or moment.start is not None:
         for seconds, words in _durations(said.text):
             yield Wish(rest, replace(moment, lasting=seconds), holds=words)
