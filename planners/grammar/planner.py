@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from pydantic import BaseModel
+
 from ...gaussians.errors import UserError
 from ...gaussians.language.query.nested import queries, with_queries
 from ...gaussians.language.query.query import Query
@@ -121,7 +123,7 @@ _REQUESTING = ("can", "could", "would", "will", "may", "might", "should", "shall
 
 
 def _targets(fields: dict[str, Any]) -> list[Query]:
-    return [q for _, q in queries(tuple(v for v in fields.values() if isinstance(v, Query)))]
+    return [q for _, q in queries(tuple(v for v in fields.values() if isinstance(v, BaseModel)))]
 
 
 def _is_known_name(name: str) -> bool:
@@ -165,7 +167,7 @@ def _understand(cleaned: str, previous: str | None, scene: Observation | None = 
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):
-        return _timeless(cleaned, previous)
+        return _wished(cleaned, previous)
     reader = TimeReader(_operations, _thing, scene.moves if scene is not None else None)
     try:
         outcome = _timed(reader, cleaned, previous)
@@ -193,6 +195,22 @@ def _understand(cleaned: str, previous: str | None, scene: Observation | None = 
     if not _names_things(outcome.ops, previous) and (supposed := reader.supposed(cleaned)):
         return _guessed(supposed) if _names_things(supposed, previous) else outcome
     return outcome
+
+
+def _wished(cleaned: str, previous: str | None) -> _Outcome:
+    """As `_timeless`; where no rule reads it, what it most likely wishes to look different or to be gone.
+
+    Raises:
+        Refusal: as `_timeless`.
+    """
+    try:
+        return _timeless(cleaned, previous)
+    except Refusal as refusal:
+        if refusal.firm or refusal.verdict in ("unsafe", "impossible"):
+            raise
+        if (wished := TimeReader(_operations, _thing).wished(cleaned)) is None:
+            raise
+        return _guessed(wished)
 
 
 def _timed(reader: TimeReader, cleaned: str, previous: str | None) -> _Outcome:

@@ -46,7 +46,8 @@ from .supposed.kinds import COURSES, is_done_by, likely, marked
 from .supposed.names import with_nouns
 from .supposed.parts import TIMES, divided, leaves_out
 from .supposed.said import Said, said_of
-from .supposed.wishes import wishes
+from .supposed.wished import is_wished
+from .supposed.wishes import SURE, wishes
 from .verbs import SENSES, any_of, forms, has_form
 from .whens import closes_later, inverse, of_one_movement, settled, when_of
 
@@ -154,6 +155,15 @@ class TimeReader:
             if found is not None:
                 return found  # else it is told that the thing does not move
         return chosen(offers, words, least)
+
+    def wished(self, cleaned: str) -> tuple[Fields, ...] | None:
+        """The operations of a wish for another look of something, or that it be gone, at all times; None if that is not
+        most likely asked for."""
+        if not is_wished(" ".join(word.text for word in split(cleaned.lower()))):
+            return None
+        found = self.supposed(cleaned, SURE)
+        once = found is not None and all(op["op"] in _WISHED and op.get("when") is None for op in found)
+        return found if once else None
 
     def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields], least: float = _SAID_SO) -> bool:
         """Whether operations of a time, or of a look or a new thing, begin with one that no wish of the likeliest kind
@@ -628,6 +638,7 @@ _HALF_ITS_WAY = re.compile(r"(?:at )?(?:half ?way|midway)")
 _CLAUSE = re.compile(r"\b(?:when|whenever|once|while|until|till|before|after|as soon as|as) (?:the|that|this) ")
 _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
 _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
+_WISHED = ("recolor", "delete")
 _PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
 _LOOKS = ("opacity", "recolor", "restyle")
 _NO_MOTION = ("opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from pydantic import BaseModel
 
@@ -26,6 +27,7 @@ from ..verbs import SENSES, has_form
 from .kinds import marked
 from .names import named as names_in
 from .names import with_moving
+from .orders import listed
 from .said import Said
 
 TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
@@ -39,16 +41,20 @@ _BARE = re.compile(
     r"say|like|mark|starting|beginning|finished|done|,) )*(?P<value>.+?)(?: (?:mark|on|onwards?|already|sharp|flat|in|"
     r"long))*$"
 )
-_AS = re.compile(r"^(?:all the while|the whole time(?: that)?|for the time(?: that)?) (?=\w)")
+_AS = re.compile(
+    r"^(?:all the while|the whole time(?: that)?|(?:for|in|during) (?:the|that) (?:time|bit|part|stretch|moments?|"
+    r"seconds|period|phase)(?: (?:that|where|when|in which|during which))?) (?=\w)"
+)
+_GERUND = re.compile(r"^(?P<word>after|once|when|while|before|until) (?P<doing>[a-z]+ing)(?= |$)")
 _WHERE = re.compile(r"^(?:at )?(?:the (?:point|place|spot|corner) )?(?:where|upon) (?=\w)")
-_WHERE_IN = re.compile(r"\bwhere\b(?= (?:it|he|she|they|the) )")
+_WHERE_IN = re.compile(r"(?<!\bto )(?<!\bnear )\bwhere\b(?= (?:it|he|she|they|the) )")
 _ALL = re.compile(
     r"\b(?:whole|entire|throughout|all (?:the way )?through|over the length of|all the time|always|"
     r"(?:beginning|start) to (?:the )?(?:end|finish))\b"
 )
 _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     (re.compile(r"\b(?:middle|half ?way|half time|midway|half the)\b"), "middle"),
-    (re.compile(r"\b(?:end|finish|close|last frame|over|finale)\b"), "end"),
+    (re.compile(r"\b(?:end|ends|finish|close|last frame|over|finale)\b"), "end"),
     (
         re.compile(r"\b(?:beginning|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b"),
         0.0,
@@ -65,11 +71,15 @@ _HALFWAY = re.compile(
 _ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| in| point)*$")
 _FILM = re.compile(r"\b(?:film|clip|video|movie|scene|shot|time|animation|footage|sequence)\b")
 _BEFORE = re.compile(r"\b(?:not|never) (?:before|until|till|unless|if|when|while) \w+ \w+")  # that waits for something
+_BESIDE = re.compile(  # "set off with the robot", "at the same time as the top one"
+    r"^(?:at )?(?:just |right )?(?:the )?(?:same (?:time|moment) as|together with|along with|alongside|with) "
+    r"(?P<who>(?:the|my|our|that) [a-z ]+?)(?: (?:does|moves|starts|sets off|opens|goes))?$"
+)
 _UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
 _AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
 _ANOTHER = re.compile(r"^(?:, )?(?:and |but )?then\b|\botherwise\b")
-_AS_IT_WAS = re.compile(r"\b(?:again|back|before|usual|normal|was)\b")
+_AS_IT_WAS = re.compile(r"\b(?:again|back|before|usual|normal|was|returns?|own|original|used to)\b")
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 
 
@@ -81,7 +91,9 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         spans: the marks in them.
         thing: reads a name.
     """
-    moment, happening, spans = Moment(), None, [_with_half(words, span) for span in spans]
+    moment, spans = Moment(), [_with_half(words, span) for span in spans]
+    happening: Happening | None = None
+    delayed = False
     for tag, start, stop in spans:
         if tag not in TIMES:
             continue
@@ -92,24 +104,28 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
             tag = "for"
         phrase = _LEADING.sub("", phrase)
         if (delay := _DELAY.match(phrase)) is not None and (seconds := seconds_of(delay["delay"])) is not None:
-            phrase, moment = phrase[delay.end() :], replace(moment, start=seconds)
-        found, event = _moment(tag, phrase), None
-        if found is None:
-            event = _event(tag, phrase, thing)
-            found = _named_moment(tag, phrase, thing) if event is None else None
-        if found is not None and (both := _joined(moment, found)) is not None:
-            moment = both
-        elif event is not None and happening is None:
-            happening = event
-        else:
+            phrase, moment, delayed = phrase[delay.end() :], replace(moment, start=seconds), True
+        if (told := _told(tag, phrase, thing)) is None:
             return None
+        found, event = told
+        if found is not None:
+            if (both := _joined(moment, found)) is None:
+                return None
+            moment = both
+        if event is not None:
+            happening = event if happening is None else happening.ended(event) or event.ended(happening)
+            if happening is None:
+                return None
     if any(tag in _IDLE and _loses(tag, words[start:stop]) for tag, start, stop in spans):
         return None
     left = {at for tag, start, stop in spans if tag in TIMES or tag in _IDLE for at in range(start, stop)}
     text = " ".join(word for at, word in enumerate(words) if at not in left).strip(" ,.;:!")
     text = with_moving(re.sub(r"(?: [,.;:!])+(?= [,.;:!])", "", text))
+    amounts = {" ".join(words[start:stop]).strip(" ,.") for tag, start, stop in spans if tag == "by"}
     if happening is None:
-        text, moment, happening = _with_unmarked(text, moment, thing)
+        text, moment, happening = _with_unmarked(text, moment, thing, amounts)
+    elif _begins(happening) and isinstance(moment.start, float) and not delayed:
+        happening = None  # "after it has been opened, from 3.5 s on"
     if happening is not None:
         text, words = _with_goal(text, words, spans, happening, thing)
     named = [(tag, _name(words, start, stop, thing)) for tag, start, stop in sorted(spans, key=lambda s: s[1])]
@@ -121,7 +137,45 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         things = names_in(happening.said, thing)[:1]
     goals = tuple(name for name in goals if name not in things)
     idle = " ".join(" ".join(words[start:stop]) for tag, start, stop in spans if tag in _IDLE)
-    return Said(text, (*things, *goals), moment, happening is not None, thing, goals, idle), happening
+    marks = {at for _, start, stop in spans for at in range(start, stop)}
+    return Said(
+        text, (*things, *goals), moment, happening is not None, thing, goals, idle,
+        listed(words, spans, thing), " ".join(word for at, word in enumerate(words) if at not in marks),
+    ), happening  # fmt: skip
+
+
+def _told(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, Happening | None] | None:
+    """The time in numbers and what happens, either of which words with a tag may tell; None if they tell neither."""
+    if (found := _moment(tag, phrase)) is not None:
+        return found, None
+    if (event := _event(tag, phrase, thing)) is not None:
+        return None, event
+    if (found := _named_moment(tag, phrase, thing)) is not None:
+        return found, None
+    return _from_until(phrase, thing) if tag in ("in", "from") else None
+
+
+def _from_until(phrase: str, thing: Thing) -> tuple[Moment | None, Happening | None] | None:
+    """As `_told`, of words with two ends: "from halfway through till the end", "from when it turns until it stops"."""
+    begun = re.sub(r"^(?:from|between|in between) ", "", phrase)
+    for joint in _JOINTS.finditer(begun):
+        start = _told("from", begun[: joint.start()].strip(" ,"), thing)
+        stop = _told("to", begun[joint.end() :].strip(" ,"), thing)
+        if start is None or stop is None:
+            continue
+        (begins, happens), (ends, over) = start, stop
+        if begins is None and ends is None and happens is not None and over is not None:
+            both = happens.ended(over)
+            return None if both is None else (None, both)
+        if begins is not None and over is not None:
+            return begins, replace(over, from_start=True)
+        if happens is None and begins is not None and ends is not None:
+            both_ends = _joined(begins, ends)
+            return None if both_ends is None else (both_ends, None)
+    return None
+
+
+_JOINTS = re.compile(r"(?: ,)? (?:until|till|til|to|and|up to|through|-)(?= )")
 
 
 def _with_goal(
@@ -159,9 +213,21 @@ def _loses(tag: str, words: Sequence[str]) -> bool:
     return TIMED.search(said) is not None or any(found["word"] != "as" for found in CONJUNCTION.finditer(said))
 
 
-def _with_unmarked(text: str, moment: Moment, thing: Thing) -> tuple[str, Moment, Happening | None]:
-    """A text without times that no mark tells, and these beside those that marks tell."""
+def _begins(happening: Happening) -> bool:
+    return happening.during.part in ("from", "after") and happening.until is None
+
+
+def _with_unmarked(
+    text: str, moment: Moment, thing: Thing, amounts: set[str]
+) -> tuple[str, Moment, Happening | None]:
+    """A text without times that no mark tells, and these beside those that marks tell.
+
+    Args:
+        amounts: words that tell how much, and no time: "delay it by one second".
+    """
     rest, found = cut(text)
+    if amounts & set(found.said):
+        return text, moment, None
     if found != Moment() and (both := _joined(moment, found)) is not None:
         text, moment = rest, both
     rest, happening = next(happenings_in(_WHERE_IN.sub("when", text), thing), (text, None))
@@ -188,10 +254,16 @@ def _things(named: Sequence[tuple[str, str]], tag: str, thing: Thing) -> tuple[s
 
 
 def _joined(one: Moment, other: Moment) -> Moment | None:
-    """Both times as one; None if both tell the same part of it."""
+    """Both times as one; None if both tell the same part of it, each another. A number tells more than a name: "at the
+    end, from 4 s on"."""
     for key in ("start", "stop", "lasting"):
-        if getattr(one, key) is not None and getattr(other, key) is not None:
+        told = [getattr(moment, key) for moment in (one, other)]
+        if None in told or told[0] == told[1]:
+            continue
+        if sum(isinstance(value, str) for value in told) != 1:
             return None
+        ends: dict[str, Any] = {key: None}
+        one, other = (replace(one, **ends), other) if isinstance(told[0], str) else (one, replace(other, **ends))
     return Moment(
         start=other.start if one.start is None else one.start,
         stop=other.stop if one.stop is None else one.stop,
@@ -209,6 +281,8 @@ def _moment(tag: str, phrase: str) -> Moment | None:
     phrase = _WHOLE_SECONDS.sub("", phrase)
     rest, moment = cut(phrase)
     if moment != Moment() and not any(is_word(word) or is_known(word) for word in rest.strip(" ,.").split()):
+        if tag == "to" and moment.start is not None and moment.stop is None and moment.lasting is None:
+            moment = replace(moment, start=None, stop=moment.start)  # "only gets there at five seconds"
         return moment
     if (half := _HALF.search(phrase)) is not None:
         first = half[1] == "first"
@@ -247,6 +321,7 @@ _EVEN_SO = ("until", "till", "after", "by", "before")
 
 def _seconds(said: str) -> float | None:
     """Seconds that a number names, with or without its unit."""
+    said = re.sub(r"^another (?=second)", "one ", said)
     said = re.sub(r"^(?:second|sec|t|time)\b ?=? ?(?=\w)", "", re.sub(r"\b(?:more|another|extra|further) ", "", said))
     found = seconds_of(said)
     if found is None:
@@ -267,7 +342,9 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
         of = names_in(half["who"] or half["what"], thing)[:1]
         whose = thing(of[0]) if of and (half["who"] or half["way"].startswith((" through", " of"))) else None
         return Happening(During(state="halfway", of=whose or IT, part="until" if tag == "to" else "from"), phrase)
-    phrase = _WHERE.sub("when ", _AS.sub("while ", phrase))
+    phrase = _GERUND.sub(r"\g<word> it is \g<doing>", _WHERE.sub("when ", _AS.sub("while ", phrase)))
+    if (beside := _BESIDE.match(phrase)) is not None and (query := thing(beside["who"])) is not None:
+        return Happening(During(state="moving", of=query, part="until" if tag == "to" else "from"), phrase)
     for said in (phrase, f"{TIMES[tag]} {phrase}"):
         for found in CONJUNCTION.finditer(said):
             if found.start() == 0 and (during := clause_of(found["word"], said[found.end() :].strip(" ,."), thing)):

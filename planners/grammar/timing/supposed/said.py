@@ -44,6 +44,8 @@ class Said:
         thing: reads a name.
         idle: words that ask for nothing, where marks tell.
         goals: those of the names to which something goes, or beside which it is, where marks tell.
+        listed: things in the order in which they are to begin, where marks tell; none if no order is told.
+        unmarked: the words without a mark.
     """
 
     text: str
@@ -53,6 +55,8 @@ class Said:
     thing: Thing
     goals: tuple[str, ...] = ()
     idle: str = ""
+    listed: tuple[Query, ...] = ()
+    unmarked: str = ""
 
     @property
     def told(self) -> bool:

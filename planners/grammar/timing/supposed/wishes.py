@@ -25,6 +25,7 @@ from ..whens import HELD_BACK
 from .choosing import says
 from .kinds import classifier
 from .names import MOVING
+from .orders import in_order
 from .said import Said
 
 SURE = 0.85  # probability from which a change without a time is supposed, or an unknown verb is left aside
@@ -59,6 +60,7 @@ class Wish:
         holds: words of the instruction, other than names, that stand in it.
         spent: what the time in numbers tells that is no time of it.
         timeless: whether what happens at its time goes without saying.
+        marked: whether all that has a mark stands in it.
     """
 
     command: str | Command
@@ -67,6 +69,7 @@ class Wish:
     holds: str = ""
     spent: End | None = None
     timeless: bool = False
+    marked: bool = False
 
 
 def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
@@ -117,7 +120,7 @@ def _is_whole(wish: Wish, said: Said, left: str) -> bool:
     """Whether nothing that the instruction names is among the words that are `left`, and no time is lost."""
     if _times(said.moment) - _times(wish.moment) - {wish.spent}:
         return False
-    if len(said.things) > wish.things or _TIMES_LEFT.search(left):
+    if (len(said.things) > wish.things and not wish.marked) or _TIMES_LEFT.search(left):
         return False
     return not any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in hues() for w in left.split())
 
@@ -128,6 +131,8 @@ def _times(moment: Moment) -> set[End | None]:
 
 def _left(wish: Wish, said: Said) -> str:
     """The words that do not stand in a command."""
+    if wish.marked:
+        return said.unmarked
     left, hue = said.beside, wish.holds.split(" ")[-1]
     if wish.holds:
         left = re.sub(rf"(?<!\S){re.escape(wish.holds)}(?!\S)", " ", left, count=1)
@@ -256,7 +261,13 @@ def _hide(said: Said) -> Iterator[Wish]:
     if isinstance(said.moment.start, float) and said.moment.stop is None and _ENTERS_LATER.search(said.text):
         yield Wish(f"hide {said.things[0]}", replace(said.moment, start=None, stop=said.moment.start))
         return
+    if isinstance(said.moment.stop, float) and not said.event and _COMES_UP.search(said.text):
+        yield Wish(f"hide {said.things[0]}", said.moment)  # "gone at first, then let it appear at 2 s"
+        return
     yield Wish(f"{'show' if _is_to_be_seen(said) else 'hide'} {said.things[0]}", said.moment)
+
+
+_COMES_UP = re.compile(r"\b(?:appears?|(?:shows?|comes?|pops?|turns?) (?:back|up|in)|back|reveals?|revealed)\b")
 
 
 def _is_to_be_seen(said: Said) -> bool:
@@ -264,9 +275,13 @@ def _is_to_be_seen(said: Said) -> bool:
     return _APPEARS.search(said.text) is not None and _NOT.search(said.text) is None
 
 
+_OUT_OF = re.compile(r"\| (?:right |well |clean )?(?:out of|from|off) \|$")
+
+
 def _remove(said: Said) -> Iterator[Wish]:
     if not said.told:
-        yield Wish(Command(kind="look", text=f"remove {said.things[0]}"), said.moment)
+        things = 1 + (_OUT_OF.search(said.beside.strip(" ,.!")) is not None)
+        yield Wish(Command(kind="look", text=f"remove {said.things[0]}"), said.moment, things)
 
 
 def _move(said: Said) -> Iterator[Wish]:
@@ -289,8 +304,8 @@ _BACKWARDS = re.compile(
     r"\b(?:back|backwards?|revers\w+|in reverse|rewind|rewound|opposite|undo\w*|invert\w*|flip\w*|contrary)\b"
 )
 _RATE = re.compile(
-    r"\b(?:once|twice|(?:[a-z]+|\d+(?:\.\d+)?) (?:times|turns?|rounds?|rotations?|revolutions?)) "
-    r"(?:a|per|every|each) second\b"
+    r"\b(?:once|twice|(?:[a-z]+|\d+(?:\.\d+)?) (?:full |whole |complete )?(?:times|turns?|rounds?|rotations?|"
+    r"revolutions?|spins?|twirls?|circles?)) (?:a|per|every|each) (?:(?:[a-z]+|\d+(?:\.\d+)?) )?seconds?\b"
 )
 _IN_REVERSE = re.compile(r"\b(?:backwards?|in reverse|rewind|rewound)\b")
 _OTHER_WAY = re.compile(
@@ -346,7 +361,15 @@ def _repeat(said: Said) -> Iterator[Wish]:
         yield Wish(f"let {said.things[0]} move {times[0]}", said.moment, holds=times[0])
 
 
+_ITS_PLACE = re.compile(
+    r"\b(?:its|his|her|their|the same|the old) (?:\w+ )?(?:place|spot|home|shelf|position|start)\b|"
+    r"\b(?:home|where (?:it|he|she|they) (?:was|were|came|started|stood|began|set off))\b"
+)
+
+
 def _return(said: Said) -> Iterator[Wish]:
+    if _ITS_PLACE.search(said.text):
+        yield Wish(pace(said.whose, "return"), said.moment, things=1 + len(said.goals))
     if len(said.goals) == 1 and said.told:
         yield Wish(f"move {said.things[0]} to {said.goals[0]}", said.moment, things=2)
     yield Wish(pace(said.whose, "return"), said.moment)
@@ -355,6 +378,7 @@ def _return(said: Said) -> Iterator[Wish]:
 # -- when and how fast -----------------------------------------------------------------------------------------------
 
 _A_PART = re.compile(r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back|returns?|again)\b")  # of a movement that has two
+_SHUTS = re.compile(r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|(?:go|going|slides?|sliding|moving|comes?|coming) back)\b")
 _A_STRETCH = re.compile(r"\b(?:first|second|last|latter|other|final) (?:half|third|quarter|part|stretch|leg|bit)\b")
 _LATER = re.compile(r"\b(?:later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
 _EARLIER = re.compile(r"\b(?:earlier|sooner|early|ahead|forward)\b")
@@ -407,8 +431,10 @@ def _begin(said: Said) -> Iterator[Wish]:
             yield Wish(pace(said.whose, "later", seconds=sign * seconds), Moment(), holds=words)
         if moment.lasting is not None and moment.start is None and moment.stop is None:
             yield Wish(pace(said.whose, "later", seconds=sign * moment.lasting), Moment(), spent=moment.lasting)
-    if _A_PART.search(said.text):
-        return  # "close it at 2 s" begins no other movement
+    if _A_PART.search(said.text):  # "close it at 2 s" begins no other movement
+        if is_opened(said.things[0]) and _SHUTS.search(said.text) and isinstance(moment.start, float):
+            yield Wish(f"close {said.things[0]}", moment)
+        return
     if moment.lasting is not None and moment.taken and isinstance(moment.start, float) and moment.stop is None:
         yield Wish(pace(said.whose, "begin"), _plainly(said))  # "start it at 2 s and finish in half a second"
     if said.told and moment.lasting is None:
@@ -428,6 +454,9 @@ def _sign(text: str) -> float | None:
 
 def _speed(said: Said) -> Iterator[Wish]:
     if _is_of_a_part(said) or _A_STRETCH.search(said.text) or _SAME_SPEED.search(said.text):
+        return
+    if _RATE.search(said.beside):
+        yield from _spin(said)
         return
     plain = _TOO_SLOW.sub("faster", _TOO_FAST.sub("slower", said.beside))
     if (often := _OFTEN.search(said.beside)) is not None and "slow" not in plain:
@@ -461,6 +490,8 @@ def _duration(said: Said) -> Iterator[Wish]:
     done = isinstance(moment.stop, float) and moment.start is None and moment.lasting is None
     if done and _MOVED_ON.search(said.text) is None:
         yield Wish(pace(said.whose, "begin"), _plainly(said), things=1 + len(said.goals))
+    if isinstance(moment.stop, float) and isinstance(moment.start, float):
+        yield Wish(pace(said.whose, "begin"), _plainly(said), things=1 + len(said.goals))
     if moment.stop is not None or (moment.lasting is not None and not moment.taken):
         return
     if moment.lasting is not None:
@@ -474,9 +505,6 @@ def _duration(said: Said) -> Iterator[Wish]:
 
 # -- rests -----------------------------------------------------------------------------------------------------------
 
-_STAYS = re.compile(
-    r"\b(?:stay|remain|keep|leave|sit|stand|rest)(?:s|ing)?\b.* (?:on|in|at|by|where|put)(?! the (?:floor|ground))\b"
-)
 _KEPT = re.compile(r"\b(?:stay|remain|keep|leave|not|never)\b")
 _RESTS = re.compile(
     r"\b(?:not|never|no) (?:ever )?(?:(?:let|have|want) (?:[a-z]+ ){1,3}?)?"
@@ -518,7 +546,7 @@ def _halt(said: Said) -> Iterator[Wish]:
 
 def _still(said: Said) -> Iterator[Wish]:
     if not said.told:
-        yield Wish(pace(said.whose, "stop"), Moment(), things=2 if _STAYS.search(said.text) else 1)
+        yield Wish(pace(said.whose, "stop"), Moment(), things=1 + len(said.goals))
 
 
 _OPEN = re.compile(r"\b(?:open|out|ajar)\b")
@@ -590,6 +618,8 @@ _SEVERAL = re.compile(r"^(?:all|both|everything|these|those|the (?:two|three|fou
 
 
 def _order(said: Said) -> Iterator[Wish]:
+    if said.listed and not said.told:
+        yield Wish(in_order(said.listed), Moment(), marked=True)
     colors = [word for word in said.beside.split() if word in hues()]
     if len(said.things) == 1 and len(colors) > 1 and len(set(colors)) == len(colors) and not said.told:
         listed = ", ".join(colors)

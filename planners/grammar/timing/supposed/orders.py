@@ -1,0 +1,88 @@
+"""The order in which an instruction names things: "the blue one first, then the green, and the red last"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from .....gaussians import late_re as re
+from .....gaussians.language.query.query import Query
+from ...learned.marks import Span
+from ...learned.seen import hues
+from ..command import Command
+from ..manner import Thing
+
+_FIRST = re.compile(r"\b(?:first|to begin with|to start with)\b")
+_LAST = re.compile(r"\b(?:last|lastly|finally|at the end|in the end|to finish)\b")
+_MIDDLE = re.compile(r"\b(?:middle|second|between)\b")
+_LATER = re.compile(r"\b(?:after|following|behind)\b")
+_SOONER = re.compile(r"\b(?:before|ahead of|prior to)\b")
+_TOLD = re.compile(r"\b(?:order|then|next|followed)\b")
+_CONTRARY = re.compile(r"\b(?:instead of|rather than|not)\b")
+_JOINTS = re.compile(r"[,.;:]|\b(?:and|then|but|with)\b")
+_MOST = 8  # things in an order
+
+
+def listed(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[Query, ...]:
+    """The things of an order, what begins first first; none if the words tell no order of several things.
+
+    Args:
+        words: those of the instruction.
+        spans: the marks in them.
+        thing: reads a name.
+    """
+    named = list(_named(words, spans, thing))
+    if not 1 < len(named) <= _MOST:
+        return ()
+    gaps = [" ".join(words[a:b]) for a, b in _gaps([(start, stop) for _, start, stop in named], len(words))]
+    if any(map(_CONTRARY.search, gaps)):
+        return ()
+    ranks, told = list[float](), _TOLD.search(" ".join(gaps)) is not None
+    for at in range(len(named)):
+        rank = _rank(_JOINTS.split(gaps[at])[-1], _JOINTS.split(gaps[at + 1])[0])
+        told |= rank is not None
+        ranks.append(at if rank is None else {"first": -1.0, "last": len(named) + at}.get(rank, at))
+        if at and _SOONER.search(gaps[at]):
+            told = True
+        elif at and _LATER.search(gaps[at]) and rank is None:
+            ranks[at], told = ranks[at - 1] - 0.5, True
+    order = sorted(range(len(named)), key=lambda at: ranks[at])
+    return tuple(named[at][0] for at in order) if told else ()
+
+
+def in_order(things: Sequence[Query]) -> Command:
+    """The command that lets things begin to move in an order."""
+    both = things[0].model_copy(update={"also": (things[1],)})
+    target = both if len(things) == 2 and all(query.text for query in things) else Query(moving=True, pick="all")
+    return Command(({"op": "order", "target": target, "order": "listed", "first": tuple(things)},))
+
+
+def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterator[tuple[Query, int, int]]:
+    """What each mark of one thing names, once, and where; a colour alone is one of the noun that is named."""
+    marks = sorted((start, stop) for tag, start, stop in spans if tag in ("x", "y"))
+    found = [(thing(" ".join(words[start:stop])), start, stop) for start, stop in marks]
+    nouns = [query.text for query, _, _ in found if query is not None and query.text not in ("", "one", "ones")]
+    seen = list[Query]()
+    for query, start, stop in found:
+        bare = [word for word in words[start:stop] if word not in ("the", "one")]
+        if bare and set(bare) <= hues():
+            hue = " ".join(bare)
+            query = Query(text=nouns[0] if nouns else "", colors=(hue,), moving=None if nouns else True)
+        if query is None or query.last or query.pick != "one" or query in seen:
+            continue
+        seen.append(query)
+        yield query, start, stop
+
+
+def _gaps(places: Sequence[tuple[int, int]], count: int) -> Iterator[tuple[int, int]]:
+    """From where to where the words before, between and behind places stand."""
+    ends = [0, *(stop for _, stop in places)]
+    starts = [*(start for start, _ in places), count]
+    yield from zip(ends, starts, strict=True)
+
+
+def _rank(before: str, behind: str) -> str | None:
+    """What the words next to a name say of its place in the order."""
+    for rank, pattern in (("first", _FIRST), ("last", _LAST), ("middle", _MIDDLE)):
+        if pattern.search(before) or pattern.search(behind):
+            return rank
+    return None
