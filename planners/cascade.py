@@ -18,6 +18,7 @@ from typing import Any, Protocol
 from ..gaussians.errors import BackendError, ScenewrightError, UserError
 from ..gaussians.language.query.nested import with_queries
 from ..gaussians.language.query.query import Query
+from ..tools.operation import EditOp
 from .budget import OverBudgetError
 from .grammar.meaning.changes import TO_A_LENGTH
 from .grammar.vocabulary.verbs import TO_ALIGN
@@ -77,7 +78,8 @@ class Cascade:
         if plan.verdict == "unsafe":
             return plan
         wish = self._plan_wish(text, previous, observation)
-        if wish is not None and wish.verdict != "not_understood":
+        in_motion = wish is not None and wish.verdict == "absent" and any(map(_is_timed, plan.ops))
+        if wish is not None and wish.verdict != "not_understood" and not in_motion:
             return _with_total_time(wish, started)
         if plan.verdict not in ABSTAINS:
             return self._second_opinion(plan, text, previous, observation, started)
@@ -136,6 +138,11 @@ class Cascade:
             filter(None, [abstained.reason, f"{plan.planner} did not understand it either", plan.reason])
         )
         return plan.model_copy(update={"reason": reason[:2000], "unknown": plan.unknown or abstained.unknown})
+
+
+def _is_timed(op: EditOp) -> bool:
+    """Whether an operation is of a time, or of motion: "have the fan go round the other way" is no wish for a room."""
+    return type(op).makes_motion or getattr(op, "when", None) is not None
 
 
 def _with_total_time(plan: EditPlan, started: float) -> EditPlan:

@@ -39,6 +39,7 @@ from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
 from .timing.reading import TimeReader, is_misread, may_be_timed
+from .timing.spoken import written
 from .timing.supposed.wishes import SURE
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
@@ -164,6 +165,7 @@ def _understand(cleaned: str, previous: str | None, scene: Observation | None = 
     Raises:
         Refusal: any part of it is not understood, or none of it is an edit.
     """
+    cleaned = written(cleaned)
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):

@@ -234,7 +234,6 @@ def test_one_colour_after_another_has_the_time_after_it() -> None:
         "the ball should not disappear at 2 s",
         "let the door open quickly and the drawer slowly",
         "the door closes too late",
-        "As the door begins to open, let the plant disappear, and bring it back when the door is fully open.",
         "hide the vase from 1 to 2 s, except in the mirror",
     ],
 )
@@ -347,10 +346,79 @@ def test_operations_are_those_of_the_likeliest_kind(text: str) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "it is the blue book who must fall the first, before the red and the green",  # paints none
         "let the ball roll to the wall in 2 s, I want it to explode there",
         "when the robot has finished the first part, I want him to turn red for a second",
     ],
 )
 def test_what_no_operation_tells_is_refused(text: str) -> None:
     assert planned(text) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "first"),
+    [
+        ("it is the blue book who must fall the first, before the red and the green", "blue red green"),
+        ("The order is wrong: the blue book should fall first, then the green, and lastly the red.", "blue green red"),
+        ("swap the order: blue book comes down first, then green, red one last", "blue green red"),
+        ("I'd prefer the green book falling first, before the red one", "green red"),
+        ("the red book is to fall after the blue one", "blue red"),
+    ],
+)
+def test_an_order_is_told_by_colours(text: str, first: str) -> None:
+    (op,) = planned(text)
+    assert op["op"] == "order" and [c for q in op["first"] for c in q["colors"]] == first.split()
+
+
+@pytest.mark.parametrize(
+    ("text", "when"),
+    [
+        ("I'd love the vase yellow from halfway through till the end", {"start": "middle"}),
+        ("give the fan a rest from one second to two and a half, then off she goes again", {"start": 1.0, "stop": 2.5}),
+        ("can the door shut again at the end, say from four seconds", {"start": 4.0}),
+        ("paint the robot red from when it turns till it reaches the bed, then return it to green", None),
+        ("As the door begins to open, let the plant disappear, and bring it back when the door is fully open.", None),
+        ("turn the bed red once the drawer is fully out, and back to normal when it starts to slide back", None),
+    ],
+)
+def test_times_with_two_ends(text: str, when: dict[str, object] | None) -> None:
+    (op,) = planned(text)
+    if when is None:
+        assert op["when"]["during"]["part"] == "from" and op["when"]["until"]["part"] == "until"
+    else:
+        assert op["when"] == when
+
+
+@pytest.mark.parametrize(
+    ("text", "op"),
+    [
+        ("I'd love the wardrobe painted pink for my little girls", "recolor"),
+        ("Could the vase be cream instead of blue? It'd match the linens.", "recolor"),
+        ("The coffee table disturbs me the view, please take it away completely", "delete"),
+        ("Coat rack's in the way of the shot. Get rid of it.", "delete"),
+    ],
+)
+def test_wishes_without_a_time(text: str, op: str) -> None:
+    (made,) = planned(text)
+    assert made["op"] == op and "when" not in made
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "I would like to know whether the sofa is red",
+        "the neighbours think the sofa is red",
+        "is the wardrobe painted pink in all of the pictures?",
+        "my granddaughter has the same bed in pink",
+    ],
+)
+def test_what_tells_or_asks_paints_nothing(text: str) -> None:
+    assert planned(text) == []
+
+
+def test_words_are_read_as_they_are_spoken() -> None:
+    for spoken, written in (
+        ("don't be openin that door till 3 seconds", "don't start opening that door till 3 seconds"),
+        ("hide the lamp soon as the ball stops rollin", "hide the lamp as soon as the ball stops rolling"),
+    ):
+        assert planned(spoken) == planned(written) != []
+    assert planned("move the basin to the cabin") == planned("Move the basin to the cabin.")

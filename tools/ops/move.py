@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -14,6 +15,7 @@ from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
+from ...gaussians.world.box import Box
 from ..alternatives import NOT_GIVEN, either, given
 from ..carried_objects import carried_note, rows_with_carried, with_carried
 from ..checks import count_matches, moved_as_asked, overlap_notes, placed
@@ -34,9 +36,11 @@ from ..placement.bodies import (
 from ..placement.overhead import place_above
 from ..placement.place import free_spot
 from ..placement.surroundings import Surroundings, support_height
-from ..placement.walls import require_clear_path
+from ..placement.walls import clear_length, require_clear_path
 from ..receipt import Check, at_most
 from ..transform import shift, turn
+
+_MOST_OF_IT = 0.8  # of the way to something: where a wall ends it after more, it is near enough
 
 
 class Move(TargetedOp):
@@ -133,10 +137,11 @@ class Move(TargetedOp):
         if self.distance is not None:
             return np.asarray(way * self.distance.in_units(scene.frame))
         gap = 3 * centimetre(scene.frame, max(body.box.size))
-        room = length - (body.box.extent(way) + goals[nearest].box.extent(way)) / 2 - gap
+        room = _free_way(body.box, goals[nearest].box, way, up, gap)
         if room <= 0:
             raise InstructionError("it already stands beside it: give a distance to move it anyway")
-        return np.asarray(way * room)
+        clear = clear_length(scene, body, way * room)
+        return np.asarray(way * (clear if clear > _MOST_OF_IT * room else room))  # in a corner a little less
 
     def _placed(
         self, scene: Scene, bodies: list[Body], context: Context, place: Placement
@@ -180,3 +185,20 @@ class Move(TargetedOp):
         bound = 1e-5 * max(1.0, asked, float(was.abs().max()))
         said = f"it moved {measured:.4g} of {asked:.4g} units"
         return at_most("distance", abs(measured - asked), bound, "units", said)
+
+
+def _free_way(box: Box, goal: Box, way: Array, up: Array, gap: float) -> float:
+    """How far a box moves over the floor until it is a gap before another one; 0 or less if it stands there.
+
+    Of the sides of both boxes, the one behind which the other box comes last stops it (separating axes of two
+    rectangles, Gottschalk et al. 1996, swept along the way).
+    """
+    far, between = -math.inf, np.subtract(goal.center, box.center)
+    for side in np.asarray((*box.axes, *goal.axes)):
+        if abs(float(side @ up)) > 0.5:
+            continue
+        speed = float(way @ side)
+        apart = abs(float(between @ side)) - (box.extent(side) + goal.extent(side)) / 2 - gap
+        if abs(speed) > 1e-9 and speed * float(between @ side) > 0:
+            far = max(far, apart / abs(speed))
+    return far if far > -math.inf else 0.0

@@ -45,6 +45,14 @@ def require_clear_path(scene: Scene, bodies: list[Body], offsets: list[Array]) -
             raise InstructionError(f"the {name} would leave the room: give a shorter distance")
 
 
+def clear_length(scene: Scene, body: Body, offset: Array) -> float:
+    """How far of an offset `[3]` a body can move before it meets a wall, scene units."""
+    length = float(np.linalg.norm(offset))
+    cm = centimetre(scene.frame, max(body.box.size))
+    free = free_share(_shrunk(body.box, cm), _wall_points(scene), offset) if length > 0 else None
+    return length if free is None else max(0.0, free * length - cm)
+
+
 def free_share(box: Box, points: NDArray[np.float32], offset: Array) -> float | None:
     """Share of `offset` `[3]` by which a box can move before it meets the surface `points` `[M, 3]`; None if all of it.
 

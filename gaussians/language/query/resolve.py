@@ -58,6 +58,7 @@ if TYPE_CHECKING:
 
 _NAMED = 0.5  # probability of a name from which a thing is called so
 _REST = "the rest of what? nothing was named before: say 'everything but the ...', or 'the background'"
+_SPOTS = ("corner", "middle", "background", "foreground")  # of a room, which no thing marks
 _STACKED = 2  # how often a crop looks for what stands on what it keeps
 
 __all__ = ["STRUCTURE", "Resolver", "resolve"]  # builders of scenes need the words for structure
@@ -202,8 +203,19 @@ class Resolver:
                 for anchor in self._anchor_selections(relation):
                     found = _doubted(found, anchor)
         except Unresolved as anchor:
-            return replace(anchor.selection, query=query)
+            return self._wherever(query, out) or replace(anchor.selection, query=query)
         return found.noting(fronts)
+
+    def _wherever(self, query: Query, out: frozenset[int]) -> Selection | None:
+        """The selection without spots of the room, which no thing marks: "the lamp in the corner" is the only lamp;
+        None if that is not one thing, or no such spot is named."""
+        near = [r for r in query.relations if not any(a.text.split(" ")[-1] in _SPOTS for a in r.anchors)]
+        if len(near) == len(query.relations) or query.pick != "one" or not query.text:
+            return None
+        found = self._own(query.model_copy(update={"relations": tuple(near)}), out)
+        if found.verdict != "found":
+            return None
+        return replace(found, query=query).noting("the only one; where in the room it stands was not checked")
 
     def described(self, query: Query, out: frozenset[int] = frozenset()) -> Selection:
         """The selection of a query by name, attributes and relations."""

@@ -25,6 +25,9 @@ def followed(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
         return list(ops)  # "the fan goes the wrong way round. Turn it the other way"
     if _colors_again(last, then) and isinstance(last.get("when"), When):
         return [*ops, {**then, "when": _afterwards(last["when"])}]
+    at_all_times = last.get("change") == "stop" and last.get("when") is None
+    if at_all_times and then.get("change") == "begin" and then.get("when") is not None and then["target"] == IT:
+        return [*ops[:-1], {**then, "target": last["target"]}]  # "wait and fall at 3 s"
     if last.get("change") == then.get("change") == "stop" and then.get("when") is None and then["target"] == IT:
         return list(ops)  # "freeze it at 2 s and do not let it move again", "... for 1 s, then let it finish"
     rests = last.get("change") == "stop" and isinstance(last.get("when"), When) and last["when"].lasting is not None

@@ -69,7 +69,8 @@ _COMES = _Course("from", "while", "until", "from")  # "it hits the wall"
 
 _ONCE = (
     r"(?:(?:right |just )as|(?:on|at|from) the (?:frame|point|instant|moment|time) (?:where|when|that|at which)|"
-    r"the (?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|once|when|as soon as|the moment|"
+    r"the (?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|"
+    r"once(?! (?:on|in|at|around|round|to|from|over|about|every|per|each) )|when|as soon as|the moment|"
     r"the instant|the second|at the moment when|at the moment|immediately when|right when|from when|from the moment|"
     r"exactly when|directly when|immediately(?= the )|directly(?= the )|the minute|each time|every time|from the time)"
 )
@@ -120,8 +121,8 @@ _EVENT_OVER = re.compile(
 )
 _AT_TURN = re.compile(
     r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at|turns|rounds|goes (?:a)?round|has "
-    r"turned|has rounded|has reached) (?:its|his|her|the|that) (?:left |right |sharp )?"
-    r"(?:turn|turning point|corner|bend|curve)$"
+    r"turned|has rounded|has reached) (?:(?:its|his|her|the|that) (?:left |right |sharp )?"
+    r"(?:turn|turning point|corner|bend|curve)|(?:to )?where (?:it|he|she) (?:turns|makes (?:its|his|her|the) turn))$"
 )
 _IS_THERE = re.compile(r" (?:gets|has got|is|arrives|has arrived|comes|has come) there$")
 _WHOLLY = re.compile(r"\b(?:totally|completely|entirely|wholly|all(?= (?:open|out|shut|closed)\b))\b")

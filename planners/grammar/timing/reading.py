@@ -49,7 +49,7 @@ from .supposed.said import Said, said_of
 from .supposed.wished import is_wished
 from .supposed.wishes import SURE, wishes
 from .verbs import SENSES, any_of, forms, has_form
-from .whens import closes_later, inverse, of_one_movement, settled, when_of
+from .whens import closes_later, closes_when_open, inverse, of_one_movement, settled, when_of
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
 Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
@@ -157,13 +157,13 @@ class TimeReader:
         return chosen(offers, words, least)
 
     def wished(self, cleaned: str) -> tuple[Fields, ...] | None:
-        """The operations of a wish for another look of something, or that it be gone, at all times; None if that is not
-        most likely asked for."""
-        if not is_wished(" ".join(word.text for word in split(cleaned.lower()))):
-            return None
+        """The operations of a wish that has no words of time: for another look of something, or that it be gone, at
+        all times or at a time in bare numbers; None if that is not most likely asked for."""
         found = self.supposed(cleaned, SURE)
-        once = found is not None and all(op["op"] in _WISHED and op.get("when") is None for op in found)
-        return found if once else None
+        if found is None or all(op.get("when") is not None for op in found):
+            return found
+        once = all(op["op"] in _WISHED and op.get("when") is None for op in found)
+        return found if once and is_wished(" ".join(word.text for word in split(cleaned.lower()))) else None
 
     def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields], least: float = _SAID_SO) -> bool:
         """Whether operations of a time, or of a look or a new thing, begin with one that no wish of the likeliest kind
@@ -172,14 +172,23 @@ class TimeReader:
         Args:
             least: probability from which a kind counts.
         """
-        if len(ops) != 1 or ops[0]["op"] not in _NO_MOTION or (ops[0].get("when") or When()).gradual:
+        alike = len({op["op"] for op in ops}) == 1 and (len(ops) == 1 or ops[0]["op"] == "recolor")
+        if not alike or ops[0]["op"] not in _NO_MOTION or (ops[0].get("when") or When()).gradual:
             return False
+        if ops[0]["op"] == "delete" and ops[0].get("when") is not None and _SWITCHED_OFF.search(cleaned):
+            return True
         told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
         if told is None and ops[0]["op"] not in _LOOKS_OR_THINGS:
             return False
+        if ops[0]["op"] == "scale" and not _SPEEDS.search(cleaned):
+            return False  # "too slow. Double it" makes nothing larger
+        if ops[0]["op"] == "rotate" and not (self._moves is not None and self._moves(ops[0]["target"])):
+            return False  # "turn the chair round to face the other way"
         kind, chance = next(iter(likely(cleaned)), ("", 0.0))
         if told is None and kind not in _PACED:
             return False  # "three more blocks, all green" are put in
+        if chance >= least and (kind, ops[0].get("change")) in (("open", "close"), ("close", "open")):
+            return True
         return chance >= least and not is_done_by(kind, str(ops[0]["op"]))
 
     def is_still(self, ops: Sequence[Fields]) -> bool:
@@ -542,6 +551,9 @@ class TimeReader:
         if happening is None and stops and moment.start == "middle" and any(map(_HALF_ITS_WAY.fullmatch, moment.said)):
             happening = Happening(During(state="halfway", part="from"), "")
             moment = replace(moment, start=None)  # half its own way, and not half the film
+        if happening is not None and closes_when_open(ops, happening):  # and not when it begins to be
+            opened = happening.during.model_copy(update={"state": "fully_open"})
+            happening = replace(happening, during=opened)
         if happening is not None and closes_later(ops, moment, happening):  # "when it was open for one second"
             moment = replace(moment, start=moment.lasting, lasting=None)
             during = happening.during.model_copy(update={"state": "fully_open", "part": "from"})
@@ -641,10 +653,13 @@ _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of o
 _WISHED = ("recolor", "delete")
 _PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
 _LOOKS = ("opacity", "recolor", "restyle")
-_NO_MOTION = ("opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate")
+_NO_MOTION = ("opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate", "rotate",
+              "scale")  # fmt: skip
 _THROUGHOUT = re.compile(r"\b(?:throughout|all the (?:way|time)|(?:whole|entire) (?:film|time|clip|video))\b")
 _PACED = (*COURSES, "amount")
-_LOOKS_OR_THINGS = ("insert", "recolor")
+_LOOKS_OR_THINGS = ("insert", "recolor", "rotate", "scale")
+_SWITCHED_OFF = re.compile(r"\b(?:turn|switch|shut)(?:ed|s)? (?:\w+ ){0,4}off\b", re.IGNORECASE)
+_SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 _LONGEST = 45  # words of an instruction with one wish
 _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b")
@@ -687,8 +702,8 @@ def _spelt_out(said: str) -> str:
 
 _FILLER = re.compile(r"(?: ,)? (?:uh|um|uhm|er|erm|hmm|(?<! as )well)(?: ,)?(?= )")
 _SHORT_VERB = re.compile(
-    r" 's (?P<then>[a-z]+(?:ing|ed)|fully|completely|all|just|already|been|done|open|closed|shut|out|in|gone|hit|left|"
-    r"fallen|come|begun|slid|stopped|reached|way|too|so|not)\b"
+    r" 's (?P<then>[a-z]+(?:ing|ed)|to|fully|completely|all|just|already|been|done|open|closed|shut|out|in|gone|hit|"
+    r"left|fallen|come|begun|slid|stopped|reached|way|too|so|not)\b"
 )
 
 
@@ -732,6 +747,7 @@ _OF_A_WAY = bag("it he she they its his her their is has gone down up across alo
 _AGAIN = re.compile(r"\b(?:again|back|as (?:before|usual|normal|ever)|like before)\b")
 _NOT_SEEN = re.compile(r"\b(?:not|never) (?:ever )?(?:see|be seen)\b")
 _COMES_BACK = re.compile(r"\b(?:back|returns?|comes?|again|normal|reappears?|appears?|shows?)\b")
+_GOES_BACK_WHEN = re.compile(r"\b(?:back|normal|again|returns?|reverts?)\b.*\b(?:once|when|as soon as|until|till) \w+")
 _GOES_ON = re.compile(
     r"\b(?:opens?|goes?|go|moves?|rolls?|walks?|drives?|falls?|spins?|turns?|runs?|not|continues?|"
     r"on)\b"
@@ -746,6 +762,8 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
     """
     if _A_NUMBER.search(remark):
         return False  # "starting at one second, done by three"
+    if _GOES_BACK_WHEN.search(remark):
+        return False  # "then back to blue once it is off"
     if _NOT_SEEN.search(remark) or _COMES_BACK.search(remark):
         return command.kind == "look" and not command.inverse
     if re.search(rf"\b(?:keep|let|have) (?:it|him|her|them) {any_of(MOTION, 'ing')}", remark):

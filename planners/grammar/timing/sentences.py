@@ -129,6 +129,9 @@ def folded(said: str) -> str:
     return " . ".join(made) if made else said
 
 
+_WHEN = re.compile(r"\b(?:back|normal|again|returns?|reverts?)\b.*\b(?:once|when|as soon as|until|till) \w+")
+
+
 def _without_end(part: str) -> str:
     """A sentence without what goes without saying behind its last comma: "..., leave it up there"."""
     for joint in _LAST_JOINTS:
@@ -138,6 +141,7 @@ def _without_end(part: str) -> str:
             and len(head.split()) > 2
             and not (_LED.match(head) and " , " not in head)
             and not (joint == " while " and _HOW_IT_IS.match(tail))
+            and not _WHEN.search(tail)
             and (_goes_without_saying(head, tail) or _says_no_more(tail) or changes_nothing(tail))
         ):
             return _without_end(head.rstrip(" ,"))

@@ -99,7 +99,8 @@ SENSES: dict[str, str] = {
         "collide with, knock into, knock against, arrive at, arrive in, arrive by, get to, come to, make it "
         "to, run into, roll to, roll into, roll against, roll up to, walk to, walk up to, drive to, go to, "
         "move to, land on, land in, come up to, arrive on, slam into, bang into, get near, approach, be at, "
-        "be against, bump, knock, smack, slam, bang, nudge, make contact with, come into contact with, hit against, "
+        "be against, bump on, knock on, bang on, bump, knock, smack, slam, bang, nudge, make contact with, "
+        "come into contact with, hit against, "
         "bounce off",
     "arrive": "arrive, land, touch down",
     "leave": "leave, exit, get off, roll off, go off, move off, come off, fall off, drive off, walk off, step "

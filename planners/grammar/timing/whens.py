@@ -41,7 +41,7 @@ def when_of(moment: Moment, during: During | None, kind: str, op: Fields) -> Whe
                 lasting = lasting or LITTLE_BY_LITTLE
         if op["op"] in ("insert", "delete", "replace", "isolate", "duplicate") and moment.taken:
             gradual = False
-    elif lasting is None and moment.stop is None:
+    elif lasting is None and moment.stop is None and not (moment.always and during is not None):
         lasting = SLOW if moment.slowly else BRIEF if moment.quickly and kind == "path" else None
     stop: End | None = None if lasting is not None else moment.stop
     goes = kind == "path" or op.get("turns") is not None
@@ -65,6 +65,13 @@ def closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) ->
         return False
     taken = any(re.match(r"(?:in|over|within|during|taking) ", said) for said in moment.said)
     return not taken and all(op["op"] == "articulate" and op.get("change") == "close" for op in ops)
+
+
+def closes_when_open(ops: Sequence[Fields], happening: Happening) -> bool:
+    """Whether something is to close once it is open: as far as it opens, and not when it begins to."""
+    during = happening.during
+    once = during.part in ("from", "after") and during.state == "open" and during.of in (None, IT)
+    return once and all(op["op"] == "articulate" and op.get("change") == "close" for op in ops)
 
 
 def of_one_movement(said: str, ops: Sequence[Fields]) -> tuple[Fields, ...]:

@@ -11,6 +11,9 @@ from pathlib import Path
 
 from ...learned.kinds import Classifier
 from ...learned.marks import Span, Tagger
+from ...tagging.spelling import is_common, is_word
+from ...vocabulary.nouns import is_known
+from ..verbs import SENSES, has_form
 
 FOLDER = Path(__file__).parent
 NO_WISH = "none"  # the kind of questions, remarks, and wishes that are about neither time nor motion
@@ -54,6 +57,17 @@ def marked(words: Sequence[str]) -> tuple[Span, ...]:
     how long something is to be (`from`, `to`, `in`, `for`), by how much (`by`), as which colour (`as`), what is not
     wanted (`not`), and what asks for nothing (`off`)."""
     return tagger().spans(words)
+
+
+def is_any_word(word: str) -> bool:
+    """Whether a word stands in any of the vocabularies, or in the sentences that kinds were learned from."""
+    return (
+        is_word(word)
+        or is_known(word)
+        or is_common(word)
+        or word in classifier().places
+        or has_form(word, tuple(SENSES), "plain", "s", "ing", "past")
+    )
 
 
 @cache

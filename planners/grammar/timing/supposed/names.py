@@ -13,7 +13,7 @@ from ..manner import Thing
 
 MOVING = "everything that moves"
 _MOVING = re.compile(
-    r"\b(?:everything|all|whatever|anything)(?: (?:that|which))?(?: (?:is|are))? (?:moves?|moving)\b"
+    r"\b(?:everything|all|whatevers?|anything)(?: (?:that|which))?(?: (?:is|are))? (?:moves?|moving)\b"
     r"(?: (?:in|on) (?:the|this) (?:shot|scene|film|clip|video|picture))?|\beverything\b(?! else)"
 )
 # Times, people, and words that stand behind "the" and name nothing that can be edited.
@@ -46,7 +46,7 @@ def with_nouns(text: str) -> str:
 
     def noun(found: re.Match[str]) -> str:
         before, after = (
-            [word for word in part.split() if is_known(word) and word not in _NO_THINGS]
+            [word for word in part.split() if is_known(word) and word not in _NO_THINGS and word != "can"]
             for part in (text[: found.start()], text[found.end() :])
         )
         return f"{found['how']} {singular((before[-1:] or after[:1] or ['one'])[0])}"

@@ -8,6 +8,7 @@ from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
 from ...learned.marks import Span
 from ...learned.seen import hues
+from ...tagging.words import bag
 from ..command import Command
 from ..manner import Thing
 
@@ -19,6 +20,7 @@ _SOONER = re.compile(r"\b(?:before|ahead of|prior to)\b")
 _TOLD = re.compile(r"\b(?:order|then|next|followed)\b")
 _CONTRARY = re.compile(r"\b(?:instead of|rather than|not)\b")
 _JOINTS = re.compile(r"[,.;:]|\b(?:and|then|but|with)\b")
+_BEHIND = bag("and then one first last next before after comes goes falls drops at in to")
 _MOST = 8  # things in an order
 
 
@@ -58,7 +60,10 @@ def in_order(things: Sequence[Query]) -> Command:
 
 def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterator[tuple[Query, int, int]]:
     """What each mark of one thing names, once, and where; a colour alone is one of the noun that is named."""
-    marks = sorted((start, stop) for tag, start, stop in spans if tag in ("x", "y"))
+    marks = [(start, stop) for tag, start, stop in spans if tag in ("x", "y")]
+    held = {at for start, stop in marks for at in range(start, stop)}
+    marks += [(at - 1, at + 1) for at in range(1, len(words)) if at not in held and _is_bare_color(words, at)]
+    marks.sort()
     found = [(thing(" ".join(words[start:stop])), start, stop) for start, stop in marks]
     nouns = [query.text for query, _, _ in found if query is not None and query.text not in ("", "one", "ones")]
     seen = list[Query]()
@@ -71,6 +76,12 @@ def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterato
             continue
         seen.append(query)
         yield query, start, stop
+
+
+def _is_bare_color(words: Sequence[str], at: int) -> bool:
+    """Whether a word is a colour with "the", and without a noun: ", and lastly the red"."""
+    behind = words[at + 1] if at + 1 < len(words) else "."
+    return words[at] in hues() and words[at - 1] == "the" and (behind in _BEHIND or not behind[0].isalpha())
 
 
 def _gaps(places: Sequence[tuple[int, int]], count: int) -> Iterator[tuple[int, int]]:

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
 from .....gaussians.world.words import singular
-from .....tools.when import During
+from .....tools.when import During, Part
 from ...learned.marks import Span
 from ...learned.seen import hues
 from ...tagging.spelling import is_word
@@ -24,11 +24,11 @@ from ..happenings import cut as happenings_in
 from ..manner import Thing
 from ..moments import DURATION, TIMED, End, Moment, cut, seconds_of
 from ..verbs import SENSES, has_form
-from .kinds import marked
+from .kinds import is_any_word, marked
 from .names import named as names_in
 from .names import with_moving
 from .orders import listed
-from .said import Said
+from .said import BEFORE_IT, Said
 
 TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
 _IDLE = ("not", "off")  # tags of words that ask for nothing
@@ -47,7 +47,9 @@ _AS = re.compile(
 )
 _GERUND = re.compile(r"^(?P<word>after|once|when|while|before|until) (?P<doing>[a-z]+ing)(?= |$)")
 _WHERE = re.compile(r"^(?:at )?(?:the (?:point|place|spot|corner) )?(?:where|upon) (?=\w)")
-_WHERE_IN = re.compile(r"(?<!\bto )(?<!\bnear )\bwhere\b(?= (?:it|he|she|they|the) )")
+_WHERE_IN = re.compile(
+    r"(?<!\bto )(?<!\bnear )\bwhere\b(?= (?:it|he|she|they|the) )(?! \w+ (?:is|are|was|were|stands?|sits?|lies?)\b)"
+)
 _ALL = re.compile(
     r"\b(?:whole|entire|throughout|all (?:the way )?through|over the length of|all the time|always|"
     r"(?:beginning|start) to (?:the )?(?:end|finish))\b"
@@ -56,7 +58,10 @@ _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     (re.compile(r"\b(?:middle|half ?way|half time|midway|half the)\b"), "middle"),
     (re.compile(r"\b(?:end|ends|finish|close|last frame|over|finale)\b"), "end"),
     (
-        re.compile(r"\b(?:beginning|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b"),
+        re.compile(
+            r"\b(?:beginning|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b|"
+            r"\btop (?:of the (?:film|show|clip|video|scene|shot))?$"
+        ),
         0.0,
     ),
 )
@@ -76,6 +81,17 @@ _BESIDE = re.compile(  # "set off with the robot", "at the same time as the top 
     r"(?P<who>(?:the|my|our|that) [a-z ]+?)(?: (?:does|moves|starts|sets off|opens|goes))?$"
 )
 _UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
+_REVERTED = re.compile(  # ", and revert when it slides back"
+    r"(?: ,)?(?: (?:and|but|then))+ (?:(?:it|let it|have it|should|to|make it) )*"
+    r"(?:reverts?|(?:goes|go|turns?|turning|changes?|turn it|put it|set it|change it|going) back|returns?|back|normal)"
+    r"(?: (?:again|to|as|its|the|his|her|normal|usual|old|original|own|before|it was|colou?r|look))* "
+    r"(?P<then>(?:when|once|as soon as|after|at|by) .+)$"
+)
+_OFF_IT = re.compile(r"\b(?:it|he|she) (?:is|'s|has|gets|rolls|comes|moves|goes)(?: \w+)? off(?: it| again)?$")
+_HOW_MANY = re.compile(  # ", all four of them"
+    r"(?:all|both|each|every one)(?: (?:the )?(?:two|three|four|five|six))?(?: of (?:them|those|these))?"
+)
+_SO_THAT = re.compile(r"^(?:, )?(?:and )?so (?:that )?(?:it|he|she|they|we|i|you|people|everyone)\b")  # a reason
 _AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
 _ANOTHER = re.compile(r"^(?:, )?(?:and |but )?then\b|\botherwise\b")
@@ -118,14 +134,27 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
                 return None
     if any(tag in _IDLE and _loses(tag, words[start:stop]) for tag, start, stop in spans):
         return None
+    if any(tag == "off" and start and _is_odd(words[start:stop]) for tag, start, stop in spans):
+        return None
     left = {at for tag, start, stop in spans if tag in TIMES or tag in _IDLE for at in range(start, stop)}
+    again = [span for span in spans if span[0] == "x" and _HOW_MANY.fullmatch(" ".join(words[span[1] : span[2]]))]
+    left |= {at for _, start, stop in again for at in range(start, stop)} if len(spans) > len(again) else set()
+    spans = [span for span in spans if span not in again] if len(spans) > len(again) else spans
     text = " ".join(word for at, word in enumerate(words) if at not in left).strip(" ,.;:!")
     text = with_moving(re.sub(r"(?: [,.;:!])+(?= [,.;:!])", "", text))
+    if isinstance(moment.stop, float):
+        text = BEFORE_IT.sub(" ", text)
     amounts = {" ".join(words[start:stop]).strip(" ,.") for tag, start, stop in spans if tag == "by"}
     if happening is None:
         text, moment, happening = _with_unmarked(text, moment, thing, amounts)
     elif _begins(happening) and isinstance(moment.start, float) and not delayed:
         happening = None  # "after it has been opened, from 3.5 s on"
+    if happening is not None and _begins(happening) and moment.stop is None:
+        unwanted = [" ".join(words[start:stop]) for tag, start, stop in spans if tag == "not"]
+        ended = _reverted(text, unwanted, moment, happening, thing)
+        if ended is None:
+            return None
+        text, moment, happening = ended
     if happening is not None:
         text, words = _with_goal(text, words, spans, happening, thing)
     named = [(tag, _name(words, start, stop, thing)) for tag, start, stop in sorted(spans, key=lambda s: s[1])]
@@ -146,6 +175,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
 
 def _told(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, Happening | None] | None:
     """The time in numbers and what happens, either of which words with a tag may tell; None if they tell neither."""
+    if tag == "in" and phrase.startswith("from ") and (ends := _from_until(phrase, thing)) is not None:
+        return ends
     if (found := _moment(tag, phrase)) is not None:
         return found, None
     if (event := _event(tag, phrase, thing)) is not None:
@@ -182,12 +213,23 @@ def _with_goal(
     text: str, words: Sequence[str], spans: Sequence[Span], happening: Happening, thing: Thing
 ) -> tuple[str, Sequence[str]]:
     """A text and its words with what a pronoun for a goal means: "when the robot is there, roll the car over to it"."""
-    goals = [start for tag, start, stop in spans if tag == "y" and stop == start + 1 and thing(words[start]) == IT]
-    meant = names_in(happening.said, thing)[:1]
-    if len(goals) != 1 or not meant or not re.search(rf"\b{words[goals[0]]}$", text):
+    goals = [
+        start
+        for tag, start, stop in spans
+        if tag == "y" and stop == start + 1 and (words[start] == "there" or thing(words[start]) == IT)
+    ]
+    meant = names_in(happening.said, thing)
+    meant = meant[-1:] if [words[at] for at in goals] == ["there"] else meant[:1]
+    if len(goals) != 1 or not meant or not re.search(rf"\b{words[goals[0]]}(?: too| as well)?$", text):
         return text, words
-    text = f"{text.removesuffix(words[goals[0]])}{meant[0]}"
+    goal = meant[0] if words[goals[0]] != "there" else f"to {meant[0]}"
+    text = re.sub(rf"\b{words[goals[0]]}(?: too| as well)?$", goal, text)
     return text, [meant[0] if at == goals[0] else word for at, word in enumerate(words)]
+
+
+def _is_odd(words: Sequence[str]) -> bool:
+    """Whether words that belong to the sentence hold one that is none: "around nothing blorp"."""
+    return words[0].isalpha() and any(word.isalpha() and not is_any_word(word) for word in words)
 
 
 def _with_half(words: Sequence[str], span: Span) -> Span:
@@ -208,18 +250,48 @@ def _loses(tag: str, words: Sequence[str]) -> bool:
         return True
     if tag == "not" and _CONTRAST.search(said):
         return False
-    if _AMOUNT.search(said) or any(word[0].isdigit() or (word in NUMBERS and word != "one") for word in said.split()):
+    if (_AMOUNT.search(said) and not _SO_THAT.search(said)) or any(
+        word[0].isdigit() or (word in NUMBERS and word != "one") for word in said.split()
+    ):
         return True
     return TIMED.search(said) is not None or any(found["word"] != "as" for found in CONJUNCTION.finditer(said))
+
+
+def _reverted(
+    text: str, unwanted: Sequence[str], moment: Moment, happening: Happening, thing: Thing
+) -> tuple[str, Moment, Happening] | None:
+    """A text and its time with the end that words for going back tell: ", and revert when it slides back"; None if that
+    is not understood.
+
+    Args:
+        unwanted: words with the mark of what is not wanted.
+    """
+    for said in (text, *unwanted):
+        if (found := _REVERTED.search(f" {said}")) is None:
+            continue
+        rest = said[: max(0, found.start() - 1)] if said is text else text
+        if happening.during.state == "on" and _OFF_IT.search(found["then"]):
+            over = happening.during.model_copy(update={"part": "until_end", "of": IT})
+            both = happening.ended(Happening(over, found["then"]))
+            return None if both is None else (rest, moment, both)
+        told = _told("to", found["then"].strip(" ,."), thing)
+        if told is None:
+            return None
+        ends, event = told
+        if ends is not None:
+            if ends.stop is None:
+                return None
+            return rest, replace(moment, stop=ends.stop, said=(*moment.said, *ends.said)), happening
+        both = None if event is None else happening.ended(event)
+        return None if both is None else (rest, moment, both)
+    return text, moment, happening
 
 
 def _begins(happening: Happening) -> bool:
     return happening.during.part in ("from", "after") and happening.until is None
 
 
-def _with_unmarked(
-    text: str, moment: Moment, thing: Thing, amounts: set[str]
-) -> tuple[str, Moment, Happening | None]:
+def _with_unmarked(text: str, moment: Moment, thing: Thing, amounts: set[str]) -> tuple[str, Moment, Happening | None]:
     """A text without times that no mark tells, and these beside those that marks tell.
 
     Args:
@@ -298,8 +370,11 @@ def _named_moment(tag: str, phrase: str, thing: Thing) -> Moment | None:
     """The start, the middle or the end of the film where words with a tag name it, None if they name none."""
     if any(is_known(name.split(" ")[-1]) for name in names_in(phrase, thing)):
         return None  # "until the fall of the book is over"
-    if phrase.split(" ")[0] not in _EVEN_SO and (tag == "for" or CONJUNCTION.match(phrase)):
+    leads = phrase.split(" ")[0] not in _EVEN_SO and _FILM.search(phrase) is None
+    if tag == "for" or (leads and CONJUNCTION.match(phrase)):
         return None
+    if tag == "to" and _WITH_THE_FILM.search(phrase):
+        return _at(tag, phrase, "end")
     value = next((end for pattern, end in _NAMED if pattern.search(phrase)), None)
     return None if value is None else _at(tag, phrase, value)
 
@@ -316,6 +391,8 @@ def _at(tag: str, phrase: str, value: End) -> Moment | None:
 
 
 _WHOLE_SECONDS = re.compile(r"\b(?:whole|full|entire|good|solid|complete) (?=(?:seconds?|secs?)\b)")
+_UNTIL_THEN: dict[Part, Part] = {"from": "until", "while": "until", "after": "until_end"}
+_WITH_THE_FILM = re.compile(r"\b(?:with|as) the (?:film|clip|video|movie|scene|shot)$")
 _EVEN_SO = ("until", "till", "after", "by", "before")
 
 
@@ -348,6 +425,8 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
     for said in (phrase, f"{TIMES[tag]} {phrase}"):
         for found in CONJUNCTION.finditer(said):
             if found.start() == 0 and (during := clause_of(found["word"], said[found.end() :].strip(" ,."), thing)):
+                if tag == "to" and during.part in _UNTIL_THEN:  # "... and normal again [to when it slides back]"
+                    during = during.model_copy(update={"part": _UNTIL_THEN[during.part]})
                 return Happening(during, said)
     return None
 
@@ -376,7 +455,10 @@ def _loses_colors(words: Sequence[str], ops: Sequence[Fields]) -> bool:
     return False
 
 
-_NOT_WANTED = bag("again back not no never instead than rather too from usual normal longer was rest without ugly")
+_NOT_WANTED = bag(
+    "again back return returns revert reverts not no never instead than rather too from usual normal longer was rest "
+    "without ugly"
+)
 
 
 def _loses_numbers(words: Sequence[str], ops: Sequence[Fields]) -> bool:

@@ -13,8 +13,14 @@ from ..moments import Moment
 from .names import MOVING, named, with_moving
 
 _PRONOUN = re.compile(r"\b(?:it|he|she|him|her|they|them)\b")
+BEFORE_IT = re.compile(  # "it waits until 2 s before it sets off"
+    r"\bbefore (?:it |he |she |they |\| )?(?:to )?(?:sets?|starts?|begins?|commences?|goes|going|go|rolls?|rolling|"
+    r"moves?|moving|leaves?|leaving|walks?|walking|falls?|falling|drops?|dropping|opens?|opening|setting|starting|sliding|slides?)"
+    r"(?: off| moving| rolling| going| walking| falling| to \w+| out)*"
+)
 _AS_BEFORE = re.compile(  # ", then red again afterwards"
-    r"(?: ,)? (?:and |then |but )*(?:(?:it |make it |let it |turn it |go |goes |back |should |is |to )*)(?:[a-z]+ )?"
+    r"(?: ,)? (?:and |then |but |after (?:this|that|which) |afterwards )*"
+    r"(?:(?:it |make it |let it |turn it |go |goes |back |should |is |to )*)(?:[a-z]+ )?"
     r"(?:again|back|afterwards?|after that|as before|like before|as it was|as (?:usual|normal|ever)|normal(?: again)?)"
     r"(?: (?:afterwards?|then))?$"
 )

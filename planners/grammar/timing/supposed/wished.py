@@ -6,7 +6,7 @@ from .....gaussians import late_re as re
 
 _ORDERS = (
     r"paint|make|turn|colou?r|recolou?r|change|dye|tint|take|get rid|remove|delete|strike|lose|ditch|bin|scrap|clear|"
-    r"drop|cut|chuck|dump|toss|throw|erase|kill|give|have|let|put"
+    r"drop|cut|chuck|dump|toss|throw|erase|kill|give|have|let|put|withdraw|banish|do away with"
 )
 _WISHES = re.compile(
     r"(?:^|[,.;:!] |\b(?:please|just|and|so|then|now|kindly|maybe|go ahead and|help me) )(?:please |just )?"

@@ -13,8 +13,7 @@ from itertools import takewhile
 
 from .....gaussians import late_re as re
 from ...learned.seen import hues
-from ...tagging.spelling import is_word
-from ...vocabulary.nouns import EVERYWHERE, is_known, is_opened
+from ...vocabulary.nouns import EVERYWHERE, is_opened
 from ...vocabulary.quantities import NUMBERS
 from ..asides import HUES
 from ..clauses import ALL_OF_IT, AUXILIARIES
@@ -23,10 +22,10 @@ from ..moments import DURATION, End, Moment, seconds_of
 from ..verbs import SENSES, has_form
 from ..whens import HELD_BACK
 from .choosing import says
-from .kinds import classifier
+from .kinds import is_any_word
 from .names import MOVING
 from .orders import in_order
-from .said import Said
+from .said import BEFORE_IT, Said
 
 SURE = 0.85  # probability from which a change without a time is supposed, or an unknown verb is left aside
 _STATIC = ("recolor", "hide", "remove", "move")  # kinds that need no time
@@ -38,7 +37,7 @@ _PROHIBITED = re.compile(
 _OTHER_EDITS = re.compile(
     r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b"
 )
-_EXCEPT = re.compile(r"\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
+_EXCEPT = re.compile(r"(?<!\bat )\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
 _REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _TIMES_LEFT = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
@@ -81,14 +80,16 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
     made = _KINDS.get(kind)
     if made is None or not said.things or said.things[0].split(" ")[-1] in EVERYWHERE:
         return
-    if chance < SURE and not _is_any_word(_GREETING.sub("", said.text).split(" ")[0]):
+    if chance < SURE and not is_any_word(_GREETING.sub("", said.text).split(" ")[0]):
         return  # a verb that is no word may ask for anything
     timeless = not said.told and not said.moment.always
     if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
         return
     if _EXCEPT.search(f"{said.text} {said.idle}"):
         return  # "everything but the fan"
-    if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text) or _OTHER_EDITS.search(said.text):
+    if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text):
+        return
+    if _OTHER_EDITS.search(said.text) and not (kind == "order" and said.listed):
         return
     if kind in _STATIC and MOVING in said.things:
         return  # all, or what of it moves
@@ -106,23 +107,16 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
             yield wish
 
 
-def _is_any_word(word: str) -> bool:
-    """Whether a word stands in any of the vocabularies, or in the sentences that kinds were learned from."""
-    return (
-        is_word(word)
-        or is_known(word)
-        or word in classifier().places
-        or has_form(word, tuple(SENSES), "plain", "s", "ing", "past")
-    )
-
-
 def _is_whole(wish: Wish, said: Said, left: str) -> bool:
     """Whether nothing that the instruction names is among the words that are `left`, and no time is lost."""
     if _times(said.moment) - _times(wish.moment) - {wish.spent}:
         return False
     if (len(said.things) > wish.things and not wish.marked) or _TIMES_LEFT.search(left):
         return False
-    return not any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in hues() for w in left.split())
+    words = left.split()
+    if any(word.isalpha() and not is_any_word(word) for word in words):
+        return False  # "bounce it around nothing blorp"
+    return not any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in hues() for w in words)
 
 
 def _times(moment: Moment) -> set[End | None]:
@@ -133,11 +127,13 @@ def _left(wish: Wish, said: Said) -> str:
     """The words that do not stand in a command."""
     if wish.marked:
         return said.unmarked
-    left, hue = said.beside, wish.holds.split(" ")[-1]
+    left, hue = BEFORE_IT.sub(" ", said.beside), wish.holds.split(" ")[-1]
     if wish.holds:
         left = re.sub(rf"(?<!\S){re.escape(wish.holds)}(?!\S)", " ", left, count=1)
     if hue in hues():
         left = re.sub(rf"(?<!\S){hue}(?!\S)", " ", left)  # "red, a good strong red"
+    if wish.holds.startswith("half"):
+        left = _AS_IT_DOES.sub(" ", left)
     return _COMPLAINED.sub(" ", left)
 
 
@@ -146,11 +142,11 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"slowly|quickly": "speed duration spin repeat amount move",
     r"far|farther|further|wide|wider": "amount",
     r"earlier|sooner|later": "begin open order",
-    r"backwards?|reverse|reversed": "reverse return",
+    r"backwards?|reverse|reversed": "reverse return order",
     r"back": "return reverse close stay still hide order repeat pause",
     r"again": "repeat return close open stay still halt hide recolor reverse pause",
     r"invisible|hides?|hidden|disappears?|vanish|vanishes|gone": "hide remove",
-    r"shows?|shown|reveals?|visible": "hide",
+    r"shows?|shown|reveals?|visible": "hide recolor",
     r"shut|shuts|close|closes": "close stay still open begin order together speed",
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
@@ -159,9 +155,12 @@ _THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
 _BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")
 _BY_HOW_MUCH = re.compile(r"\b(?:earlier|sooner|later)\b")
 _BACK_IN = re.compile(r"\bback(?: in)?\b")
-_NEGATED = ("hide", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
+_NEGATED = ("hide", "remove", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")
+_AS_IT_DOES = re.compile(
+    r"\b(?:\w+ )?as (?:it|he|she|they|now|\|)(?: \w+)? ?(?:does|do|is|was|goes|opens|moves)?(?: now)?\b"
+)
 _WISHED = re.compile(r" , (?:and |but )?(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b")
 _TWO_ORDERS = re.compile(  # "open it, and once it is open paint it red"
     r"^(?:open|close|shut|push|pull|move|slide|roll|lift|spin|turn|stop|start|freeze|hide|remove|delete) \|.*"
@@ -188,15 +187,18 @@ def _says_no_more(kind: str, said: Said, left: str) -> bool:
     if kind in ("open", "close") and isinstance(said.moment.start, float):
         left = _BY_HOW_MUCH.sub(" ", left)  # "a bit sooner, at 2 s"
     if kind == "begin":
-        left = HELD_BACK.sub(" ", left)
+        left = BEFORE_IT.sub(" ", HELD_BACK.sub(" ", left))
         if is_opened(said.things[0]):
             left = _BACK_IN.sub(" ", left)  # the beginning of its closing
+    if kind in ("halt", "stay", "amount"):
+        left = _without(left, _NO_MORE, _AS_IT_DOES)
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY):
         return False
     if _WISHED.search(f"{said.text} {said.idle}") or _TWO_ORDERS.search(left):
         return False
     if kind not in _NEGATED and _NOT.search(_without(left, _DISLIKES, _TOO_FAST, _TOO_SLOW, _NO_MORE)):
-        return kind == "begin" and _LATER.search(left) is not None  # "not at once, it waits"
+        waits = _LATER.search(left) is not None or isinstance(said.moment.stop, float)
+        return kind == "begin" and waits  # "not at once, it waits", "do not open it till 3 s"
     manner = _MANNER.search(left)
     return manner is None or manner["verb"] in AUXILIARIES or has_form(manner["verb"], tuple(SENSES), "plain", "s")
 
@@ -229,6 +231,7 @@ _TOWARDS = re.compile(
     r"\b(?:to|towards?|next to|beside|by|near|against|alongside|close to)(?: (?:the side of|stand by))? $"
 )
 _WAYS = {"up": "up", "upwards": "up", "left": "to the left", "right": "to the right", "down": "down"}
+_RISES = {"lift": "up", "raise": "up", "rise": "up", "rises": "up", "hoist": "up", "lower": "down", "sink": "down"}
 _LENGTH = re.compile(
     r"(?:\d+(?:\.\d+)?|half a|a|one|two|three|fifty|thirty|twenty|ten|forty) ?"
     r"(?:m|cm|met(?:re|er)s?|centimet(?:re|er)s?)\b"
@@ -275,7 +278,7 @@ def _is_to_be_seen(said: Said) -> bool:
     return _APPEARS.search(said.text) is not None and _NOT.search(said.text) is None
 
 
-_OUT_OF = re.compile(r"\| (?:right |well |clean )?(?:out of|from|off) \|$")
+_OUT_OF = re.compile(r"\| (?:right |well |clean )?(?:out of|from|off) \|(?= ?[,.!]|$)")
 
 
 def _remove(said: Said) -> Iterator[Wish]:
@@ -288,9 +291,11 @@ def _move(said: Said) -> Iterator[Wish]:
     if len(said.things) == 2 and _TOWARDS.search(said.beside.split("|")[-2]):
         yield Wish(f"move {said.things[0]} to {said.things[1]}", said.moment, things=2)
     length = _LENGTH.search(said.text)
-    ways = {_WAYS[word] for word in said.beside.split() if word in _WAYS}
+    words = said.beside.split()
+    ways = {_WAYS[word] for word in words if word in _WAYS} or {_RISES[word] for word in words if word in _RISES}
     if len(ways) == 1 and length is not None:
-        yield Wish(f"move {said.things[0]} {ways.pop()} by {length[0]}", said.moment, holds=length[0])
+        things = 1 + (_OUT_OF.search(said.beside) is not None)
+        yield Wish(f"move {said.things[0]} {ways.pop()} by {length[0]}", said.moment, things, length[0])
 
 
 # -- turns and repeats -----------------------------------------------------------------------------------------------
@@ -298,7 +303,8 @@ def _move(said: Said) -> Iterator[Wish]:
 _TIMES = re.compile(r"\b(?:once|one time|twice|two times|three times|thrice|four times)\b")
 _ONCE = ("once", "one time")
 _ROUND = re.compile(
-    r"\b(?:one|a) (?:[a-z]+ ){0,2}(?:turn|circle|spin|rotation|twirl|pirouette|round)\b|\ball the way round\b"
+    r"\b(?:one|a) (?:[a-z]+ ){0,2}(?:turn|circle|spin|rotation|twirl|pirouette|round)\b|\ball the way round\b|"
+    r"\b(?:a )?(?:full )?360(?: degrees?)?\b"
 )
 _BACKWARDS = re.compile(
     r"\b(?:back|backwards?|revers\w+|in reverse|rewind|rewound|opposite|undo\w*|invert\w*|flip\w*|contrary)\b"
@@ -309,12 +315,12 @@ _RATE = re.compile(
 )
 _IN_REVERSE = re.compile(r"\b(?:backwards?|in reverse|rewind|rewound)\b")
 _OTHER_WAY = re.compile(
-    r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction)|way (?:round|around)|direction|clockwise|anti|"
-    r"counter)\b"
+    r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction|side|sense)|way (?:round|around)|direction|"
+    r"clockwise|anti|counter)\b"
 )
 
 
-_STANDS_ON = re.compile(r"\| (?:\w+ ){0,3}(?:on|in|by|near|at|behind|under|beside) \|")  # "it spins on the table"
+_STANDS_ON = re.compile(r"\| (?:\w+ ){0,6}(?:on|in|by|near|at|behind|under|beside) \|")  # "it spins on the table"
 
 
 def _with_its_place(said: Said) -> int:
@@ -427,6 +433,9 @@ def _begin(said: Said) -> Iterator[Wish]:
         return
     moment, sign = said.moment, _sign(said.text)
     if sign is not None:
+        by = any(words.startswith("by ") for words in moment.said)
+        if by and isinstance(moment.stop, float) and moment.start is None:  # "delay it by one second"
+            yield Wish(pace(said.whose, "later", seconds=sign * moment.stop), Moment(), spent=moment.stop)
         for seconds, words in _durations(said.text):
             yield Wish(pace(said.whose, "later", seconds=sign * seconds), Moment(), holds=words)
         if moment.lasting is not None and moment.start is None and moment.stop is None:
@@ -517,8 +526,21 @@ _HALFWAY = {"state": "halfway", "part": "from"}
 _HALF_DONE = re.compile(r"\b(?:half ?way|half (?:of )?(?:the|its|his|her) (?:way|fall|drop|walk|swing)|midway)\b")
 
 
+_MIDDLE_OF = re.compile(r"\b(?:in|at|on|over) the (?:very )?(?:middle|centre|center) of \|")
+
+
+def _in_the_middle(said: Said) -> Command | None:
+    """The command to stand still where something is in the middle of a goal; None if that is not said."""
+    query = said.thing(said.goals[0]) if len(said.goals) == 1 and _MIDDLE_OF.search(said.beside) else None
+    if query is None or said.event:
+        return None
+    return replace(pace(said.whose, "stop"), during={"state": "closest", "anchors": (query,), "part": "from"})
+
+
 def _pause(said: Said) -> Iterator[Wish]:
     moment, rest = said.moment, pace(said.whose, "stop")
+    if (there := _in_the_middle(said)) is not None and moment.lasting is not None and moment.start is None:
+        yield Wish(there, replace(moment, taken=False), things=2)
     half = _HALF_DONE.search(said.beside)
     if half is not None and moment.lasting is not None and moment.start is None and not said.event:
         rest = replace(rest, during=_HALFWAY)
@@ -534,6 +556,8 @@ def _pause(said: Said) -> Iterator[Wish]:
 
 def _halt(said: Said) -> Iterator[Wish]:
     moment = said.moment
+    if (there := _in_the_middle(said)) is not None and not said.told:
+        yield Wish(there, Moment(), things=2)
     waits = moment.start is None and moment.stop is not None  # it moves afterwards
     if said.told and moment.lasting is None and (moment.stop in (None, "end") or waits):
         yield Wish(pace(said.whose, "stop"), _plainly(said))
@@ -544,8 +568,11 @@ def _halt(said: Said) -> Iterator[Wish]:
             yield Wish(replace(pace(said.whose, "stop"), during=_HALFWAY), Moment(), holds=half[0])
 
 
+_KEPT_ONLY = re.compile(r"(?:please |just )*(?:keep|leave|put|have) \|(?: please)?")  # it, and not its motion
+
+
 def _still(said: Said) -> Iterator[Wish]:
-    if not said.told:
+    if not said.told and not _KEPT_ONLY.fullmatch(said.beside):
         yield Wish(pace(said.whose, "stop"), Moment(), things=1 + len(said.goals))
 
 

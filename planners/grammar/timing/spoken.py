@@ -1,0 +1,30 @@
+"""What is written as it is spoken: "start movin it soon as the drawer's shuttin"."""
+
+from __future__ import annotations
+
+from ....gaussians import late_re as re
+from ..tagging.spelling import is_word
+from ..vocabulary.nouns import is_known
+from .verbs import SENSES, has_form
+
+_DROPPED = re.compile(r"\b(?P<stem>[A-Za-z]{2,}in)(?:'(?![A-Za-z]))?(?![\w'])")
+_SOON_AS = re.compile(r"(?<!\bas )\bsoon as\b", re.IGNORECASE)
+_DO_NOT_BE = re.compile(r"\b(?P<not>do not|don't|dont) be (?P<doing>[a-z]+ing)\b", re.IGNORECASE)
+
+
+_SLANG = re.compile(
+    r"(?:,? (?:no cap|lol|lmao|haha+|innit|tbh|imo|fr fr|fr|bro|bruh|fam|dude|lads))+[.!]*$", re.IGNORECASE
+)
+
+
+def written(spoken: str) -> str:
+    """A text with the words in full that people shorten when they speak."""
+    text = _SOON_AS.sub("as soon as", _DROPPED.sub(_in_full, _SLANG.sub("", spoken)))
+    return _DO_NOT_BE.sub(lambda m: f"{m['not']} start {m['doing']}", text)
+
+
+def _in_full(found: re.Match[str]) -> str:
+    """A verb with its last letter: "openin" is opening, a cabin is none."""
+    stem = found["stem"].lower()
+    verb = has_form(f"{stem}g", tuple(SENSES), "ing") and not is_known(stem) and not is_word(stem)
+    return f"{found['stem']}g" if verb else found[0]
