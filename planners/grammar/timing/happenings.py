@@ -120,7 +120,8 @@ _EVENT_OVER = re.compile(
     r"(?: of (?P<who>.+?))? (?:is|has) (?:over|done|ended|finished|completed?)$"
 )
 _AT_TURN = re.compile(
-    r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at|turns|rounds|goes (?:a)?round|has "
+    r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at|"
+    r"has (?:taken|made|done)|turns|rounds|goes (?:a)?round|has "
     r"turned|has rounded|has reached) (?:(?:its|his|her|the|that) (?:left |right |sharp )?"
     r"(?:turn|turning point|corner|bend|curve)|(?:to )?where (?:it|he|she) (?:turns|makes (?:its|his|her|the) turn))$"
 )

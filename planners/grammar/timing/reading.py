@@ -42,7 +42,7 @@ from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
 from .supposed.choosing import Offer, chosen, says_plainly
-from .supposed.kinds import COURSES, is_done_by, likely, marked
+from .supposed.kinds import COURSES, is_changed_by, is_done_by, likely, marked
 from .supposed.names import with_nouns
 from .supposed.parts import TIMES, divided, leaves_out
 from .supposed.said import Said, said_of
@@ -55,6 +55,7 @@ Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain comm
 Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
 
 _HIDDEN = 0.6  # probability from which something is to be hidden though no word says so
+_SURELY = 0.7  # probability from which it speaks against another change of a motion
 _SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 
 
@@ -173,12 +174,13 @@ class TimeReader:
             least: probability from which a kind counts.
         """
         alike = len({op["op"] for op in ops}) == 1 and (len(ops) == 1 or ops[0]["op"] == "recolor")
-        if not alike or ops[0]["op"] not in _NO_MOTION or (ops[0].get("when") or When()).gradual:
+        if not alike or ops[0]["op"] not in _OF_A_KIND or (ops[0].get("when") or When()).gradual:
             return False
         if ops[0]["op"] == "delete" and ops[0].get("when") is not None and _SWITCHED_OFF.search(cleaned):
             return True
         told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
-        if told is None and ops[0]["op"] not in _LOOKS_OR_THINGS:
+        op, change = str(ops[0]["op"]), ops[0].get("change")
+        if told is None and op not in (*_LOOKS_OR_THINGS, "pace"):
             return False
         if ops[0]["op"] == "scale" and not _SPEEDS.search(cleaned):
             return False  # "too slow. Double it" makes nothing larger
@@ -187,9 +189,11 @@ class TimeReader:
         kind, chance = next(iter(likely(cleaned)), ("", 0.0))
         if told is None and kind not in _PACED:
             return False  # "three more blocks, all green" are put in
-        if chance >= least and (kind, ops[0].get("change")) in (("open", "close"), ("close", "open")):
-            return True
-        return chance >= least and not is_done_by(kind, str(ops[0]["op"]))
+        if (kind, change) in (("open", "close"), ("close", "open")):
+            return chance >= least
+        if change in ("begin", "later") and not is_changed_by(kind, str(change)):
+            return chance >= max(least, _SURELY)
+        return chance >= least and not is_done_by(kind, op)
 
     def is_still(self, ops: Sequence[Fields]) -> bool:
         """Whether operations change how something moves that stands still in the scene."""
@@ -219,7 +223,8 @@ class TimeReader:
     def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
         """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if
         they leave none out, or if that is not told."""
-        if not ops or any(op.get("when") is not None or op["op"] not in _TIMELESS for op in ops):
+        at_all_times = all(op["op"] in _TIMELESS or op.get("change") == "stop" for op in ops)
+        if not ops or not at_all_times or any(op.get("when") is not None for op in ops):
             return None
         if any(op["target"].moving is not None for op in ops):
             return None  # "the second book that falls"
@@ -652,9 +657,11 @@ _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
 _TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
 _WISHED = ("recolor", "delete")
 _PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
+_OF_A_KIND = (
+    "opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate", "rotate", "scale", "move",
+    "spin", "pace",
+)  # fmt: skip
 _LOOKS = ("opacity", "recolor", "restyle")
-_NO_MOTION = ("opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate", "rotate",
-              "scale")  # fmt: skip
 _THROUGHOUT = re.compile(r"\b(?:throughout|all the (?:way|time)|(?:whole|entire) (?:film|time|clip|video))\b")
 _PACED = (*COURSES, "amount")
 _LOOKS_OR_THINGS = ("insert", "recolor", "rotate", "scale")

@@ -27,7 +27,14 @@ _DONE_BY = {  # the operations by which a wish of a kind is done; the other kind
     "spin": ("spin", "orbit", "rotate", "pace"),
     "amount": ("articulate", "pace", "move"), "open": ("articulate", "pace"), "close": ("articulate", "pace"),
 }  # fmt: skip
-_COURSED_BY = ("pace", "articulate", "order", "spin", "move")
+_COURSED_BY = ("pace", "articulate", "order", "spin", "move", "follow")
+_CHANGED_BY = {  # changes of a motion by which a wish of a kind is done
+    "begin": ("begin", "later", "stop"), "speed": ("speed", "begin"), "duration": ("begin", "speed"),
+    "pause": ("stop",), "halt": ("stop", "part"), "still": ("stop",), "reverse": ("reverse", "mirror", "return"),
+    "repeat": ("repeat", "back_and_forth"), "return": ("return", "reverse", "back_and_forth"),
+    "longer": ("go_on", "repeat", "begin", "speed"), "stay": ("stop",), "amount": ("part", "stop"),
+    "together": ("begin", "later"), "order": ("begin", "later"),
+}  # fmt: skip
 LEAST = 0.08  # probability of a kind that is tried
 MOST = 4  # kinds that are tried
 
@@ -50,6 +57,11 @@ def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
 def is_done_by(kind: str, op: str) -> bool:
     """Whether an operation may be what a wish of a kind asks for."""
     return op in _DONE_BY.get(kind, _COURSED_BY)
+
+
+def is_changed_by(kind: str, change: str) -> bool:
+    """Whether a change of a motion may be what a wish of a kind asks for."""
+    return change in _CHANGED_BY.get(kind, (change,))
 
 
 def marked(words: Sequence[str]) -> tuple[Span, ...]:

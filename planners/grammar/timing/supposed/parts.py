@@ -23,6 +23,7 @@ from ..happenings import CONJUNCTION, IT, Happening, clause_of
 from ..happenings import cut as happenings_in
 from ..manner import Thing
 from ..moments import DURATION, TIMED, End, Moment, cut, seconds_of
+from ..restated.restating import restated
 from ..verbs import SENSES, has_form
 from .kinds import is_any_word, marked
 from .names import named as names_in
@@ -39,14 +40,17 @@ _LEADING = re.compile(
 _BARE = re.compile(
     r"^(?:(?:by|at|on|from|in|to|till|until|after|before|up|for|over|within|during|the|only|just|about|around|exactly|"
     r"say|like|mark|starting|beginning|finished|done|,) )*(?P<value>.+?)(?: (?:mark|on|onwards?|already|sharp|flat|in|"
-    r"long))*$"
+    r"long|on the dot|exactly|precisely|or so|(?:has|have) (?:passed|elapsed|gone(?: by)?)|(?:is|are) (?:over|up)))*$"
 )
 _AS = re.compile(
     r"^(?:all the while|the whole time(?: that)?|(?:for|in|during) (?:the|that) (?:time|bit|part|stretch|moments?|"
     r"seconds|period|phase)(?: (?:that|where|when|in which|during which))?) (?=\w)"
 )
+_FROM_EVENT = re.compile(
+    r"^(?:from|starting (?:from|with)|with|at) (?:the|its|his|her) (?P<event>turn|fall|drop)(?: on(?:wards?)?)?$"
+)
 _GERUND = re.compile(r"^(?P<word>after|once|when|while|before|until) (?P<doing>[a-z]+ing)(?= |$)")
-_WHERE = re.compile(r"^(?:at )?(?:the (?:point|place|spot|corner) )?(?:where|upon) (?=\w)")
+_WHERE = re.compile(r"^(?:right |just |exactly )?(?:at )?(?:the (?:point|place|spot|corner) )?(?:where|upon) (?=\w)")
 _WHERE_IN = re.compile(
     r"(?<!\bto )(?<!\bnear )\bwhere\b(?= (?:it|he|she|they|the) )(?! \w+ (?:is|are|was|were|stands?|sits?|lies?)\b)"
 )
@@ -56,7 +60,12 @@ _ALL = re.compile(
 )
 _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     (re.compile(r"\b(?:middle|half ?way|half time|midway|half the)\b"), "middle"),
-    (re.compile(r"\b(?:end|ends|finish|close|last frame|over|finale)\b"), "end"),
+    (
+        re.compile(
+            r"^(?:un)?till? the (?:very )?last (?:second|moment)$|\b(?:end|ends|finish|close|last frame|over|finale)\b"
+        ),
+        "end",
+    ),
     (
         re.compile(
             r"\b(?:beginning|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b|"
@@ -121,6 +130,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         phrase = _LEADING.sub("", phrase)
         if (delay := _DELAY.match(phrase)) is not None and (seconds := seconds_of(delay["delay"])) is not None:
             phrase, moment, delayed = phrase[delay.end() :], replace(moment, start=seconds), True
+        if (lain := _HAS_BEEN.match(phrase)) is not None and (seconds := seconds_of(lain["delay"])) is not None:
+            phrase, moment, delayed = _so_far(lain), replace(moment, start=seconds), True
         if (told := _told(tag, phrase, thing)) is None:
             return None
         found, event = told
@@ -171,6 +182,20 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         text, (*things, *goals), moment, happening is not None, thing, goals, idle,
         listed(words, spans, thing), " ".join(word for at, word in enumerate(words) if at not in marks),
     ), happening  # fmt: skip
+
+
+def _so_far(found: re.Match[str]) -> str:
+    """What was so for some time, as what begins it: "once it has been lying there" is once it has stopped."""
+    state = found["state"].strip()
+    if re.fullmatch(r"(?:lying|resting|sitting|standing|still|there|on|at|down)\b.*", state):
+        return f"{found['who']} has stopped"
+    return f"{found['who']} is {state}"
+
+
+_HAS_BEEN = re.compile(
+    r"^(?P<who>(?:once|after|when|as soon as|only after|from when) .+?) (?:has|have|is|'s|was|had) been "
+    rf"(?P<state>[a-z ]+?)(?: for)? (?P<delay>{DURATION})$"
+)
 
 
 def _told(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, Happening | None] | None:
@@ -229,6 +254,8 @@ def _with_goal(
 
 def _is_odd(words: Sequence[str]) -> bool:
     """Whether words that belong to the sentence hold one that is none: "around nothing blorp"."""
+    if words[0] in ("so", "because", "as", "since", "for", "like", "if"):
+        return False
     return words[0].isalpha() and any(word.isalpha() and not is_any_word(word) for word in words)
 
 
@@ -310,6 +337,8 @@ def _name(words: Sequence[str], start: int, stop: int, thing: Thing) -> str:
     """A name with a mark, and the noun behind it if that is a part of it: "[the coat] rack"."""
     said = " ".join(words[start:stop]).strip(" ,.")
     longer = f"{said} {words[stop]}" if stop < len(words) and is_known(words[stop]) else ""
+    if longer and CONJUNCTION.match(f"{words[stop]} it"):
+        longer = ""  # "hold [the door] till 3 s"
     if longer and thing(longer) is not None and not has_form(words[stop], tuple(SENSES), "plain", "s"):
         return longer
     return said if thing(said) is not None else next(iter(names_in(said, thing)), said)
@@ -328,6 +357,10 @@ def _things(named: Sequence[tuple[str, str]], tag: str, thing: Thing) -> tuple[s
 def _joined(one: Moment, other: Moment) -> Moment | None:
     """Both times as one; None if both tell the same part of it, each another. A number tells more than a name: "at the
     end, from 4 s on"."""
+    if all(isinstance(moment.start, float) for moment in (one, other)):
+        one, other = sorted((one, other), key=lambda moment: float(moment.start or 0.0) >= 0)
+        if one.start is not None and float(one.start) < 0 <= float(other.start or 0.0):
+            one = replace(one, start=None)  # "in the last two seconds, from 3 s on"
     for key in ("start", "stop", "lasting"):
         told = [getattr(moment, key) for moment in (one, other)]
         if None in told or told[0] == told[1]:
@@ -350,7 +383,7 @@ def _moment(tag: str, phrase: str) -> Moment | None:
         return None
     if tag == "to" and re.match(r"by (?:the )?(?:very )?end\b", phrase):
         return Moment(stop="end", said=(phrase,))
-    phrase = _WHOLE_SECONDS.sub("", phrase)
+    phrase = _PASSED.sub("", _WHOLE_SECONDS.sub("", phrase))
     rest, moment = cut(phrase)
     if moment != Moment() and not any(is_word(word) or is_known(word) for word in rest.strip(" ,.").split()):
         if tag == "to" and moment.start is not None and moment.stop is None and moment.lasting is None:
@@ -390,6 +423,7 @@ def _at(tag: str, phrase: str, value: End) -> Moment | None:
     return None
 
 
+_PASSED = re.compile(r" (?:on the dot|(?:has|have) (?:passed|elapsed|gone(?: by)?)|(?:is|are) (?:over|up))$")
 _WHOLE_SECONDS = re.compile(r"\b(?:whole|full|entire|good|solid|complete) (?=(?:seconds?|secs?)\b)")
 _UNTIL_THEN: dict[Part, Part] = {"from": "until", "while": "until", "after": "until_end"}
 _WITH_THE_FILM = re.compile(r"\b(?:with|as) the (?:film|clip|video|movie|scene|shot)$")
@@ -419,10 +453,13 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
         of = names_in(half["who"] or half["what"], thing)[:1]
         whose = thing(of[0]) if of and (half["who"] or half["way"].startswith((" through", " of"))) else None
         return Happening(During(state="halfway", of=whose or IT, part="until" if tag == "to" else "from"), phrase)
+    phrase = re.sub(r"^(while|as) its (?=[a-z]+ing\b)", r"\1 it is ", phrase)
+    if (noun := _FROM_EVENT.match(phrase)) is not None and tag == "from":
+        phrase = f"from when it {noun['event']}s"
     phrase = _GERUND.sub(r"\g<word> it is \g<doing>", _WHERE.sub("when ", _AS.sub("while ", phrase)))
     if (beside := _BESIDE.match(phrase)) is not None and (query := thing(beside["who"])) is not None:
         return Happening(During(state="moving", of=query, part="until" if tag == "to" else "from"), phrase)
-    for said in (phrase, f"{TIMES[tag]} {phrase}"):
+    for said in dict.fromkeys((phrase, f"{TIMES[tag]} {phrase}", restated(phrase), restated(f"{TIMES[tag]} {phrase}"))):
         for found in CONJUNCTION.finditer(said):
             if found.start() == 0 and (during := clause_of(found["word"], said[found.end() :].strip(" ,."), thing)):
                 if tag == "to" and during.part in _UNTIL_THEN:  # "... and normal again [to when it slides back]"

@@ -31,6 +31,7 @@ SURE = 0.85  # probability from which a change without a time is supposed, or an
 _STATIC = ("recolor", "hide", "remove", "move")  # kinds that need no time
 _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
+_DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
 _PROHIBITED = re.compile(
     r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b"
 )
@@ -80,7 +81,8 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
     made = _KINDS.get(kind)
     if made is None or not said.things or said.things[0].split(" ")[-1] in EVERYWHERE:
         return
-    if chance < SURE and not is_any_word(_GREETING.sub("", said.text).split(" ")[0]):
+    first, then = (*_GREETING.sub("", said.text).split(" "), "")[:2]
+    if not is_any_word(first) and _DETERMINED.match(then):
         return  # a verb that is no word may ask for anything
     timeless = not said.told and not said.moment.always
     if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
@@ -113,27 +115,42 @@ def _is_whole(wish: Wish, said: Said, left: str) -> bool:
         return False
     if (len(said.things) > wish.things and not wish.marked) or _TIMES_LEFT.search(left):
         return False
-    words = left.split()
-    if any(word.isalpha() and not is_any_word(word) for word in words):
-        return False  # "bounce it around nothing blorp"
-    return not any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in hues() for w in words)
+    return not any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in hues() for w in left.split())
 
 
 def _times(moment: Moment) -> set[End | None]:
     return {moment.start, moment.stop, moment.lasting} - {None}
 
 
+_LEFT_SO = re.compile(  # "and leave it that way", "keep it hidden before that"
+    r"(?:\b(?:and|then) |, )*\b(?:leave|keep|stay|stays) (?:it |him |her |them |\| )?(?:(?:just )?(?:that way|"
+    r"like that|like this|so|as is)|(?:hidden|away|out of sight) (?:before|until) (?:that|then)|like [a-z ]+)$"
+)
+_IF_ONLY = re.compile(  # "I would be grateful if ..."
+    r"\b(?:i|we|it) (?:would|should|will) (?:\w+ ){0,3}?(?:grateful|happy|glad|nice|nicer|good|great|lovely|better|"
+    r"best|delighted|suit \w+(?: \w+){0,2}?|appreciate it|like it|love it|prefer it|help)(?: \w+)?? if\b"
+)
+_AFTER_THAT = re.compile(r"\b(?:any ?more |ever |again |from then )?(?:after (?:that|this)|on after)\b")
+
+
+def _stops(wish: Wish) -> bool:
+    """Whether something is to stand still: nothing comes after that."""
+    return isinstance(wish.command, Command) and all(op.get("change") == "stop" for op in wish.command.ops)
+
+
 def _left(wish: Wish, said: Said) -> str:
     """The words that do not stand in a command."""
     if wish.marked:
         return said.unmarked
-    left, hue = BEFORE_IT.sub(" ", said.beside), wish.holds.split(" ")[-1]
+    left, hue = _without(said.beside, BEFORE_IT, _LEFT_SO, _IF_ONLY), wish.holds.split(" ")[-1]
     if wish.holds:
         left = re.sub(rf"(?<!\S){re.escape(wish.holds)}(?!\S)", " ", left, count=1)
     if hue in hues():
         left = re.sub(rf"(?<!\S){hue}(?!\S)", " ", left)  # "red, a good strong red"
     if wish.holds.startswith("half"):
         left = _AS_IT_DOES.sub(" ", left)
+    if _stops(wish):
+        left = _AFTER_THAT.sub(" ", left)
     return _COMPLAINED.sub(" ", left)
 
 
@@ -278,6 +295,7 @@ def _is_to_be_seen(said: Said) -> bool:
     return _APPEARS.search(said.text) is not None and _NOT.search(said.text) is None
 
 
+_OFF_A = re.compile(r"\b(?:off|from) \|")  # "half a metre off the table"
 _OUT_OF = re.compile(r"\| (?:right |well |clean )?(?:out of|from|off) \|(?= ?[,.!]|$)")
 
 
@@ -294,7 +312,7 @@ def _move(said: Said) -> Iterator[Wish]:
     words = said.beside.split()
     ways = {_WAYS[word] for word in words if word in _WAYS} or {_RISES[word] for word in words if word in _RISES}
     if len(ways) == 1 and length is not None:
-        things = 1 + (_OUT_OF.search(said.beside) is not None)
+        things = 1 + (_OUT_OF.search(said.beside) is not None or _OFF_A.search(said.beside) is not None)
         yield Wish(f"move {said.things[0]} {ways.pop()} by {length[0]}", said.moment, things, length[0])
 
 
@@ -626,6 +644,9 @@ def _opening(said: Said, verb: str) -> Iterator[Wish]:
     if verb == "open" and isinstance(said.moment.start, float) and _TOO_LATE.search(said.idle):
         yield from _begin(said)
         return
+    sign = _sign(said.text)
+    for seconds, words in _durations(said.text) if sign is not None and verb == "close" else ():
+        yield Wish(pace(said.whose, "later", seconds=sign * seconds if sign else 0.0), Moment(), holds=words)
     if _TOO_LATE.search(said.text):
         return  # by how much is not told
     if verb == "open" and (_LATER.search(said.text) or _EARLIER.search(said.text)):
