@@ -165,7 +165,7 @@ def _wrong(expect: dict[str, Any], effect: _Effect) -> str:
     if not wrong and "order" in expect:
         starts = [_spans(effect.course(n))[0][0] for n in expect["order"] if _spans(effect.course(n))]
         wrong = "" if len(starts) == len(expect["order"]) and starts == sorted(starts) else "the order is another"
-    return wrong or _others(named, effect)
+    return wrong or _others([*named, *expect.get("order", ())], effect)
 
 
 def _together(expect: dict[str, Any], named: Sequence[str], effect: _Effect) -> str:
@@ -252,7 +252,8 @@ def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list
         return f"it ends at {stop:.2f} s"
     if "starts_after_s" in expect and start < expect["starts_after_s"]:
         return f"it begins at {start:.2f} s"
-    taken = spans[-1][1] - (start if closes else spans[0][0])
+    later = closes or (expect["kind"] == "path" and start > spans[0][0])  # it goes on from another movement
+    taken = spans[-1][1] - (start if later else spans[0][0])
     if "duration_s" in expect and abs(taken - expect["duration_s"]) > 0.4:
         return f"it takes {taken:.2f} s"
     for a, b in [expect["frozen"]] if "frozen" in expect else []:

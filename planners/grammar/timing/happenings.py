@@ -232,6 +232,8 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
         and manner.only("way", "back", "goal", "at", "whom", "origin", "endless", "state", "degrees")
         and not place
     ):
+        if manner.state == "still":
+            return "moving", _ENDED  # "it goes still"
         own = "falling" if sense == "fall" and not ended else _GOINGS.get(sense, "moving")
         if clause.verb is not None and clause.verb.first == "turn":
             own = "turning"

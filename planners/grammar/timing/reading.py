@@ -173,22 +173,24 @@ class TimeReader:
         Args:
             least: probability from which a kind counts.
         """
-        alike = len({op["op"] for op in ops}) == 1 and (len(ops) == 1 or ops[0]["op"] == "recolor")
+        alike = len({op["op"] for op in ops}) == 1
         if not alike or ops[0]["op"] not in _OF_A_KIND or (ops[0].get("when") or When()).gradual:
             return False
         if ops[0]["op"] == "delete" and ops[0].get("when") is not None and _SWITCHED_OFF.search(cleaned):
             return True
         told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
         op, change = str(ops[0]["op"]), ops[0].get("change")
-        if told is None and op not in (*_LOOKS_OR_THINGS, "pace"):
+        if told is None and op not in (*_LOOKS_OR_THINGS, "pace", "articulate"):
             return False
         if ops[0]["op"] == "scale" and not _SPEEDS.search(cleaned):
             return False  # "too slow. Double it" makes nothing larger
         if ops[0]["op"] == "rotate" and not (self._moves is not None and self._moves(ops[0]["target"])):
             return False  # "turn the chair round to face the other way"
         kind, chance = next(iter(likely(cleaned)), ("", 0.0))
-        if told is None and kind not in _PACED:
+        if told is None and (kind not in _PACED or op == "articulate"):
             return False  # "three more blocks, all green" are put in
+        if (kind, change) == ("stay", "open") and told is None:  # where it opens and closes by itself
+            return self._moves is not None and self._moves(ops[0]["target"]) is True and chance >= least
         if (kind, change) in (("open", "close"), ("close", "open")):
             return chance >= least
         if change in ("begin", "later") and not is_changed_by(kind, str(change)):
@@ -365,6 +367,8 @@ class TimeReader:
                     found = tuple(self._understand(part))
                 except Refusal as error:
                     refusal = refusal or error
+            if ops and _GOES_BACK_WHEN.search(part):
+                return None
             if found and ops and _AGAIN.search(part) and goes_back(ops[-1], found):
                 continue  # "then green again"
             if found and says_again(ops, found):
@@ -719,12 +723,17 @@ _STAMP = re.compile(
 )  # "0:02"
 
 
+_FILM_ENDS = re.compile(
+    r"\b(until|till|when|as|once) (?:the )?(?:whole )?(?:film|clip|video|movie|scene|shot) (?:ends|is over|finishes|"
+    r"stops|is done)",
+    re.IGNORECASE,
+)
 _NO_NEED = re.compile(r"(?: ?,)? (?:and |there is )?no need to (?:wait|hurry|rush)\b[^,.;!]*", re.IGNORECASE)
 
 
 def _in_words(cleaned: str) -> str:
     """The words and marks of an instruction, with spaces between."""
-    cleaned = _NO_NEED.sub("", cleaned)
+    cleaned = _FILM_ENDS.sub(r"\g<1> the end", _NO_NEED.sub("", cleaned))
     stamped = _STAMP.sub(lambda m: f"{60 * int(m['minutes']) + int(m['seconds'])} s", cleaned)
     ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", stamped)
     return " ".join(w.text for w in split(ranged))

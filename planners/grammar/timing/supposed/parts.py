@@ -92,11 +92,13 @@ _BESIDE = re.compile(  # "set off with the robot", "at the same time as the top 
 _UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
 _REVERTED = re.compile(  # ", and revert when it slides back"
     r"(?: ,)?(?: (?:and|but|then))+ (?:(?:it|let it|have it|should|to|make it) )*"
-    r"(?:reverts?|(?:goes|go|turns?|turning|changes?|turn it|put it|set it|change it|going) back|returns?|back|normal)"
+    r"(?:reverts?|[a-z]+ again|(?:goes|go|turns?|turning|changes?|turn it|put it|set it|change it|going) back|"
+    r"returns?|back|normal)"
     r"(?: (?:again|to|as|its|the|his|her|normal|usual|old|original|own|before|it was|colou?r|look))* "
     r"(?P<then>(?:when|once|as soon as|after|at|by) .+)$"
 )
 _OFF_IT = re.compile(r"\b(?:it|he|she) (?:is|'s|has|gets|rolls|comes|moves|goes)(?: \w+)? off(?: it| again)?$")
+_PRONOUN = re.compile(r"\b(?:it|him|her|them)\b")
 _HOW_MANY = re.compile(  # ", all four of them"
     r"(?:all|both|each|every one)(?: (?:the )?(?:two|three|four|five|six))?(?: of (?:them|those|these))?"
 )
@@ -118,11 +120,14 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     """
     moment, spans = Moment(), [_with_half(words, span) for span in spans]
     happening: Happening | None = None
-    delayed = False
+    delayed, skipped = False, list[tuple[int, int]]()
     for tag, start, stop in spans:
         if tag not in TIMES:
             continue
         phrase = " ".join(words[start:stop]).strip(" ,.;:")
+        begun = moment.start is not None or (happening is not None and happening.during.part != "until")
+        if tag == "from" and begun and (gone := _gone_back(words, spans, start)) is not None:
+            tag, skipped = "to", [*skipped, (gone, start)]
         if tag == "from" and _UNTIL.match(phrase):
             tag = "to"
         if tag in ("from", "to") and _LASTS.match(phrase):
@@ -148,6 +153,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     if any(tag == "off" and start and _is_odd(words[start:stop]) for tag, start, stop in spans):
         return None
     left = {at for tag, start, stop in spans if tag in TIMES or tag in _IDLE for at in range(start, stop)}
+    left |= {at for start, stop in skipped for at in range(start, stop)}
+    spans = [s for s in spans if s[0] in TIMES or not any(start <= s[1] < stop for start, stop in skipped)]
     again = [span for span in spans if span[0] == "x" and _HOW_MANY.fullmatch(" ".join(words[span[1] : span[2]]))]
     left |= {at for _, start, stop in again for at in range(start, stop)} if len(spans) > len(again) else set()
     spans = [span for span in spans if span not in again] if len(spans) > len(again) else spans
@@ -172,7 +179,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     goals = _things(named, "y", thing)
     things = _things(named, "x", thing) or tuple(name for name in names_in(text, thing) if name not in goals)[:1]
     if not things and happening is not None:  # "once the door has opened, shut it"
-        if any(names_in(" ".join(words[start:stop]), thing) for tag, start, stop in spans if tag in _IDLE):
+        idle_names = (names_in(" ".join(words[start:stop]), thing) for tag, start, stop in spans if tag in _IDLE)
+        if any(idle_names) and _PRONOUN.search(text) is None:
             return None  # "that lamp would look so pretty ... in pink as long as the fan turns"
         things = names_in(happening.said, thing)[:1]
     goals = tuple(name for name in goals if name not in things)
@@ -257,6 +265,13 @@ def _is_odd(words: Sequence[str]) -> bool:
     if words[0] in ("so", "because", "as", "since", "for", "like", "if"):
         return False
     return words[0].isalpha() and any(word.isalpha() and not is_any_word(word) for word in words)
+
+
+def _gone_back(words: Sequence[str], spans: Sequence[Span], start: int) -> int | None:
+    """From where words before a time tell that things are as before from then on: "and go back to its green [once it
+    lands]"; None if they do not."""
+    before = max((stop for tag, _, stop in spans if tag in TIMES and stop <= start), default=0)
+    return before if _AS_IT_WAS.search(" ".join(words[before:start])) is not None else None
 
 
 def _with_half(words: Sequence[str], span: Span) -> Span:

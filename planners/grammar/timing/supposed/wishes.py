@@ -239,7 +239,7 @@ def _plainly(said: Said) -> Moment:
 
 _SHADE = r"very dark|very light|dark|deep|light|pale|bright|vivid"
 _APPEARS = re.compile(
-    r"\b(?:appears?|shows?|shown|visible|pops? (?:up|in)|comes? in(?:to)?|reveals?|there only|turns? up)\b"
+    r"\b(?:appears?|shows?|showing|shown|visible|pops? (?:up|in)|comes? in(?:to)?|reveals?|there only|turns? up)\b"
 )
 _NO_MORE = re.compile(r"\b(?:no|not|nothing) (?:more|further|farther|wider)(?: than (?:that|this))?\b")
 _NOT = re.compile(r"\b(?:not|no|never|without|invisible|nobody|nothing)\b")
@@ -401,7 +401,9 @@ def _return(said: Said) -> Iterator[Wish]:
 
 # -- when and how fast -----------------------------------------------------------------------------------------------
 
-_A_PART = re.compile(r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back|returns?|again)\b")  # of a movement that has two
+_A_PART = re.compile(
+    r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|(?<!play )(?<!plays )(?<!playing )(?<!played )back|returns?|again)\b"
+)  # of a movement that has two
 _SHUTS = re.compile(r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|(?:go|going|slides?|sliding|moving|comes?|coming) back)\b")
 _A_STRETCH = re.compile(r"\b(?:first|second|last|latter|other|final) (?:half|third|quarter|part|stretch|leg|bit)\b")
 _LATER = re.compile(r"\b(?:later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
