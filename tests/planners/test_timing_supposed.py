@@ -362,6 +362,7 @@ def test_what_no_operation_tells_is_refused(text: str) -> None:
         ("swap the order: blue book comes down first, then green, red one last", "blue green red"),
         ("I'd prefer the green book falling first, before the red one", "green red"),
         ("the red book is to fall after the blue one", "blue red"),
+        ("let the red ball and the green ball fall after the blue ball", "blue red green"),
     ],
 )
 def test_an_order_is_told_by_colours(text: str, first: str) -> None:
@@ -393,7 +394,7 @@ def test_times_with_two_ends(text: str, when: dict[str, object] | None) -> None:
     [
         ("I'd love the wardrobe painted pink for my little girls", "recolor"),
         ("Could the vase be cream instead of blue? It'd match the linens.", "recolor"),
-        ("The coffee table disturbs me the view, please take it away completely", "delete"),
+        ("I would love the coffee table gone, it only gets in our way", "delete"),
         ("Coat rack's in the way of the shot. Get rid of it.", "delete"),
     ],
 )
@@ -409,6 +410,17 @@ def test_wishes_without_a_time(text: str, op: str) -> None:
         "the neighbours think the sofa is red",
         "is the wardrobe painted pink in all of the pictures?",
         "my granddaughter has the same bed in pink",
+        "how about not making the sofa blue",
+        "I would like the sofa to be anything but blue",
+        "will the lamp be red",
+        "please check the lamp is red",
+        "I said I want the sofa blue yesterday",
+        "it would look better if you left the sofa blue",
+        "take the blue sofa apart",
+        "the sofa would look better blue, but leave it",
+        "bin it or paint the lamp red",
+        "do not be alarming",
+        "lower the lamp to 30 cm off the floor at 2 s",
     ],
 )
 def test_what_tells_or_asks_paints_nothing(text: str) -> None:
@@ -422,3 +434,30 @@ def test_words_are_read_as_they_are_spoken() -> None:
     ):
         assert planned(spoken) == planned(written) != []
     assert planned("move the basin to the cabin") == planned("Move the basin to the cabin.")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "the red ball fell before the blue ball",
+        "I see the red ball fall first and the blue ball last",
+        "between the red ball and the blue ball the green ball should fall",
+        "have the red block go last, and the blue block just before it, the green block leading",
+    ],
+)
+def test_what_tells_no_order_orders_nothing(text: str) -> None:
+    assert not any(op["op"] == "order" for op in planned(text))
+
+
+def test_what_ends_a_look_is_about_what_began_it() -> None:
+    (red,) = planned("paint the lamp red when the drawer opens and back to normal when it slides back")
+    assert (red["when"]["during"]["state"], red["when"]["until"]["state"]) == ("opening", "closing")
+    (red,) = planned("paint the lamp red once the ball hits the floor and revert when it rolls off it")
+    assert red["when"]["until"]["anchors"] == [{"text": "floor"}]
+
+
+def test_a_motion_is_changed_as_its_kind_says() -> None:
+    (repeat,) = planned("do the red book falling again at 3 secs, that was funny")
+    assert repeat["change"] == "repeat"
+    (still,) = planned("turn that fan off after 2 seconds, I get cold just looking at it")
+    assert (still["op"], still["change"], still["when"]) == ("pace", "stop", {"start": 2.0})

@@ -114,7 +114,9 @@ class Move(TargetedOp):
             return self._placed(scene, bodies, context, self.place)
         if self.toward is not None:
             goals = bodies_of(scene, context.resolve(scene, self.toward).require())
-            return [self._asked(b, self._approach(scene, b, goals)) for b in bodies], said
+            ways = [self._approach(scene, b, goals) for b in bodies]
+            short = tuple(f"a wall ends its way {off:.2g} units before it" for _, off in ways if off > 0)
+            return [self._asked(b, way) for b, (way, _) in zip(bodies, ways, strict=True)], (*said, *short)
         assert self.direction is not None
         way = heading(context.viewer, scene.frame, self.direction)
         if self.distance is not None:
@@ -124,8 +126,9 @@ class Move(TargetedOp):
             said = (f"no distance was given: moved by its own extent, {step:.3g} units",)
         return [self._asked(b, way * step) for b in bodies], said
 
-    def _approach(self, scene: Scene, body: Body, goals: list[Body]) -> Array:
-        """Horizontal offset toward the nearest of the goals, by the given distance or until 3 cm before it."""
+    def _approach(self, scene: Scene, body: Body, goals: list[Body]) -> tuple[Array, float]:
+        """Horizontal offset toward the nearest of the goals, by the given distance or until 3 cm before it; and by how
+        much less a wall lets it go, scene units."""
         up = scene.frame.up_vector
         ways = [g.center - body.center for g in goals]
         ways = [w - up * (w @ up) for w in ways]
@@ -135,13 +138,15 @@ class Move(TargetedOp):
             raise InstructionError("it is already there: name a direction instead")
         way = ways[nearest] / length
         if self.distance is not None:
-            return np.asarray(way * self.distance.in_units(scene.frame))
+            return np.asarray(way * self.distance.in_units(scene.frame)), 0.0
         gap = 3 * centimetre(scene.frame, max(body.box.size))
         room = _free_way(body.box, goals[nearest].box, way, up, gap)
         if room <= 0:
             raise InstructionError("it already stands beside it: give a distance to move it anyway")
         clear = clear_length(scene, body, way * room)
-        return np.asarray(way * (clear if clear > _MOST_OF_IT * room else room))  # in a corner a little less
+        if _MOST_OF_IT * room < clear < room:
+            return np.asarray(way * clear), room - clear
+        return np.asarray(way * room), 0.0
 
     def _placed(
         self, scene: Scene, bodies: list[Body], context: Context, place: Placement

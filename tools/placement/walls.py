@@ -48,8 +48,10 @@ def require_clear_path(scene: Scene, bodies: list[Body], offsets: list[Array]) -
 def clear_length(scene: Scene, body: Body, offset: Array) -> float:
     """How far of an offset `[3]` a body can move before it meets a wall, scene units."""
     length = float(np.linalg.norm(offset))
+    if length < 1e-9 or scene.language is None or _is_structure(scene, body):
+        return length
     cm = centimetre(scene.frame, max(body.box.size))
-    free = free_share(_shrunk(body.box, cm), _wall_points(scene), offset) if length > 0 else None
+    free = free_share(_shrunk(body.box, cm), _wall_points(scene), offset)
     return length if free is None else max(0.0, free * length - cm)
 
 

@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 
 _NAMED = 0.5  # probability of a name from which a thing is called so
 _REST = "the rest of what? nothing was named before: say 'everything but the ...', or 'the background'"
-_SPOTS = ("corner", "middle", "background", "foreground")  # of a room, which no thing marks
+_SPOTS = ("corner", "middle", "foreground")  # of a room, which no thing marks
 _STACKED = 2  # how often a crop looks for what stands on what it keeps
 
 __all__ = ["STRUCTURE", "Resolver", "resolve"]  # builders of scenes need the words for structure
@@ -209,7 +209,7 @@ class Resolver:
     def _wherever(self, query: Query, out: frozenset[int]) -> Selection | None:
         """The selection without spots of the room, which no thing marks: "the lamp in the corner" is the only lamp;
         None if that is not one thing, or no such spot is named."""
-        near = [r for r in query.relations if not any(a.text.split(" ")[-1] in _SPOTS for a in r.anchors)]
+        near = [r for r in query.relations if not _is_spot(r)]
         if len(near) == len(query.relations) or query.pick != "one" or not query.text:
             return None
         found = self._own(query.model_copy(update={"relations": tuple(near)}), out)
@@ -604,3 +604,9 @@ def _joined(a: Selection, b: Selection) -> Selection:
 def _without(a: Selection, b: Selection) -> Selection:
     return replace(a, ids=difference(a.ids, b.ids), groups=tuple(g for g in a.groups if g not in b.groups),
                    candidates=tuple(c for c in a.candidates if c.group not in b.groups))  # fmt: skip
+
+
+def _is_spot(relation: Relation) -> bool:
+    """Whether a relation only says that something is at a spot of the room, and not of a thing in it."""
+    spots = (a.text in _SPOTS and not a.relations and not a.colors for a in relation.anchors)
+    return relation.name in ("inside", "on", "next_to") and all(spots)

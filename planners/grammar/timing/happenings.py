@@ -40,6 +40,10 @@ class Happening:
         if self.during.part not in ("from", "after", "while") or other.during.part not in ("until", "until_end"):
             return None
         during, until = self.during, other.during
+        if during.anchors and IT in until.anchors:  # "once it hits the floor, until it rolls off it"
+            until = until.model_copy(update={"anchors": during.anchors})
+        if during.state in ("open", "opening", "fully_open") and until.state == "moving" and " back" in other.said:
+            until = until.model_copy(update={"state": "closing"})
         if until.of == IT and during.of not in (None, IT):
             until = until.model_copy(update={"of": during.of})
         elif during.of == IT and until.of not in (None, IT):

@@ -81,6 +81,7 @@ BACK_WHEN = re.compile(
     r"is off|has "
     r"left|is gone|ends?|does not|is past|has passed|moves? on|rolls? off)(?: it)?$"
 )
+GOES_BACK_WHEN = re.compile(r"\b(?:back|normal|again|returns?|reverts?)\b.*\b(?:once|when|as soon as|until|till) \w+")
 NOISE = re.compile(
     r"(?:^| )(?:lol|haha|pls|plz|please|thanks|thank you|dear|mate|ok|okay|you know|cheers|kindly|if you can|if "
     r"possible|"

@@ -164,7 +164,8 @@ class TimeReader:
         if found is None or all(op.get("when") is not None for op in found):
             return found
         once = all(op["op"] in _WISHED and op.get("when") is None for op in found)
-        return found if once and is_wished(" ".join(word.text for word in split(cleaned.lower()))) else None
+        words = _in_words(cleaned).split(" ")
+        return found if once and is_wished(words, marked(words)) else None
 
     def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields], least: float = _SAID_SO) -> bool:
         """Whether operations of a time, or of a look or a new thing, begin with one that no wish of the likeliest kind
@@ -173,11 +174,11 @@ class TimeReader:
         Args:
             least: probability from which a kind counts.
         """
-        alike = len({op["op"] for op in ops}) == 1
+        alike = len({op["op"] for op in ops}) == 1 and (len(ops) == 1 or ops[0]["op"] in ("recolor", "move"))
         if not alike or ops[0]["op"] not in _OF_A_KIND or (ops[0].get("when") or When()).gradual:
             return False
         if ops[0]["op"] == "delete" and ops[0].get("when") is not None and _SWITCHED_OFF.search(cleaned):
-            return True
+            return _RIDS.search(cleaned) is None
         told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
         op, change = str(ops[0]["op"]), ops[0].get("change")
         if told is None and op not in (*_LOOKS_OR_THINGS, "pace", "articulate"):
@@ -367,7 +368,7 @@ class TimeReader:
                     found = tuple(self._understand(part))
                 except Refusal as error:
                     refusal = refusal or error
-            if ops and _GOES_BACK_WHEN.search(part):
+            if ops and phrases.GOES_BACK_WHEN.search(part):
                 return None
             if found and ops and _AGAIN.search(part) and goes_back(ops[-1], found):
                 continue  # "then green again"
@@ -670,6 +671,7 @@ _THROUGHOUT = re.compile(r"\b(?:throughout|all the (?:way|time)|(?:whole|entire)
 _PACED = (*COURSES, "amount")
 _LOOKS_OR_THINGS = ("insert", "recolor", "rotate", "scale")
 _SWITCHED_OFF = re.compile(r"\b(?:turn|switch|shut)(?:ed|s)? (?:\w+ ){0,4}off\b", re.IGNORECASE)
+_RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 _LONGEST = 45  # words of an instruction with one wish
@@ -763,7 +765,6 @@ _OF_A_WAY = bag("it he she they its his her their is has gone down up across alo
 _AGAIN = re.compile(r"\b(?:again|back|as (?:before|usual|normal|ever)|like before)\b")
 _NOT_SEEN = re.compile(r"\b(?:not|never) (?:ever )?(?:see|be seen)\b")
 _COMES_BACK = re.compile(r"\b(?:back|returns?|comes?|again|normal|reappears?|appears?|shows?)\b")
-_GOES_BACK_WHEN = re.compile(r"\b(?:back|normal|again|returns?|reverts?)\b.*\b(?:once|when|as soon as|until|till) \w+")
 _GOES_ON = re.compile(
     r"\b(?:opens?|goes?|go|moves?|rolls?|walks?|drives?|falls?|spins?|turns?|runs?|not|continues?|"
     r"on)\b"
@@ -778,7 +779,7 @@ def _goes_without_saying(remark: str, command: Command, ends: bool) -> bool:
     """
     if _A_NUMBER.search(remark):
         return False  # "starting at one second, done by three"
-    if _GOES_BACK_WHEN.search(remark):
+    if phrases.GOES_BACK_WHEN.search(remark):
         return False  # "then back to blue once it is off"
     if _NOT_SEEN.search(remark) or _COMES_BACK.search(remark):
         return command.kind == "look" and not command.inverse

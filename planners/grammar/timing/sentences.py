@@ -12,6 +12,7 @@ from ..tagging.words import bag
 from .asides import changes_nothing, told_of
 from .manner import MOTION
 from .moments import DURATION
+from .phrases import GOES_BACK_WHEN
 from .verbs import has_form
 
 _SPLIT = re.compile(r" (?:\.|;|\n|!)(?: (?:and|so|then|but|also|ok|okay|now|just|please))* ")
@@ -129,9 +130,6 @@ def folded(said: str) -> str:
     return " . ".join(made) if made else said
 
 
-_WHEN = re.compile(r"\b(?:back|normal|again|returns?|reverts?)\b.*\b(?:once|when|as soon as|until|till) \w+")
-
-
 def _without_end(part: str) -> str:
     """A sentence without what goes without saying behind its last comma: "..., leave it up there"."""
     for joint in _LAST_JOINTS:
@@ -141,7 +139,7 @@ def _without_end(part: str) -> str:
             and len(head.split()) > 2
             and not (_LED.match(head) and " , " not in head)
             and not (joint == " while " and _HOW_IT_IS.match(tail))
-            and not _WHEN.search(tail)
+            and not GOES_BACK_WHEN.search(tail)
             and (_goes_without_saying(head, tail) or _says_no_more(tail) or changes_nothing(tail))
         ):
             return _without_end(head.rstrip(" ,"))

@@ -13,14 +13,21 @@ _DO_NOT_BE = re.compile(r"\b(?P<not>do not|don't|dont) be (?P<doing>[a-z]+ing)\b
 
 
 _SLANG = re.compile(
-    r"(?:,? (?:no cap|lol|lmao|haha+|innit|tbh|imo|fr fr|fr|bro|bruh|fam|dude|lads))+[.!]*$", re.IGNORECASE
+    r"(?:(?:,? (?:no cap|lol|lmao|haha+|innit|tbh|imo))|, (?:bro|bruh|fam|dude|lads))+[.!]*$", re.IGNORECASE
 )
 
 
 def written(spoken: str) -> str:
     """A text with the words in full that people shorten when they speak."""
     text = _SOON_AS.sub("as soon as", _DROPPED.sub(_in_full, _SLANG.sub("", spoken)))
-    return _DO_NOT_BE.sub(lambda m: f"{m['not']} start {m['doing']}", text)
+    return _DO_NOT_BE.sub(_prohibited, text)
+
+
+def _prohibited(found: re.Match[str]) -> str:
+    """A prohibition to be doing something, as one to start it: "do not be opening it", and not "do not be boring"."""
+    doing = found["doing"].lower()
+    moves = has_form(doing, tuple(SENSES), "ing") and not is_known(doing)
+    return f"{found['not']} start {found['doing']}" if moves else found[0]
 
 
 def _in_full(found: re.Match[str]) -> str:

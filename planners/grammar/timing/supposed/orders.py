@@ -11,6 +11,7 @@ from ...learned.seen import hues
 from ...tagging.words import bag
 from ..command import Command
 from ..manner import Thing
+from ..verbs import SENSES, has_form
 
 _FIRST = re.compile(r"\b(?:first|to begin with|to start with)\b")
 _LAST = re.compile(r"\b(?:last|lastly|finally|at the end|in the end|to finish)\b")
@@ -18,6 +19,7 @@ _MIDDLE = re.compile(r"\b(?:middle|second|between)\b")
 _LATER = re.compile(r"\b(?:after|following|behind)\b")
 _SOONER = re.compile(r"\b(?:before|ahead of|prior to)\b")
 _TOLD = re.compile(r"\b(?:order|then|next|followed)\b")
+_TELLS = re.compile(r"\b(?:notice[sd]?|saw|see|sees|think|thought|said|says?|know|watched|heard)\b")
 _CONTRARY = re.compile(r"\b(?:instead of|rather than|not)\b")
 _JOINTS = re.compile(r"[,.;:]|\b(?:and|then|but|with)\b")
 _BEHIND = bag("and then one first last next before after comes goes falls drops at in to")
@@ -36,19 +38,33 @@ def listed(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[Q
     if not 1 < len(named) <= _MOST:
         return ()
     gaps = [" ".join(words[a:b]) for a, b in _gaps([(start, stop) for _, start, stop in named], len(words))]
-    if any(map(_CONTRARY.search, gaps)):
+    between = gaps[1:-1]
+    if any(map(_CONTRARY.search, gaps)) or any(map(_TELLS.search, gaps)) or any(_is_past(gap) for gap in gaps):
         return ()
-    ranks, told = list[float](), _TOLD.search(" ".join(gaps)) is not None
-    for at in range(len(named)):
-        rank = _rank(_JOINTS.split(gaps[at])[-1], _JOINTS.split(gaps[at + 1])[0])
-        told |= rank is not None
-        ranks.append(at if rank is None else {"first": -1.0, "last": len(named) + at}.get(rank, at))
-        if at and _SOONER.search(gaps[at]):
-            told = True
-        elif at and _LATER.search(gaps[at]) and rank is None:
-            ranks[at], told = ranks[at - 1] - 0.5, True
-    order = sorted(range(len(named)), key=lambda at: ranks[at])
-    return tuple(named[at][0] for at in order) if told else ()
+    if any(pattern.search(gap) for gap in (gaps[0], gaps[-1]) for pattern in (_LATER, _SOONER)):
+        return ()  # "the green one before both"
+    ranks = [_rank(_JOINTS.split(gaps[at])[-1], _JOINTS.split(gaps[at + 1])[0]) for at in range(len(named))]
+    queries = [query for query, _, _ in named]
+    later = [at for at, gap in enumerate(between, 1) if _LATER.search(gap)]
+    if later:  # "both fall after the blue one"
+        return () if len(later) > 1 or any(ranks) else (*queries[later[0] :], *queries[: later[0]])
+    if "middle" in ranks and not {"first", "last"} & set(ranks):
+        return ()
+    told = any(ranks) or any(_TOLD.search(gap) or _SOONER.search(gap) for gap in gaps)
+    places = {None: 1, "middle": 1, "first": 0, "last": 2}
+    order = sorted(range(len(named)), key=lambda at: (places[ranks[at]], at))
+    return tuple(queries[at] for at in order) if told else ()
+
+
+def _is_past(said: str) -> bool:
+    """Whether words tell what something did: "fell"; and not what has been done: "after it has landed"."""
+    words = said.split()
+    return any(
+        has_form(word, tuple(SENSES), "past")
+        and not has_form(word, tuple(SENSES), "plain", "s")
+        and not {"has", "have", "had", "is", "are"} & set(words[max(0, at - 2) : at])
+        for at, word in enumerate(words)
+    )
 
 
 def in_order(things: Sequence[Query]) -> Command:

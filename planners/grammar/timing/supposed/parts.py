@@ -25,6 +25,7 @@ from ..manner import Thing
 from ..moments import DURATION, TIMED, End, Moment, cut, seconds_of
 from ..restated.restating import restated
 from ..verbs import SENSES, has_form
+from .choosing import says_plainly
 from .kinds import is_any_word, marked
 from .names import named as names_in
 from .names import with_moving
@@ -40,7 +41,7 @@ _LEADING = re.compile(
 _BARE = re.compile(
     r"^(?:(?:by|at|on|from|in|to|till|until|after|before|up|for|over|within|during|the|only|just|about|around|exactly|"
     r"say|like|mark|starting|beginning|finished|done|,) )*(?P<value>.+?)(?: (?:mark|on|onwards?|already|sharp|flat|in|"
-    r"long|on the dot|exactly|precisely|or so|(?:has|have) (?:passed|elapsed|gone(?: by)?)|(?:is|are) (?:over|up)))*$"
+    r"long|exactly|precisely|or so))*$"
 )
 _AS = re.compile(
     r"^(?:all the while|the whole time(?: that)?|(?:for|in|during) (?:the|that) (?:time|bit|part|stretch|moments?|"
@@ -167,7 +168,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         text, moment, happening = _with_unmarked(text, moment, thing, amounts)
     elif _begins(happening) and isinstance(moment.start, float) and not delayed:
         happening = None  # "after it has been opened, from 3.5 s on"
-    if happening is not None and _begins(happening) and moment.stop is None:
+    looks = any(tag == "as" for tag, _, _ in spans) or says_plainly("hide", text)
+    if looks and happening is not None and _begins(happening) and moment.stop is None:
         unwanted = [" ".join(words[start:stop]) for tag, start, stop in spans if tag == "not"]
         ended = _reverted(text, unwanted, moment, happening, thing)
         if ended is None:
@@ -271,6 +273,8 @@ def _gone_back(words: Sequence[str], spans: Sequence[Span], start: int) -> int |
     """From where words before a time tell that things are as before from then on: "and go back to its green [once it
     lands]"; None if they do not."""
     before = max((stop for tag, _, stop in spans if tag in TIMES and stop <= start), default=0)
+    if any(tag in ("x", "y") and before <= begin < start for tag, begin, _ in spans):
+        return None  # "go back to the table when it stops"
     return before if _AS_IT_WAS.search(" ".join(words[before:start])) is not None else None
 
 
@@ -401,7 +405,7 @@ def _moment(tag: str, phrase: str) -> Moment | None:
     phrase = _PASSED.sub("", _WHOLE_SECONDS.sub("", phrase))
     rest, moment = cut(phrase)
     if moment != Moment() and not any(is_word(word) or is_known(word) for word in rest.strip(" ,.").split()):
-        if tag == "to" and moment.start is not None and moment.stop is None and moment.lasting is None:
+        if tag == "to" and isinstance(moment.start, float) and moment.stop is None and moment.lasting is None:
             moment = replace(moment, start=None, stop=moment.start)  # "only gets there at five seconds"
         return moment
     if (half := _HALF.search(phrase)) is not None:

@@ -2,37 +2,50 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from .....gaussians import late_re as re
+from ...learned.marks import Span
+from ...tagging.words import bag
 
 _ORDERS = (
     r"paint|make|turn|colou?r|recolou?r|change|dye|tint|take|get rid|remove|delete|strike|lose|ditch|bin|scrap|clear|"
-    r"drop|cut|chuck|dump|toss|throw|erase|kill|give|have|let|put|withdraw|banish|do away with"
+    r"drop|cut|chuck|dump|toss|throw|erase|give|have|withdraw"
 )
 _WISHES = re.compile(
-    r"(?:^|[,.;:!] |\b(?:please|just|and|so|then|now|kindly|maybe|go ahead and|help me) )(?:please |just )?"
+    r"(?:^|[,.;:!] |\b(?:please|just|and|so|then|now|kindly|maybe) )(?:please |just |kindly )?"
     rf"(?:{_ORDERS})\b|"
-    r"\b(?:can|could|would|will|might|may|shall) (?:you|we|i|the|that|this|my|our|all|it)\b|"
-    r"\b(?:i|we) (?:would|should|will|'d|had) (?:\w+ ){0,2}?(?:like|love|prefer|want|rather|go for|appreciate|see)\b|"
-    r"\b(?:i|we) (?:\w+ )?(?:want|wish|need|prefer)\b|\bi am wanting\b|^would (?:love|like|prefer)\b|"
-    r"\b(?:should|must|ought to|needs? to|has to|have to|wants to|is to|are to|had better) (?:\w+ )?"
-    r"(?:be|go|become|turn|disappear|vanish|leave|come off)\b|\b(?:needs?|wants) (?:painting|removing|recolou?ring)\b|"
-    r"\bwould (?:\w+ )?(?:look|be|read|suit|do|work|go|feel|seem) (?:\w+ )?(?:better|nicer|nice|great|good|lovely|"
-    r"well|prettier|best|fine|perfect|in)\b|"
-    r"\b(?:better|nicer?|great|lovely|preferable|happy|grateful|delighted|happier) (?:\w+ )?(?:if|that|to have)\b|"
-    r"\b(?:how|what) about\b|\blet(?:'s| us)\b|\bplease\b"
+    r"\b(?:can|could|would|will) (?:you|we)\b|^(?:,|so|and)? ?(?:can|could|may|might) |"
+    r"\b(?:i|we) (?:would|should) (?:\w+ ){0,2}?(?:like|love|prefer|want|go for|rather have)\b|"
+    r"\b(?:i|we) (?:\w+ )?(?:want|wish|need|prefer)\b|^would (?:love|like|prefer)\b|"
+    r"\b(?:should|must|ought to|needs? to|has to|have to|wants to|is to|are to) "
+    r"(?:be|go|become|turn|disappear|vanish)\b|"
+    r"\bwould (?:\w+ )?(?:look|read|suit|do|work|go) (?:\w+ )?(?:better|nicer|nice|great|good|lovely|well|prettier|"
+    r"best)\b|^please\b"
 )
-_ASKS = re.compile(
-    r"^(?:what|which|who|whose|where|why|when|how (?!about)|is|are|was|were|does|do you|did|has|am)\b|"
-    r"\b(?:know|wonder|wondering|tell me|ask|explain|whether|think|guess|suppose|remember|imagine|describe)\b"
+_CONTRARY = re.compile(r"(?:how|what) about not\b")
+_BESIDE = bag(  # that may stand in a wish beside what is marked
+    "i we you would could can may might like love want wish prefer rather need needs to have make turn paint "
+    "painted painting change changed give get rid of be become go going take away out off down remove removed "
+    "gone disappear vanish lose ditch bin scrap strike drop delete dump toss chuck throw cut clear erase withdraw "
+    "completely altogether entirely permanently permanent please just now really so kindly maybe and then all "
+    "both in into as with for me us the a an it him her them that this one lick coat colour color look nicer "
+    "better nice good great lovely well suit read do done has must should ought there here wants seen from scene "
+    "picture"
 )
-_DENIES = re.compile(r"\b(?:not|never|nothing|no one|nobody|if|unless|except|without)\b")
 
 
-def is_wished(said: str) -> bool:
-    """Whether words ask for something: "I would love the bed in pink", and not "the bed is pink"."""
-    return _WISHES.search(said) is not None and _ASKS.search(said) is None
+def is_wished(words: Sequence[str], spans: Sequence[Span]) -> bool:
+    """Whether a sentence asks for something: "I would love the bed in pink", and not "the bed is pink already".
 
-
-def is_denied(text: str) -> bool:
-    """Whether the words of a wish say what is not to be, or on what it depends."""
-    return _DENIES.search(text) is not None
+    Args:
+        words: those of the sentence.
+        spans: the marks in them.
+    """
+    idle = {at for tag, start, stop in spans if tag in ("off", "not") for at in range(start, stop)}
+    held = {at for _, start, stop in spans for at in range(start, stop)}
+    left = [word for at, word in enumerate(words) if at not in held and word.isalpha()]
+    asked = " ".join(word for at, word in enumerate(words) if at not in idle).strip(" ,.")
+    if _CONTRARY.match(" ".join(words)):
+        return False
+    return all(word in _BESIDE for word in left) and _WISHES.search(asked) is not None

@@ -295,7 +295,7 @@ def _is_to_be_seen(said: Said) -> bool:
     return _APPEARS.search(said.text) is not None and _NOT.search(said.text) is None
 
 
-_OFF_A = re.compile(r"\b(?:off|from) \|")  # "half a metre off the table"
+_OFF_A = re.compile(r"\boff \|")  # "half a metre off the table"
 _OUT_OF = re.compile(r"\| (?:right |well |clean )?(?:out of|from|off) \|(?= ?[,.!]|$)")
 
 
@@ -311,7 +311,7 @@ def _move(said: Said) -> Iterator[Wish]:
     length = _LENGTH.search(said.text)
     words = said.beside.split()
     ways = {_WAYS[word] for word in words if word in _WAYS} or {_RISES[word] for word in words if word in _RISES}
-    if len(ways) == 1 and length is not None:
+    if len(ways) == 1 and length is not None and f"to {length[0]}" not in said.text:  # "lower it to 30 cm"
         things = 1 + (_OUT_OF.search(said.beside) is not None or _OFF_A.search(said.beside) is not None)
         yield Wish(f"move {said.things[0]} {ways.pop()} by {length[0]}", said.moment, things, length[0])
 
