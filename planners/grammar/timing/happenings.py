@@ -129,6 +129,11 @@ _AT_TURN = re.compile(
     r"turned|has rounded|has reached) (?:(?:its|his|her|the|that) (?:left |right |sharp )?"
     r"(?:turn|turning point|corner|bend|curve)|(?:to )?where (?:it|he|she) (?:turns|makes (?:its|his|her|the) turn))$"
 )
+_HAS_HIT = re.compile(r" is (?P<done>hit|left|reached|touched|crossed|entered)(?= (?:the|its|his|her|my|that) )")
+_IS_BACK = re.compile(
+    r" (?:is|gets|has got|comes|has come) back(?: in)?"
+    r"(?: (?:in|at|on|to) (?:its|his|her|the) (?:old )?(?:place|spot|home))?$"
+)
 _IS_THERE = re.compile(r" (?:gets|has got|is|arrives|has arrived|comes|has come) there$")
 _WHOLLY = re.compile(r"\b(?:totally|completely|entirely|wholly|all(?= (?:open|out|shut|closed)\b))\b")
 _LEG = r"(?:first|second|last|other|next) (?:part|half|leg|bit|stretch|section|stage)"  # of a way
@@ -143,7 +148,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
         return None
     said = _WHOLLY.sub("fully", said)
     said = _USUALLY.sub(" ", _UNDER_WAY.sub(" is moving", _DONE.sub("has stopped", said)))
-    said = _IS_THERE.sub(" has stopped", said)
+    said = _HAS_HIT.sub(r" has \g<done>", _IS_BACK.sub(" has stopped", _IS_THERE.sub(" has stopped", said)))
     if (over := _EVENT_OVER.match(said)) is not None:
         said = f"{over['who'] or 'it'} has stopped"
     if (half := _HALF.match(said)) is not None and (whose := _who(half["who"], thing)) is not None:
@@ -165,6 +170,8 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
             if found is None:
                 continue
             state, course = found
+            if state == "closing" and course in (_SHUTS, _EVENT) and _FROM_THEN.match(word):
+                course = _BEGINS  # "from the moment when it goes back in"
             anchors = (manner.whom,) if manner.whom is not None and state not in ALONE else ()
             part = _part(word, course)
             if state == "open" and not clause.negated and re.fullmatch(_AFTER, word):
@@ -300,6 +307,7 @@ def _part(word: str, course: _Course) -> Part:
     return course.through
 
 
+_FROM_THEN = re.compile(r"from |the (?:very |exact )?(?:moment|instant|second)")
 _ONE_OF = re.compile(
     r"^(?:the )?(?P<rank>first|last)(?: one)? of (?:the|those|these|all|all the)(?: two| three| four)? "
     r"(?P<noun>[a-z]+)$"
@@ -320,7 +328,8 @@ def _who(said: str, thing: Thing) -> Query | None:
     said = _ONE_OF.sub(lambda m: f"the {m['rank']} {singular(m['noun'])}", said)
     if (first := re.match(r"^(?:the )?(?:first|last|other) (?=\w)", said)) is not None:
         noun = said[first.end() :]
-        if noun != "one" and "last" in first[0] and (one := thing(f"the {noun} that moves last")) is not None:
+        place = "last" if "last" in first[0] else "first" if "first" in first[0] else ""
+        if noun != "one" and place and (one := thing(f"the {noun} that moves {place}")) is not None:
             return one
         return IT if noun == "one" else thing(f"all {noun if noun.endswith('s') else plural(noun)}")
     return thing(said)

@@ -598,7 +598,9 @@ class TimeReader:
                     target, until = settled(target, happening.until)
                 if happening.from_start:
                     during, until = None, during
-                if during is not None and during.part in ("from", "after") and any(map(_AT_A_TIME.match, moment.said)):
+                ends = all(isinstance(end, float) for end in (moment.start, moment.stop))
+                exact = ends or any(map(_AT_A_TIME.match, moment.said))
+                if during is not None and during.part in ("from", "after") and exact:
                     during = None  # "once it has opened, shut it at 3 s" is no 3 s later
                 op = {**op, **({"target": target} if target is not None else {})}
             when = when_of(moment, during, kind, op)
@@ -730,12 +732,20 @@ _FILM_ENDS = re.compile(
     r"stops|is done)",
     re.IGNORECASE,
 )
+_FILM_BEGINS = re.compile(
+    r"\b(?:(?:right |just )?(?:when|as|once)|the moment) (?:the )?(?:film|clip|video|movie|scene|shot) "
+    r"(?:begins|starts)",
+    re.IGNORECASE,
+)
+_CLOSE = re.compile(r"(?<=\b(?:to|ll|il|at) )the (?:close|finale)\b", re.IGNORECASE)
+_DOTS = re.compile(r"(?<=[a-z])\.\.+ ")
 _NO_NEED = re.compile(r"(?: ?,)? (?:and |there is )?no need to (?:wait|hurry|rush)\b[^,.;!]*", re.IGNORECASE)
 
 
 def _in_words(cleaned: str) -> str:
     """The words and marks of an instruction, with spaces between."""
-    cleaned = _FILM_ENDS.sub(r"\g<1> the end", _NO_NEED.sub("", cleaned))
+    cleaned = _FILM_ENDS.sub(r"\g<1> the end", _FILM_BEGINS.sub("at the start", _NO_NEED.sub("", cleaned)))
+    cleaned = _DOTS.sub(". ", _CLOSE.sub("the end", cleaned))
     stamped = _STAMP.sub(lambda m: f"{60 * int(m['minutes']) + int(m['seconds'])} s", cleaned)
     ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", stamped)
     return " ".join(w.text for w in split(ranged))
@@ -805,7 +815,8 @@ def _about(part: str) -> str | None:
 
 def _spelled(said: str, known: frozenset[str]) -> str:
     """The words with those that are none as the known word from which they differ by a slip."""
-    return " ".join(w if w in known or len(w) < 3 or not w.isalpha() or is_word(w) else best_slip(w, known) or w
+    right = known | _SPELLED_WORDS
+    return " ".join(w if w in right or len(w) < 3 or not w.isalpha() or is_word(w) else best_slip(w, known) or w
                     for w in said.split(" "))  # fmt: skip
 
 

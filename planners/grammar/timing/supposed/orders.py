@@ -18,6 +18,7 @@ _LAST = re.compile(r"\b(?:last|lastly|finally|at the end|in the end|to finish)\b
 _MIDDLE = re.compile(r"\b(?:middle|second|between)\b")
 _LATER = re.compile(r"\b(?:after|following|behind)\b")
 _SOONER = re.compile(r"\b(?:before|ahead of|prior to)\b")
+_NEXT_TO_IT = re.compile(r"\b(?:before|after) (?:it|that|both|them|the others?)\b")
 _TOLD = re.compile(r"\b(?:order|then|next|followed)\b")
 _TELLS = re.compile(r"\b(?:notice[sd]?|saw|see|sees|think|thought|said|says?|know|watched|heard)\b")
 _CONTRARY = re.compile(r"\b(?:instead of|rather than|not)\b")
@@ -40,6 +41,8 @@ def listed(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[Q
     gaps = [" ".join(words[a:b]) for a, b in _gaps([(start, stop) for _, start, stop in named], len(words))]
     between = gaps[1:-1]
     if any(map(_CONTRARY.search, gaps)) or any(map(_TELLS.search, gaps)) or any(_is_past(gap) for gap in gaps):
+        return ()
+    if _NEXT_TO_IT.search(" ".join(words)):
         return ()
     if any(pattern.search(gap) for gap in (gaps[0], gaps[-1]) for pattern in (_LATER, _SOONER)):
         return ()  # "the green one before both"

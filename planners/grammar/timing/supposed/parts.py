@@ -92,7 +92,7 @@ _BESIDE = re.compile(  # "set off with the robot", "at the same time as the top 
 )
 _UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
 _REVERTED = re.compile(  # ", and revert when it slides back"
-    r"(?: ,)?(?: (?:and|but|then))+ (?:(?:it|let it|have it|should|to|make it) )*"
+    r"(?:(?: ,)?(?: (?:and|but|then))+| ,) (?:(?:it|let it|have it|should|to|make it) )*"
     r"(?:reverts?|[a-z]+ again|(?:goes|go|turns?|turning|changes?|turn it|put it|set it|change it|going) back|"
     r"returns?|back|normal)"
     r"(?: (?:again|to|as|its|the|his|her|normal|usual|old|original|own|before|it was|colou?r|look))* "
@@ -294,6 +294,8 @@ def _loses(tag: str, words: Sequence[str]) -> bool:
         return True  # "then yellow", "blue otherwise"
     if _BEFORE.search(said) or _UNLESS.search(said):
         return True
+    if tag == "off" and re.search(r"\bnot [a-z]+ing$", said):
+        return True  # "how about not making"
     if tag == "not" and _CONTRAST.search(said):
         return False
     if (_AMOUNT.search(said) and not _SO_THAT.search(said)) or any(

@@ -18,6 +18,7 @@ BEFORE_IT = re.compile(  # "it waits until 2 s before it sets off"
     r"moves?|moving|leaves?|leaving|walks?|walking|falls?|falling|drops?|dropping|opens?|opening|setting|starting|sliding|slides?)"
     r"(?: off| moving| rolling| going| walking| falling| to \w+| out)*"
 )
+_STILL_THERE = re.compile(r"\b(?:put|move|place|set|keep|leave|stay|bring|slide|push|roll)(?: \w+){0,2} $")
 _AS_BEFORE = re.compile(  # ", then red again afterwards"
     r"(?: ,)? (?:and |then |but |after (?:this|that|which) |afterwards )*"
     r"(?:(?:it |make it |let it |turn it |go |goes |back |should |is |to )*)(?:[a-z]+ )?"
@@ -86,6 +87,19 @@ class Said:
         if not re.search(rf"(?<!\S){re.escape(both)}(?!\S)", self.text) or self.thing(both) is None:
             return self
         return replace(self, things=(both, *self.things[2:]))
+
+    def placed(self) -> Said:
+        """The same, with the first two names as one if the second only tells where the first is: "the fan on the
+        ceiling"."""
+        if len(self.things) < 2:
+            return self
+        one, other = (re.escape(name) for name in self.things[:2])
+        between = "on|in|at|by|near|under|behind|beside|next to"
+        found = re.search(rf"(?<!\S){one} (?:{between}) {other}(?!\S)", self.text)
+        if found is None or self.thing(found[0]) is None or _STILL_THERE.search(self.text[: found.start()]):
+            return self
+        goals = tuple(name for name in self.goals if name != self.things[1])
+        return replace(self, things=(found[0], *self.things[2:]), goals=goals)
 
     def until_then(self) -> Said:
         """The same, if a time is told, without words that things are as before afterwards: ", then red again"."""

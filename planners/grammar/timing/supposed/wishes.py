@@ -98,7 +98,7 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
     if says(kind, said.idle) and not says(kind, said.text):
         return  # "the door closes too late"
     if kind not in ("order", "together"):
-        said = said.joined()
+        said = said.joined().placed()
     if kind in ("recolor", "hide"):
         if kind == "hide" and _is_to_be_seen(said) and _BACK.search(f"{said.text} {said.idle}"):
             return  # "show it for a second, then bring it back" contradicts itself
@@ -239,7 +239,8 @@ def _plainly(said: Said) -> Moment:
 
 _SHADE = r"very dark|very light|dark|deep|light|pale|bright|vivid"
 _APPEARS = re.compile(
-    r"\b(?:appears?|shows?|showing|shown|visible|pops? (?:up|in)|comes? in(?:to)?|reveals?|there only|turns? up)\b"
+    r"\b(?:appears?|shows?|showing|shown|visible|into view|in view|pops? (?:up|in)|comes? in(?:to)?|reveals?|"
+    r"there only|turns? up)\b"
 )
 _NO_MORE = re.compile(r"\b(?:no|not|nothing) (?:more|further|farther|wider)(?: than (?:that|this))?\b")
 _NOT = re.compile(r"\b(?:not|no|never|without|invisible|nobody|nothing)\b")
@@ -287,12 +288,14 @@ def _hide(said: Said) -> Iterator[Wish]:
     yield Wish(f"{'show' if _is_to_be_seen(said) else 'hide'} {said.things[0]}", said.moment)
 
 
+_AT_FIRST = re.compile(r"\b(?:at first|to begin with|to start with|initially)\b")
 _COMES_UP = re.compile(r"\b(?:appears?|(?:shows?|comes?|pops?|turns?) (?:back|up|in)|back|reveals?|revealed)\b")
 
 
 def _is_to_be_seen(said: Said) -> bool:
     """Whether something is to be seen at the time that is told, and not to be hidden then."""
-    return _APPEARS.search(said.text) is not None and _NOT.search(said.text) is None
+    appears = _APPEARS.search(said.text) is not None
+    return appears and (_NOT.search(said.text) is None or _AT_FIRST.search(said.text) is not None)
 
 
 _OFF_A = re.compile(r"\boff \|")  # "half a metre off the table"
@@ -311,6 +314,8 @@ def _move(said: Said) -> Iterator[Wish]:
     length = _LENGTH.search(said.text)
     words = said.beside.split()
     ways = {_WAYS[word] for word in words if word in _WAYS} or {_RISES[word] for word in words if word in _RISES}
+    if ways == {"up"} and length is None and len(said.things) == 1 + (_OFF_A.search(said.beside) is not None):
+        yield Wish(f"move {said.things[0]} up", said.moment, len(said.things))
     if len(ways) == 1 and length is not None and f"to {length[0]}" not in said.text:  # "lower it to 30 cm"
         things = 1 + (_OUT_OF.search(said.beside) is not None or _OFF_A.search(said.beside) is not None)
         yield Wish(f"move {said.things[0]} {ways.pop()} by {length[0]}", said.moment, things, length[0])
