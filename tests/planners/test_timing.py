@@ -23,7 +23,7 @@ UNDERSTOOD: list[tuple[str, str, dict[str, Any]]] = [
     ("vase turns blue once fan stops", "recolor", {"during": {
         "state": "moving", "of": {"text": "fan"}, "part": "after"}}),
     ("lamp goes green until the first book falls", "recolor", {"during": {
-        "state": "falling", "of": {"text": "book", "pick": "all"}, "part": "until"}}),
+        "state": "falling", "of": {"text": "book", "moving": True, "pick": "nth", "ordinal": 1}, "part": "until"}}),
     ("close the door again after it has opened", "articulate", {"during": {"state": "opening", "part": "after"}}),
     ("paint the box white from 0 to 2.5 s, then back to normal", "recolor", {"stop": 2.5}),
     ("fade out the chair", "opacity", {"lasting": 2.0, "gradual": True}),
