@@ -187,6 +187,8 @@ def _understand(cleaned: str, previous: str | None, scene: Observation | None = 
         return _guessed(supposed)
     if reader.is_still(outcome.ops) and (supposed := reader.supposed(cleaned)) and not reader.is_still(supposed):
         return _guessed(supposed)
+    if reader.is_about_another(cleaned, outcome.ops) and (supposed := reader.supposed(cleaned)):
+        return outcome if reader.is_about_another(cleaned, supposed) else _guessed(supposed)
     if reader.is_of_another_kind(cleaned, outcome.ops):
         if supposed := reader.supposed(cleaned):
             return _guessed(supposed)

@@ -129,6 +129,10 @@ _AT_TURN = re.compile(
     r"turned|has rounded|has reached) (?:(?:its|his|her|the|that) (?:left |right |sharp )?"
     r"(?:turn|turning point|corner|bend|curve)|(?:to )?where (?:it|he|she) (?:turns|makes (?:its|his|her|the) turn))$"
 )
+_AT_REST = re.compile(
+    r" (?:has |is )?(?:come|comes|coming) to (?:a |its )?(?:rest|stop|halt|standstill)"
+    r"(?: (?:against|at|by|near|on|in|beside) (?:the|its|his|her) [a-z ]+)?$"
+)
 _HAS_HIT = re.compile(r" is (?P<done>hit|left|reached|touched|crossed|entered)(?= (?:the|its|his|her|my|that) )")
 _IS_BACK = re.compile(
     r" (?:is|gets|has got|comes|has come) back(?: in)?"
@@ -148,6 +152,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
         return None
     said = _WHOLLY.sub("fully", said)
     said = _USUALLY.sub(" ", _UNDER_WAY.sub(" is moving", _DONE.sub("has stopped", said)))
+    said = _AT_REST.sub(" has stopped", said)
     said = _HAS_HIT.sub(r" has \g<done>", _IS_BACK.sub(" has stopped", _IS_THERE.sub(" has stopped", said)))
     if (over := _EVENT_OVER.match(said)) is not None:
         said = f"{over['who'] or 'it'} has stopped"

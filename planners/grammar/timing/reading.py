@@ -42,7 +42,7 @@ from .pieces import without_remarks
 from .restated.restating import restated
 from .sentences import folded
 from .supposed.choosing import Offer, chosen, says_plainly
-from .supposed.kinds import COURSES, is_changed_by, is_done_by, likely, marked
+from .supposed.kinds import COURSES, LEAST, is_changed_by, is_done_by, likely, marked
 from .supposed.names import with_nouns
 from .supposed.parts import TIMES, divided, leaves_out
 from .supposed.said import Said, said_of
@@ -195,8 +195,18 @@ class TimeReader:
         if (kind, change) in (("open", "close"), ("close", "open")):
             return chance >= least
         if change in ("begin", "later") and not is_changed_by(kind, str(change)):
-            return chance >= max(least, _SURELY)
+            return chance >= (LEAST if _REPEATS.match(cleaned) else max(least, _SURELY))
         return chance >= least and not is_done_by(kind, op)
+
+    def is_about_another(self, cleaned: str, ops: Sequence[Fields]) -> bool:
+        """Whether an operation is about none of the things that the marks of an instruction name: "the chair is no good
+        there, roll it to the bed once the drawer is out" moves no drawer."""
+        if len(ops) != 1 or ops[0].get("target") is None or not ops[0]["target"].text or ops[0]["target"].also:
+            return False
+        words = with_nouns(_in_words(cleaned)).split(" ")
+        named = [self.thing(" ".join(words[start:stop])) for tag, start, stop in marked(words) if tag == "x"]
+        known = [query for query in named if query is not None and query.text and not query.last]
+        return bool(known) and all(query.text != ops[0]["target"].text for query in known)
 
     def is_still(self, ops: Sequence[Fields]) -> bool:
         """Whether operations change how something moves that stands still in the scene."""
@@ -672,6 +682,7 @@ _LOOKS = ("opacity", "recolor", "restyle")
 _THROUGHOUT = re.compile(r"\b(?:throughout|all the (?:way|time)|(?:whole|entire) (?:film|time|clip|video))\b")
 _PACED = (*COURSES, "amount")
 _LOOKS_OR_THINGS = ("insert", "recolor", "rotate", "scale")
+_REPEATS = re.compile(r"(?:please )?(?:repeat|replay)\b", re.IGNORECASE)
 _SWITCHED_OFF = re.compile(r"\b(?:turn|switch|shut)(?:ed|s)? (?:\w+ ){0,4}off\b", re.IGNORECASE)
 _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
@@ -739,6 +750,15 @@ _FILM_BEGINS = re.compile(
 )
 _CLOSE = re.compile(r"(?<=\b(?:to|ll|il|at) )the (?:close|finale)\b", re.IGNORECASE)
 _DOTS = re.compile(r"(?<=[a-z])\.\.+ ")
+_SYNONYMS = tuple(
+    (re.compile(rf"\b{said}\b", re.IGNORECASE), plain)
+    for said, plain in (
+        (r"(?:over|in) the course of the(?= (?:last|first))", "in the"),
+        (r"the initial(?= [a-z0-9.]+ sec)", "the first"),
+        (r"thereafter", "afterwards"),
+        (r"(?:all|all along|all through) the (?=film|clip|video|movie)", "for the whole "),
+    )
+)
 _NO_NEED = re.compile(r"(?: ?,)? (?:and |there is )?no need to (?:wait|hurry|rush)\b[^,.;!]*", re.IGNORECASE)
 
 
@@ -746,6 +766,8 @@ def _in_words(cleaned: str) -> str:
     """The words and marks of an instruction, with spaces between."""
     cleaned = _FILM_ENDS.sub(r"\g<1> the end", _FILM_BEGINS.sub("at the start", _NO_NEED.sub("", cleaned)))
     cleaned = _DOTS.sub(". ", _CLOSE.sub("the end", cleaned))
+    for pattern, plain in _SYNONYMS:
+        cleaned = pattern.sub(plain, cleaned)
     stamped = _STAMP.sub(lambda m: f"{60 * int(m['minutes']) + int(m['seconds'])} s", cleaned)
     ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", stamped)
     return " ".join(w.text for w in split(ranged))

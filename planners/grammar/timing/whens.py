@@ -68,10 +68,10 @@ def closes_later(ops: Sequence[Fields], moment: Moment, happening: Happening) ->
 
 
 def closes_when_open(ops: Sequence[Fields], happening: Happening) -> bool:
-    """Whether something is to close once it is open: as far as it opens, and not when it begins to."""
+    """Whether something is to close, or to stay, once it is open: as far as it opens, and not when it begins to."""
     during = happening.during
     once = during.part in ("from", "after") and during.state == "open" and during.of in (None, IT)
-    return once and all(op["op"] == "articulate" and op.get("change") == "close" for op in ops)
+    return once and all(op.get("change") == ("close" if op["op"] == "articulate" else "stop") for op in ops)
 
 
 def of_one_movement(said: str, ops: Sequence[Fields]) -> tuple[Fields, ...]:

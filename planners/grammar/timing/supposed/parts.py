@@ -119,7 +119,7 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         spans: the marks in them.
         thing: reads a name.
     """
-    moment, spans = Moment(), [_with_half(words, span) for span in spans]
+    moment, spans = Moment(), [_with_half(words, _as_name(words, span, thing)) for span in spans]
     happening: Happening | None = None
     delayed, skipped = False, list[tuple[int, int]]()
     for tag, start, stop in spans:
@@ -138,6 +138,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
             phrase, moment, delayed = phrase[delay.end() :], replace(moment, start=seconds), True
         if (lain := _HAS_BEEN.match(phrase)) is not None and (seconds := seconds_of(lain["delay"])) is not None:
             phrase, moment, delayed = _so_far(lain), replace(moment, start=seconds), True
+        if (given := _GIVEN.match(phrase)) is not None and (seconds := seconds_of(given["delay"])) is not None:
+            phrase, moment, delayed = given["clause"], replace(moment, start=seconds), True
         if (told := _told(tag, phrase, thing)) is None:
             return None
         found, event = told
@@ -202,6 +204,9 @@ def _so_far(found: re.Match[str]) -> str:
     return f"{found['who']} is {state}"
 
 
+_GIVEN = re.compile(  # "once it is open give it a second"
+    rf"^(?P<clause>(?:once|when|after|as soon as) .+?) (?:give|allow|leave|wait)(?: it| him| her)? (?P<delay>{DURATION})$"
+)
 _HAS_BEEN = re.compile(
     r"^(?P<who>(?:once|after|when|as soon as|only after|from when) .+?) (?:has|have|is|'s|was|had) been "
     rf"(?P<state>[a-z ]+?)(?: for)? (?P<delay>{DURATION})$"
@@ -276,6 +281,15 @@ def _gone_back(words: Sequence[str], spans: Sequence[Span], start: int) -> int |
     if any(tag in ("x", "y") and before <= begin < start for tag, begin, _ in spans):
         return None  # "go back to the table when it stops"
     return before if _AS_IT_WAS.search(" ".join(words[before:start])) is not None else None
+
+
+def _as_name(words: Sequence[str], span: Span, thing: Thing) -> Span:
+    """A mark of a time that only names what comes before, as that of a name: "after [the blue one]"."""
+    tag, start, stop = span
+    after = (
+        tag == "from" and words[start] in ("after", "before") and thing(" ".join(words[start + 1 : stop])) is not None
+    )
+    return ("y", start + 1, stop) if after else span
 
 
 def _with_half(words: Sequence[str], span: Span) -> Span:
@@ -429,7 +443,8 @@ def _named_moment(tag: str, phrase: str, thing: Thing) -> Moment | None:
         return None
     if tag == "to" and _WITH_THE_FILM.search(phrase):
         return _at(tag, phrase, "end")
-    value = next((end for pattern, end in _NAMED if pattern.search(phrase)), None)
+    begins = re.sub(r" (?:to|until|till) the (?:very )?end$", "", phrase) if tag != "to" else phrase
+    value = next((end for pattern, end in _NAMED if pattern.search(begins)), None)
     return None if value is None else _at(tag, phrase, value)
 
 
@@ -474,6 +489,7 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
         of = names_in(half["who"] or half["what"], thing)[:1]
         whose = thing(of[0]) if of and (half["who"] or half["way"].startswith((" through", " of"))) else None
         return Happening(During(state="halfway", of=whose or IT, part="until" if tag == "to" else "from"), phrase)
+    phrase = re.sub(r" onwards?$", "", phrase)
     phrase = re.sub(r"^(while|as) its (?=[a-z]+ing\b)", r"\1 it is ", phrase)
     if (noun := _FROM_EVENT.match(phrase)) is not None and tag == "from":
         phrase = f"from when it {noun['event']}s"

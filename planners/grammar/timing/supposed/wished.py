@@ -23,6 +23,11 @@ _WISHES = re.compile(
     r"\bwould (?:\w+ )?(?:look|read|suit|do|work|go) (?:\w+ )?(?:better|nicer|nice|great|good|lovely|well|prettier|"
     r"best)\b|^please\b"
 )
+_RID_OF_IT = re.compile(
+    r"(?:[,.;:!] |\b(?:please|and|so|just|you) )(?:get rid of (?:it|them)|(?:take|throw) (?:it|them) (?:away|out)|"
+    r"(?:remove|delete|bin|ditch|scrap|lose) (?:it|them))\b"
+)
+_DENIED = re.compile(r"\b(?:not|never|no one|nobody|if|unless|or|but)\b")
 _CONTRARY = re.compile(r"(?:how|what) about not\b")
 _BESIDE = bag(  # that may stand in a wish beside what is marked
     "i we you would could can may might like love want wish prefer rather need needs to have make turn paint "
@@ -48,4 +53,6 @@ def is_wished(words: Sequence[str], spans: Sequence[Span]) -> bool:
     asked = " ".join(word for at, word in enumerate(words) if at not in idle).strip(" ,.")
     if _CONTRARY.match(" ".join(words)):
         return False
+    if _RID_OF_IT.search(asked) and _DENIED.search(asked) is None:
+        return True  # "the lamp is ugly, get rid of it"
     return all(word in _BESIDE for word in left) and _WISHES.search(asked) is not None

@@ -38,6 +38,8 @@ _PROHIBITED = re.compile(
 _OTHER_EDITS = re.compile(
     r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b"
 )
+_LIT = re.compile(r"\b(?:off|out|on)$")
+_A_LIGHT = re.compile(r"\b(?:lamps?|lights?|lanterns?|candles?|bulbs?)$")
 _EXCEPT = re.compile(r"(?<!\bat )\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
 _REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _TIMES_LEFT = re.compile(
@@ -87,6 +89,8 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
     timeless = not said.told and not said.moment.always
     if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
         return
+    if _LIT.search(said.text) and _A_LIGHT.search(said.things[0]):
+        return  # "turn the lamp off" stops no motion
     if _EXCEPT.search(f"{said.text} {said.idle}"):
         return  # "everything but the fan"
     if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text):
@@ -285,7 +289,8 @@ def _hide(said: Said) -> Iterator[Wish]:
     if isinstance(said.moment.stop, float) and not said.event and _COMES_UP.search(said.text):
         yield Wish(f"hide {said.things[0]}", said.moment)  # "gone at first, then let it appear at 2 s"
         return
-    yield Wish(f"{'show' if _is_to_be_seen(said) else 'hide'} {said.things[0]}", said.moment)
+    things = 1 + (_OUT_OF.search(said.beside.strip(" ,.!")) is not None)
+    yield Wish(f"{'show' if _is_to_be_seen(said) else 'hide'} {said.things[0]}", said.moment, things)
 
 
 _AT_FIRST = re.compile(r"\b(?:at first|to begin with|to start with|initially)\b")
@@ -299,7 +304,7 @@ def _is_to_be_seen(said: Said) -> bool:
 
 
 _OFF_A = re.compile(r"\boff \|")  # "half a metre off the table"
-_OUT_OF = re.compile(r"\| (?:right |well |clean )?(?:out of|from|off) \|(?= ?[,.!]|$)")
+_OUT_OF = re.compile(r"\|(?: \w+){0,3} (?:out of|from|off) \|(?= ?[,.!]|$)")
 
 
 def _remove(said: Said) -> Iterator[Wish]:
