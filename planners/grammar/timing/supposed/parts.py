@@ -205,7 +205,8 @@ def _so_far(found: re.Match[str]) -> str:
 
 
 _GIVEN = re.compile(  # "once it is open give it a second"
-    rf"^(?P<clause>(?:once|when|after|as soon as) .+?) (?:give|allow|leave|wait)(?: it| him| her)? (?P<delay>{DURATION})$"
+    r"^(?P<clause>(?:once|when|after|as soon as) .+?) (?:give|allow|leave|wait)(?: it| him| her)? "
+    rf"(?P<delay>{DURATION})$"
 )
 _HAS_BEEN = re.compile(
     r"^(?P<who>(?:once|after|when|as soon as|only after|from when) .+?) (?:has|have|is|'s|was|had) been "
