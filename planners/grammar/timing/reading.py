@@ -43,9 +43,11 @@ from .restated.restating import restated
 from .sentences import folded
 from .supposed.choosing import Offer, chosen, says_plainly
 from .supposed.kinds import COURSES, LEAST, is_changed_by, is_done_by, likely, marked
+from .supposed.lost import leaves_out
 from .supposed.names import with_nouns
-from .supposed.parts import TIMES, divided, leaves_out
+from .supposed.parts import divided
 from .supposed.said import Said, said_of
+from .supposed.times import TIMES
 from .supposed.wished import is_wished
 from .supposed.wishes import SURE, wishes
 from .verbs import SENSES, any_of, forms, has_form
@@ -83,6 +85,7 @@ class TimeReader:
         self._thing = thing
         self._moves = moves
         self._things: dict[str, Query | None] = {}
+        self._supposed: dict[tuple[str, float], tuple[Fields, ...] | None] = {}
 
     def read(self, cleaned: str) -> tuple[Fields, ...] | None:
         """The operations; None if the instruction says nothing of time or motion.
@@ -130,6 +133,12 @@ class TimeReader:
         Args:
             least: probability of a kind that no word has to say.
         """
+        if (cleaned, least) not in self._supposed:
+            self._supposed[cleaned, least] = self._most_likely(cleaned, least)
+        return self._supposed[cleaned, least]
+
+    def _most_likely(self, cleaned: str, least: float) -> tuple[Fields, ...] | None:
+        """As `supposed`, which several checks of a plan ask for."""
         words = _in_words(cleaned)
         kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
         if not kinds:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from ...learned.kinds import Classifier
@@ -68,6 +68,11 @@ def marked(words: Sequence[str]) -> tuple[Span, ...]:
     """Which words of an instruction name a thing (`x`), where that goes (`y`), from when, until when, while and for
     how long something is to be (`from`, `to`, `in`, `for`), by how much (`by`), as which colour (`as`), what is not
     wanted (`not`), and what asks for nothing (`off`)."""
+    return _marked(tuple(words))
+
+
+@lru_cache(maxsize=64)  # several checks ask for the same words
+def _marked(words: tuple[str, ...]) -> tuple[Span, ...]:
     return tagger().spans(words)
 
 

@@ -656,9 +656,9 @@ def _opening(said: Said, verb: str) -> Iterator[Wish]:
     if verb == "open" and isinstance(said.moment.start, float) and _TOO_LATE.search(said.idle):
         yield from _begin(said)
         return
-    sign = _sign(said.text)
-    for seconds, words in _durations(said.text) if sign is not None and verb == "close" else ():
-        yield Wish(pace(said.whose, "later", seconds=sign * seconds if sign else 0.0), Moment(), holds=words)
+    if verb == "close" and (sign := _sign(said.text)) is not None:
+        for seconds, words in _durations(said.text):
+            yield Wish(pace(said.whose, "later", seconds=sign * seconds), Moment(), holds=words)
     if _TOO_LATE.search(said.text):
         return  # by how much is not told
     if verb == "open" and (_LATER.search(said.text) or _EARLIER.search(said.text)):

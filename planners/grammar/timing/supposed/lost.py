@@ -1,0 +1,102 @@
+"""What a plan leaves out of the words of an instruction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from pydantic import BaseModel
+
+from .....gaussians import late_re as re
+from .....gaussians.world.words import singular
+from ...learned.seen import hues
+from ...tagging.words import bag
+from ...vocabulary.nouns import is_known
+from ...vocabulary.quantities import NUMBERS
+from ..command import Fields
+from ..moments import TIMED
+from .kinds import marked
+
+CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
+
+
+def leaves_out(words: Sequence[str], ops: Sequence[Fields]) -> bool:
+    """Whether a number beside a time, or a colour, that an instruction tells stands in no operation.
+
+    What is not wanted, and what comes back, may be left out.
+    """
+    if _loses_colors(words, ops):
+        return True
+    said = " ".join(words)
+    return (TIMED.search(said) or _A_SECOND.search(said)) is not None and _loses_numbers(words, ops)
+
+
+def _loses_colors(words: Sequence[str], ops: Sequence[Fields]) -> bool:
+    """Whether a look is for a time, and another colour that is told stands nowhere: "red while it rolls, else blue"."""
+    if not any(op["op"] == "recolor" and op.get("when") is not None for op in ops):
+        return False
+    held = set(re.findall(r"[a-z]+", str(ops)))
+    for at, word in enumerate(words):
+        around = {*words[max(0, at - 4) : at], *words[at + 1 : at + 3]}
+        beside = held & hues() & {*words[max(0, at - 1) : at], *words[at + 1 : at + 2]}  # "mint green" is one colour
+        if word in hues() and word not in held and not beside and not around & _NOT_WANTED:
+            return True
+    return False
+
+
+_NOT_WANTED = bag(
+    "again back return returns revert reverts not no never instead than rather too from usual normal longer was rest "
+    "without ugly"
+)
+
+
+def _loses_numbers(words: Sequence[str], ops: Sequence[Fields]) -> bool:
+    """Whether a number stands in no operation, and not among what is not wanted."""
+    missing = set(_missing(words, ops))
+    if missing and "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
+        missing -= set(range(words.index("not"), words.index("but", words.index("not"))))
+    if missing:
+        unwanted = [(start, stop) for tag, start, stop in marked(words) if tag == "not"]
+        missing -= {
+            at for start, stop in unwanted if CONTRAST.search(" ".join(words[start:stop])) for at in range(start, stop)
+        }
+    return bool(missing)
+
+
+def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
+    """Where the numbers stand that are in no operation."""
+    exact = {abs(value) for op in ops for value in _numbers(op)}
+    shares = [{v and 1 / v, 100 * v, 1 - v, 100 * (1 - v), 100 * (v - 1)} for v in exact]
+    held = exact.union({0.0}, {360 * v for v in exact}, *shares)  # degrees of turns
+    for at, (word, then) in enumerate(zip(words, (*words[1:], ""), strict=True)):
+        if is_known(singular(then)) or then in _NO_NUMBER:
+            continue
+        told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
+        seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
+        seconds |= word == "one" and at > 0 and words[at - 1] in _AT and not then.isalpha()  # "starting at one"
+        seconds &= word != "a" or (at > 0 and words[at - 1] in ("for", "over", "within", "in"))
+        if told != 1 or (seconds and word in ("1", "one", "a")):
+            rate = words[max(0, at - 1)] in ("every", "each", "per")
+            among = exact if seconds and not rate else held
+            if not any(abs(told - value) < 0.01 or abs(told + 0.5 - value) < 0.01 for value in among):
+                yield at
+
+
+_A_SECOND = re.compile(r"\b(?:every|each|per|a) (?:second|sec)\b")
+_AT = ("at", "by", "until", "till", "from", "before", "after")
+_NO_NUMBER = ("of", "ones", "quarters", "thirds", "quarter", "third")  # behind a part of something
+
+
+def _numbers(value: object) -> Iterator[float]:
+    """All numbers in the fields of an operation."""
+    if isinstance(value, BaseModel):
+        value = value.model_dump(exclude_defaults=True)
+    if isinstance(value, bool):
+        return
+    if isinstance(value, int | float):
+        yield float(value)
+    elif isinstance(value, dict):
+        for inner in value.values():
+            yield from _numbers(inner)
+    elif isinstance(value, list | tuple):
+        for inner in value:
+            yield from _numbers(inner)
