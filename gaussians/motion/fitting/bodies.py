@@ -153,9 +153,15 @@ def turn_around(labelled: Labelled, bodies: list[Body]) -> None:
     """Put bodies that were followed backwards where they are at the first time, and their paths the right way round; in
     place."""
     for number, body in enumerate(bodies, 1):
-        rows, last = np.flatnonzero(labelled.labels == number), len(body.offsets) - 1
-        labelled.means[rows], labelled.quats[rows] = body.placed(last, labelled.means[rows], labelled.quats[rows])
+        last = len(body.offsets) - 1
+        put_at(labelled, number, body, last)
         bodies[number - 1] = body.started_at(last).backwards()
+
+
+def put_at(labelled: Labelled, number: int, body: Body, t: int) -> None:
+    """Put the Gaussians of a body where it is at a time; in place."""
+    rows = np.flatnonzero(labelled.labels == number)
+    labelled.means[rows], labelled.quats[rows] = body.placed(t, labelled.means[rows], labelled.quats[rows])
 
 
 def placed(columns: Columns, labels: NDArray[np.int32], bodies: list[Body], t: int) -> Columns:

@@ -163,9 +163,10 @@ class Finder:
         """A body as it is, or, if it is a ball that rolls, with its turns and the Gaussians of all its surface."""
         columns, rows = labelled.columns(), np.flatnonzero(labelled.labels == number)
         ball = Ball.of(columns[0][rows].astype(np.float64), columns[3][rows].astype(np.float64))
-        rolled = None if ball is None else ball.rolled(body, self._footage)
-        if ball is None or rolled is None:
+        found = None if ball is None else ball.rolled(body, self._footage)
+        if found is None:
             return body
+        ball, rolled = found
         ball.filled(labelled, number, rolled, self._footage)
         return rolled
 

@@ -205,9 +205,11 @@ class _Film:
         turns = list(SHOWN) if bodies else []
         while (share := _share(joint, more, left)) < 1:
             if turns and share >= turns[0]:
+                joint.settle()
                 shown_later(labelled, bodies, self._reduced, self._rng)
                 turns.pop(0)
             self._tell(joint.step(share), found.steps + joint.steps, START + (1 - START) * share, len(labelled))
+        joint.settle()
         scene, steps = self._scene(labelled, bodies, None), found.steps + joint.steps
         if single and scene.motion is not None:
             scene, more = self._with_single(scene, labelled, bodies, round(SINGLE * joint.steps))

@@ -19,12 +19,13 @@ from .footage import Footage
 
 F64 = NDArray[np.float64]
 
-RADII = np.geomspace(0.85, 1.15, 31)  # of the ball's radius: each one per cent more
+RADII = np.geomspace(0.74, 1.2, 49)  # of the ball's radius, each one per cent more: haze makes it too large
 LEAST_WAY = 3.0  # of the ball's radius: what goes less far does not roll
 ROUND = 0.25  # of the radius: how far from the surface a Gaussian may be that is taken to be on it
 SHARE = 0.75  # of the Gaussians of a body that are on the surface of a ball
 TRUER = 0.97  # of the variance of colours with its own turns, below which a body rolls
 FACING = 0.3  # cosine between normal and sight from which a point of the surface is seen
+FRAMES = 200  # in which they are looked at
 POINTS = 300  # of the surface, whose colours are compared
 BESIDE = 1.2  # spacings: what is nearer to a Gaussian of the start is covered by it
 OPACITY = 0.9
@@ -58,8 +59,9 @@ class Ball:
             own = weights / (1 + (off / (0.2 * ROUND)) ** 2)
         return cls(centre, radius) if np.average(np.abs(off) < ROUND, weights=weights) >= SHARE else None
 
-    def rolled(self, body: Body, footage: Footage) -> Body | None:
-        """A body rolling along its path, if the colours of its surface are steadier so than with its own turns.
+    def rolled(self, body: Body, footage: Footage) -> tuple[Ball, Body] | None:
+        """The ball and a body rolling along its path, if the colours of its surface are steadier so than with its own
+        turns.
 
         The normal of the plane on which it rolls is one of the world's axes.
 
@@ -70,14 +72,15 @@ class Ball:
         if np.linalg.norm(np.diff(body.offsets, axis=0), axis=1).sum() < LEAST_WAY * self.radius:
             return None
         tried = [
-            Body(self.centre, rolling(body.offsets, up, radius), body.offsets)
+            (radius, Body(self.centre, rolling(body.offsets, up, radius), body.offsets))
             for up in np.concatenate([np.eye(3), -np.eye(3)])
             for radius in RADII * self.radius
         ]
-        normals = sphere(POINTS)
-        variances = [self._colors(b, footage, normals)[1] for b in (body, *tried)]
-        best = int(np.argmin(variances[1:]))
-        return tried[best] if variances[1 + best] < TRUER * variances[0] else None
+        normals, frames = sphere(POINTS), np.random.default_rng(0).permutation(len(footage.shots))[:FRAMES]
+        radius, best = min(tried, key=lambda each: self._colors(each[1], footage, normals, frames)[1])
+        ball = Ball(self.centre, radius)  # what lies around it hides how steady its surface is
+        own, rolled = (ball._colors(b, footage, normals, frames)[1] for b in (body, best))
+        return (ball, best) if rolled < TRUER * own else None
 
     def filled(self, labelled: Labelled, number: int, body: Body, footage: Footage) -> None:
         """Add Gaussians where the ball has none, of the mean colours that its frames show there; in place."""
@@ -87,7 +90,7 @@ class Ball:
         rows = np.flatnonzero(labelled.labels == number)
         out = labelled.means[rows] - self.centre
         out /= np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12)
-        colors, _ = self._colors(body, footage, normals)
+        colors, _ = self._colors(body, footage, normals, np.arange(len(footage.shots)))
         bare = (normals @ out.T).max(axis=1) < np.cos(BESIDE * spacing / self.radius)
         bare &= np.isfinite(colors).all(axis=1)
         count, start = int(bare.sum()), len(labelled)
@@ -99,12 +102,16 @@ class Ball:
         labelled.sh[start:] = 0.0
         labelled.sh[start:, 0] = (colors[bare] - 0.5) / SH_C0
 
-    def _colors(self, body: Body, footage: Footage, normals: F64) -> tuple[F64, float]:
-        """Mean colours `[M, 3]` that frames show at points of the surface, NaN where none does, and their variance."""
+    def _colors(
+        self, body: Body, footage: Footage, normals: F64, frames: NDArray[np.int64]
+    ) -> tuple[F64, float]:  # fmt: skip
+        """Mean colours `[M, 3]` that some frames show at points of the surface, NaN where none does, and their
+        variance."""
         seen, first, second = np.zeros((len(normals), 1)), np.zeros((len(normals), 3)), 0.0
         turns = keys.matrices(body.quats)
-        for frame, shot in enumerate(footage.shots):
-            camera, t = shot.camera, int(footage.when[frame])
+        for frame in frames:
+            shot, t = footage.shots[frame], int(footage.when[frame])
+            camera = shot.camera
             out = normals @ turns[t].T
             points = self.centre + body.offsets[t] + self.radius * out
             sight = camera.position - points

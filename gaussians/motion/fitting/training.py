@@ -15,7 +15,7 @@ from ...fit.parameters import parameter_gradients
 from ...fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, morton_order
 from ...render.cpu import gradient
 from .. import keys
-from .bodies import Body, Labelled, left, placed, pose_gradient, turned
+from .bodies import Body, Labelled, left, placed, pose_gradient, put_at, turned
 from .footage import Footage
 
 F64 = NDArray[np.float64]
@@ -146,6 +146,12 @@ class Joint:
         self.seconds += time.perf_counter() - started
         return loss
 
+    def settle(self) -> None:
+        """Let bodies be where they are at the first time, which training shifts as it does any other time."""
+        for number, body in enumerate(self.bodies, 1):
+            put_at(self.parameters, number, body, 0)
+            self.bodies[number - 1] = body.started_at(0)
+
     def _pull_back(
         self, columns: tuple[NDArray[np.float32], ...], found: gradient.Gradients, t: int, far: float
     ) -> None:
@@ -155,7 +161,7 @@ class Joint:
             if not len(rows):
                 continue
             d_means, d_quats = found.means[rows], found.quats[rows]
-            if self._single is None and self._runs[number - 1][t][0] > 0 and np.any(d_means):
+            if self._single is None and np.any(d_means):
                 centre = body.pivot + body.offsets[t]
                 turn, shift = pose_gradient(columns[0][rows], columns[1][rows], centre, d_means, d_quats)
                 reach = float(np.sqrt(((columns[0][rows] - centre) ** 2).sum(axis=1).mean()))

@@ -254,7 +254,9 @@ def test_the_turns_of_what_rolls_are_told_by_its_way_and_those_of_what_does_not_
     found = ball.rolled(own, footage)
     assert (found is not None) == rolls
     if found is not None:
-        assert np.degrees(2 * np.arccos(np.clip(np.abs((found.quats * body.quats).sum(axis=1)), 0, 1))).max() < 20
+        rolled, turns = found
+        assert abs(rolled.radius - 0.15) < 0.01
+        assert np.degrees(2 * np.arccos(np.clip(np.abs((turns.quats * body.quats).sum(axis=1)), 0, 1))).max() < 20
 
 
 def test_what_of_a_ball_is_not_seen_at_the_start_gets_the_colours_of_later_frames():

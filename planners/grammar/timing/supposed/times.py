@@ -15,6 +15,7 @@ from ..manner import Thing
 from ..moments import DURATION, End, Moment, cut, seconds_of
 from ..restated.restating import restated
 from .names import named as names_in
+from .plain import loosely, plain
 
 TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
 LEADING = re.compile(
@@ -103,6 +104,7 @@ def _so_far(found: re.Match[str]) -> str:
 
 def told_by(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, Happening | None] | None:
     """The time in numbers and what happens, either of which words with a tag may tell; None if they tell neither."""
+    phrase = plain(tag, phrase)
     if tag == "in" and phrase.startswith("from ") and (ends := _from_until(phrase, thing)) is not None:
         return ends
     if (found := _moment(tag, phrase)) is not None:
@@ -250,4 +252,5 @@ def _event(tag: str, phrase: str, thing: Thing) -> Happening | None:
                 if tag == "to" and during.part in _UNTIL_THEN:  # "... and normal again [to when it slides back]"
                     during = during.model_copy(update={"part": _UNTIL_THEN[during.part]})
                 return Happening(during, said)
-    return None
+    moved = loosely(phrase, thing)
+    return None if moved in (None, phrase) else _event(tag, moved, thing)

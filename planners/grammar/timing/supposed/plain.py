@@ -1,0 +1,142 @@
+"""Marked words of time in the plain words that the readers of times know: "once two seconds have passed" is at 2 s."""
+
+from __future__ import annotations
+
+from .....gaussians import late_re as re
+from ...vocabulary.quantities import NUMBERS, ORDINALS
+from ..manner import Thing
+
+_NUMBER = rf"(?:\d+(?:\.\d+)?|{'|'.join(NUMBERS)})"
+_SECONDS = rf"{_NUMBER}(?: and a half)? (?:seconds?|secs?|s)"
+_ORDINAL = rf"(?:{'|'.join(ORDINALS)}|\d+(?:st|nd|rd|th))"
+_FILM = r"(?:film|clip|video|movie|scene|shot|animation|footage|sequence|show|take)"
+_STATES = r"open|opened|shut|closed|out|up|down|in|on|off|over|done|half|halfway|all|fully|at|past|still|stopped|moving"
+_BRIEFLY = (
+    r"moment|beat|bit|little|little bit|while|little while|breath|heartbeat|instant|spell|tick|sec|touch|short while"
+)
+_GONE = r"(?:has|have|had|is|are|'s|was) (?:passed|elapsed|gone(?: by)?|over|up|past|out|in)"
+_WAYS = r"movement|motion|slide|climb|run|ride|trip|roll|walk|drop|fall|way|journey|swing|turn|descent|opening|closing"
+_ALWAYS, _TO_THE_END = "the whole time", "until the end"
+_TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what they are put as
+    ("", rf"\bits (?=(?:{_STATES}|[a-z]+ing)\b)", "it is "),
+    ("", rf"\ba(?:nother)? (?:good|full|whole|solid|entire|complete|proper|mere|further) (?={_SECONDS})", ""),
+    (
+        "",
+        r"(?P<unit>\b(?:seconds?|secs?)) (?:tops|max|at most|at least|(?:in )?total|altogether|each|maybe|or so)$",
+        r"\g<unit>",
+    ),
+    ("", r" (?:, )?(?:at the (?:very )?latest|at the earliest|perhaps|maybe|on the clock|only)$", ""),
+    (
+        "",
+        r"^(?P<word>for|in|during|over)? ?(?:only|just|no (?:fewer|less|more) than|at least|at most) "
+        rf"(?=(?:the )?(?:first|last|{_NUMBER})\b)",
+        r"\g<word> ",
+    ),
+    ("for", rf"^of (?={_SECONDS})", ""),
+    (
+        "from to",
+        r"^(?:when|once|as soon as|after|until|till|before|only when|not until) "
+        rf"(?:the first |about |around |we are at |there (?:are|is|have been) )?(?P<time>{_SECONDS})(?: {_GONE})?$",
+        r"at \g<time>",
+    ),
+    ("from to", rf"^(?:when|once|as soon as|after|until|till|before) (?:the )?first second {_GONE}$", "at 1 seconds"),
+    ("from", r"^(?:no|not) (?:earlier|sooner) than (?=\w)", "at "),
+    ("from", r"^not (?:before|until|till) (?=(?:the|it|he|she) )", "once "),
+    ("from", rf"^not (?:before|until|till) (?={_NUMBER})", "at "),
+    ("to", r"^(?:no|not) later than (?=\w)", "by "),
+    ("from to", r"^(?:with effect )?from (?=second \w+$)", "at "),
+    (
+        "from",
+        r"^(?:at|from|on) (?:the|that) (?:very |exact |same )?(?:moment|instant|time|second) "
+        r"(?:that |when |as |at which )?(?=(?:the|it|he|she|they) )",
+        "when ",
+    ),
+    (
+        "from to in",
+        r"^(?P<word>once|when|while|after|as soon as|until|till|before) "
+        r"(?P<state>(?:fully |half |all the way )?(?:open|shut|closed|out|up|down|in|raised|lowered|there))$",
+        r"\g<word> it is \g<state>",
+    ),
+    ("from", r"^at (?P<state>half open|half way open)$", r"when it is \g<state>"),
+    ("from", rf"^after (?:its|his|her|the) (?:{_WAYS})$", "after it has stopped"),
+    ("from in", r"^on (?:its|his|her|the) way(?: [a-z]+)?$", "while it is moving"),
+    (
+        "in to",
+        r"^(?:for|during|through(?:out)?|(?:until|to) the end of) the (?:whole )?"
+        rf"(?:rest|remainder|remaining time|last bit)(?: of (?:the|this) {_FILM})?$",
+        _TO_THE_END,
+    ),
+    (
+        "in for to",
+        r"^(?:for good|for ever|forever|ever|at any (?:point|time)|at no time|non ?stop|for keeps|for all time|"
+        r"through to the credits|until we fade out|(?:until|till) the credits(?: roll)?)$",
+        _ALWAYS,
+    ),
+    (
+        "in",
+        rf"^(?:(?:the )?(?:full|complete|entire|whole) (?:time|{_FILM})|(?:all|the whole|whole) (?:{_FILM} )?long|"
+        r"for all the duration|for the (?:full|whole|entire) (?:length|duration)|"
+        r"(?:from )?(?:the )?(?:very )?(?:start|first(?: frame)?|beginning) to (?:the )?(?:very )?(?:last|finish|end)"
+        r"(?: frame)?|to finish)$",
+        _ALWAYS,
+    ),
+    ("for", rf"^(?:for )?(?:just )?(?:briefly|an? (?:short |brief |wee |quick )?(?:{_BRIEFLY}))$", "for 1 seconds"),
+    ("from", r"^(?:from|after|at) (?:the )?(?:off|get go|word go|very start)$", "from the start"),
+    (
+        "to",
+        r"^(?:when|as|with|until|till|by) the (?:(?:very )?end|final frame|closing second|last frame)$",
+        _TO_THE_END,
+    ),
+)
+_PLAIN = tuple((tags.split(), re.compile(pattern), said) for tags, pattern, said in _TABLE)
+_IN_THE = re.compile(rf"^(?:in|during|for|within) (?:the )?(?P<rank>{_ORDINAL}) second$")
+_AT_THE = re.compile(rf"^at (?:the )?(?P<rank>{_ORDINAL}) second$")
+
+
+def plain(tag: str, phrase: str) -> str:
+    """Words with a tag of time in plain words, or as they are."""
+    for tags, pattern, said in _PLAIN:
+        if not tags or tag in tags:
+            phrase = pattern.sub(said, phrase).strip(" ,")
+    if (span := _IN_THE.match(phrase)) is not None and tag == "in" and (rank := _rank(span["rank"])) > 1:
+        return f"from {rank - 1} seconds to {rank} seconds"
+    if (point := _AT_THE.match(phrase)) is not None:
+        return f"at {_rank(point['rank'])} seconds"
+    return phrase
+
+
+def _rank(word: str) -> int:
+    return ORDINALS.get(word) or int(re.sub(r"\D", "", word))
+
+
+_CLAUSE = re.compile(
+    r"^(?P<word>once|after|when|as soon as|before|until|till|while|as|whilst|during the time) (?P<said>[a-z ]+)$"
+)
+_NOT_MOVING = re.compile(
+    r"\b(?:not|no|never|still|stands?|standing|sits?|sitting|rests?|resting|lies|lying|waits?|waiting)\b"
+)
+_OVER = re.compile(
+    r"^(?: ?(?:is|are|'s|was|has|have|had)(?: been)?)?(?: all)? (?:done|through|up|complete|finished|inside|past|by|over|"
+    r"gone|in place|parks?|parked|quits?|dies|settles?|settled|docks?|docked|dead|dies down|gives? up|calms? down|"
+    r"comes? to (?:rest|a standstill))(?: .*)?$"
+)
+_HAS = re.compile(r"^ ?(?:has|have|had|'s) (?!to )(?:\w+ )?[a-z]+(?:ed|en|ne|un|ut|ade|ought|aught|ent|ot|old|ung)\b")
+_GOES_ON = re.compile(r"^ ?(?:(?:is|are|'s) (?:\w+ )?[a-z]+ing|[a-z]+s)\b")
+
+
+def loosely(phrase: str, thing: Thing) -> str | None:
+    """A clause whose verb is not known, as one of a thing that moves or has stopped: "once the dog has trotted past";
+    None for others."""
+    found = _CLAUSE.match(phrase)
+    if found is None:
+        return None
+    words = found["said"].split(" ")
+    for size in range(len(words) - 1, 0, -1):
+        who, rest = " ".join(words[:size]), " ".join(words[size:])
+        if thing(who) is None or _NOT_MOVING.search(rest):
+            continue
+        if _OVER.match(f" {rest}") or _HAS.match(rest):
+            return f"{found['word']} {who} has stopped"
+        if found["word"] in ("while", "whilst") and _GOES_ON.match(rest):
+            return f"while {who} is moving"
+    return None
