@@ -187,8 +187,12 @@ def _understand(cleaned: str, previous: str | None, scene: Observation | None = 
         return _guessed(supposed)
     if reader.is_still(outcome.ops) and (supposed := reader.supposed(cleaned)) and not reader.is_still(supposed):
         return _guessed(supposed)
-    if reader.is_about_another(cleaned, outcome.ops) and (supposed := reader.supposed(cleaned)):
-        return outcome if reader.is_about_another(cleaned, supposed) else _guessed(supposed)
+    if reader.is_about_another(cleaned, outcome.ops):
+        if supposed := reader.supposed(cleaned):
+            return outcome if reader.is_about_another(cleaned, supposed) else _guessed(supposed)
+        plainly = outcome.ops[0]["op"] == "delete" and outcome.ops[0]["target"].text != "everything"
+        if plainly and reader.is_named_beside(cleaned, outcome.ops[0]["target"]):
+            raise Refusal("what is to be removed is not understood", cleaned[:200])
     if reader.is_of_another_kind(cleaned, outcome.ops):
         if supposed := reader.supposed(cleaned):
             return _guessed(supposed)

@@ -190,13 +190,20 @@ class TimeReader:
             return _RIDS.search(cleaned) is None
         told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
         op, change = str(ops[0]["op"]), ops[0].get("change")
+        kind, chance = next(iter(likely(cleaned)), ("", 0.0))
+        if (
+            op == "move"
+            and kind in ("still", "stay", "halt")
+            and self._moves is not None
+            and self._moves(ops[0]["target"])
+        ):
+            return chance >= least  # "it must stay on the shelf" puts nothing there
         if told is None and op not in (*_LOOKS_OR_THINGS, "pace", "articulate"):
             return False
         if ops[0]["op"] == "scale" and not _SPEEDS.search(cleaned):
             return False  # "too slow. Double it" makes nothing larger
         if ops[0]["op"] == "rotate" and not (self._moves is not None and self._moves(ops[0]["target"])):
             return False  # "turn the chair round to face the other way"
-        kind, chance = next(iter(likely(cleaned)), ("", 0.0))
         if told is None and (kind not in _PACED or op == "articulate"):
             return False  # "three more blocks, all green" are put in
         if (kind, change) == ("stay", "open") and told is None:  # where it opens and closes by itself
@@ -213,9 +220,20 @@ class TimeReader:
         if len(ops) != 1 or ops[0].get("target") is None or not ops[0]["target"].text or ops[0]["target"].also:
             return False
         words = with_nouns(_in_words(cleaned)).split(" ")
-        named = [self.thing(" ".join(words[start:stop])) for tag, start, stop in marked(words) if tag == "x"]
-        known = [query for query in named if query is not None and query.text and not query.last]
-        return bool(known) and all(query.text != ops[0]["target"].text for query in known)
+        target, others = ops[0]["target"].text, list[bool]()
+        for tag, start, stop in marked(words):
+            query = self.thing(" ".join(words[start:stop])) if tag == "x" else IT
+            if query is None:  # "that bedside lamp"
+                others.append(stop - start > 1 and target.split(" ")[-1] not in words[start:stop])
+            elif query.text and not query.last:
+                others.append(query.text != target)
+        return bool(others) and all(others)
+
+    def is_named_beside(self, cleaned: str, target: Query) -> bool:
+        """Whether the words for a thing only tell where or when something is to be done."""
+        words = with_nouns(_in_words(cleaned)).split(" ")
+        noun, besides = target.text.split(" ")[-1], ("y", *TIMES)
+        return noun in {word for tag, start, stop in marked(words) if tag in besides for word in words[start:stop]}
 
     def is_still(self, ops: Sequence[Fields]) -> bool:
         """Whether operations change how something moves that stands still in the scene."""

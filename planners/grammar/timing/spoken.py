@@ -17,9 +17,17 @@ _SLANG = re.compile(
 )
 
 
+_IT_IS = re.compile(  # "its so slow"
+    r"\b(?P<it>its) (?=(?:so|too|very|really|way too|not|just|always|still|all the way|half ?way|half open|fully|a bit|"
+    r"going to|supposed to) )",
+    re.IGNORECASE,
+)
+
+
 def written(spoken: str) -> str:
     """A text with the words in full that people shorten when they speak."""
-    text = _SOON_AS.sub("as soon as", _DROPPED.sub(_in_full, _SLANG.sub("", spoken)))
+    text = _IT_IS.sub("it is ", spoken)
+    text = _SOON_AS.sub("as soon as", _DROPPED.sub(_in_full, _SLANG.sub("", text)))
     return _DO_NOT_BE.sub(_prohibited, text)
 
 

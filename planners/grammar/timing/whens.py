@@ -34,6 +34,8 @@ def when_of(moment: Moment, during: During | None, kind: str, op: Fields) -> Whe
     """
     lasting, gradual = moment.lasting, False
     start: End | None = moment.start
+    goes = kind == "path" or op.get("turns") is not None
+    last = isinstance(start, float) and (start < 0 or any(map(_TO_THE_END.search, moment.said)))
     if kind == "look":
         if moment.taken or moment.slowly or op.get("gradual"):
             gradual = True
@@ -42,15 +44,18 @@ def when_of(moment: Moment, during: During | None, kind: str, op: Fields) -> Whe
         if op["op"] in ("insert", "delete", "replace", "isolate", "duplicate") and moment.taken:
             gradual = False
     elif lasting is None and moment.stop is None and not (moment.always and during is not None):
-        lasting = SLOW if moment.slowly else BRIEF if moment.quickly and kind == "path" else None
+        if moment.slowly and not (goes and (last or moment.always)):  # "gently, over the last two seconds"
+            lasting = SLOW
+        elif moment.quickly and kind == "path":
+            lasting = BRIEF
     stop: End | None = None if lasting is not None else moment.stop
-    goes = kind == "path" or op.get("turns") is not None
-    last = isinstance(start, float) and (start < 0 or any(map(_TO_THE_END.search, moment.said)))
     if goes and last and lasting is None and stop is None:
         stop = "end"  # "in the last two seconds", "from 3 s to the end" is there at the end
     ends = during is not None and during.part in ("from", "after") and moment.always
     if kind == "path" and ends and stop is None and lasting is None:
         stop = "end"  # "by the end of the film"
+    if goes and start is None and stop is None and lasting is None and during is None and moment.slowly:
+        return When(stop="end")  # "slowly, over the whole film"
     if kind == "path" and start is None and stop is None and lasting is None and during is None:
         return When(stop="end" if moment.always else None)
     if start is None and stop is None and lasting is None and during is None:

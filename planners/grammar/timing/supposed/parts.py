@@ -14,7 +14,7 @@ from ...vocabulary.quantities import NUMBERS
 from ..happenings import CONJUNCTION, IT, Happening
 from ..happenings import cut as happenings_in
 from ..manner import Thing
-from ..moments import TIMED, Moment, cut
+from ..moments import DURATION, TIMED, Moment, cut, seconds_of
 from ..verbs import SENSES, has_form
 from .choosing import says_plainly
 from .kinds import is_any_word
@@ -46,6 +46,7 @@ _HOW_MANY = re.compile(  # ", all four of them"
 _SO_THAT = re.compile(r"^(?:, )?(?:and )?so (?:that )?(?:it|he|she|they|we|i|you|people|everyone)\b")  # a reason
 _AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _ANOTHER = re.compile(r"^(?:, )?(?:and |but )?then\b|\botherwise\b")
+_TO_THEN = re.compile(rf"(?:to|until|till|-) (?:{DURATION}|\d+(?:\.\d+)?|{'|'.join(NUMBERS)})(?= |$)")
 _AS_IT_WAS = re.compile(r"\b(?:again|back|before|usual|normal|was|returns?|own|original|used to)\b")
 
 
@@ -57,7 +58,7 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
         spans: the marks in them.
         thing: reads a name.
     """
-    moment, spans = Moment(), [_with_half(words, _as_name(words, span, thing)) for span in spans]
+    moment, spans = Moment(), [_whole(words, _as_name(words, span, thing)) for span in spans]
     happening: Happening | None = None
     is_delayed, skipped = False, list[tuple[int, int]]()
     for tag, start, stop in spans:
@@ -174,11 +175,16 @@ def _as_name(words: Sequence[str], span: Span, thing: Thing) -> Span:
     return ("y", start + 1, stop) if after else span
 
 
-def _with_half(words: Sequence[str], span: Span) -> Span:
-    """A mark of a time with the half behind it: "[at one second] and a half"."""
+def _whole(words: Sequence[str], span: Span) -> Span:
+    """A mark of a time with what belongs to it behind it: "[at one second] and a half", "[three seconds] to four"."""
     tag, start, stop = span
-    half = tag in TIMES and list(words[stop : stop + 3]) == ["and", "a", "half"]
-    return (tag, start, stop + 3) if half else span
+    if tag in TIMES and list(words[stop : stop + 3]) == ["and", "a", "half"]:
+        return tag, start, stop + 3
+    begun = " ".join(words[start:stop]).removeprefix("from ").removeprefix("at ")
+    then = _TO_THEN.match(" ".join(words[stop:])) if tag in ("from", "for", "in") else None
+    if then is None or seconds_of(begun) is None:
+        return span
+    return "in", start, stop + then[0].count(" ") + 1
 
 
 def _loses(tag: str, words: Sequence[str]) -> bool:

@@ -59,7 +59,8 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ),
     ("from", r"^at (?P<state>half open|half way open)$", r"when it is \g<state>"),
     ("from", rf"^after (?:its|his|her|the) (?:{_WAYS})$", "after it has stopped"),
-    ("from in", r"^on (?:its|his|her|the) way(?: [a-z]+)?$", "while it is moving"),
+    ("in", r"^on (?:its|his|her|the) way(?: [a-z]+)?$", "while it is moving"),
+    ("from", r"^on (?:its|his|her|the) way(?: [a-z]+)?$", "when it is halfway"),
     (
         "in to",
         r"^(?:for|during|through(?:out)?|(?:until|to) the end of) the (?:whole )?"
@@ -113,14 +114,16 @@ _CLAUSE = re.compile(
     r"^(?P<word>once|after|when|as soon as|before|until|till|while|as|whilst|during the time) (?P<said>[a-z ]+)$"
 )
 _NOT_MOVING = re.compile(
-    r"\b(?:not|no|never|still|stands?|standing|sits?|sitting|rests?|resting|lies|lying|waits?|waiting)\b"
+    r"\b(?:not|no|never|still|stands?|standing|sits?|sitting|rests?|resting|lies|lying|waits?|waiting|"
+    r"parts?|half|bits?|legs?|laps?|steps?|first|second|third)\b"
 )
 _OVER = re.compile(
-    r"^(?: ?(?:is|are|'s|was|has|have|had)(?: been)?)?(?: all)? (?:done|through|up|complete|finished|inside|past|by|over|"
-    r"gone|in place|parks?|parked|quits?|dies|settles?|settled|docks?|docked|dead|dies down|gives? up|calms? down|"
+    r"^(?: ?(?:is|are|'s|was|has|have|had)(?: been)?)?(?: all)? (?:done|through|up|complete|finished|inside|past|by|"
+    r"over|gone|in place|parks?|parked|quits?|dies|settles?|settled|docks?|docked|dead|dies down|gives? up|calms? down|"
     r"comes? to (?:rest|a standstill))(?: .*)?$"
 )
 _HAS = re.compile(r"^ ?(?:has|have|had|'s) (?!to )(?:\w+ )?[a-z]+(?:ed|en|ne|un|ut|ade|ought|aught|ent|ot|old|ung)\b")
+_OVER_IT = re.compile(r"\b(?:over|across|along) (?P<what>it|the [a-z]+)\b")
 _GOES_ON = re.compile(r"^ ?(?:(?:is|are|'s) (?:\w+ )?[a-z]+ing|[a-z]+s)\b")
 
 
@@ -138,5 +141,6 @@ def loosely(phrase: str, thing: Thing) -> str | None:
         if _OVER.match(f" {rest}") or _HAS.match(rest):
             return f"{found['word']} {who} has stopped"
         if found["word"] in ("while", "whilst") and _GOES_ON.match(rest):
-            return f"while {who} is moving"
+            over = _OVER_IT.search(rest)
+            return f"while {who} is on {over['what']}" if over else f"while {who} is moving"
     return None

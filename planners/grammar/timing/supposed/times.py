@@ -8,6 +8,7 @@ from typing import Any
 from .....gaussians import late_re as re
 from .....tools.when import During, Part
 from ...tagging.spelling import is_word
+from ...tagging.words import bag
 from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import ORDINALS
 from ..happenings import CONJUNCTION, IT, Happening, clause_of
@@ -62,6 +63,11 @@ _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
         ),
         0.0,
     ),
+)
+_AROUND = bag(  # words that may stand beside the name of a moment
+    "the a of to in through from at up until till towards toward very right exactly about around just only near "
+    "somewhere point way mark is 's it has have been all like straight onwards on onward when as once by with and , "
+    "after before we they comes come reach reaches again off out for during over this our that then"
 )
 _HALF = re.compile(r"\b(first|second|last|latter|other) half\b")
 _HALFWAY = re.compile(
@@ -194,7 +200,12 @@ def _named_moment(tag: str, phrase: str, thing: Thing) -> Moment | None:
     if tag == "to" and _WITH_THE_FILM.search(phrase):
         return _at(tag, phrase, "end")
     begins = re.sub(r" (?:to|until|till) the (?:very )?end$", "", phrase) if tag != "to" else phrase
-    value = next((end for pattern, end in _NAMED if pattern.search(begins)), None)
+    value = None
+    for pattern, end in _NAMED:
+        if pattern.search(begins):
+            beside = _FILM.sub(" ", pattern.sub(" ", begins)).split()
+            value = end if set(beside) <= _AROUND else None  # not "clear the middle"
+            break
     return None if value is None else _at(tag, phrase, value)
 
 

@@ -12,6 +12,7 @@ from functools import partial
 from itertools import takewhile
 
 from .....gaussians import late_re as re
+from .....gaussians.language.query.query import Query
 from ...learned.seen import hues
 from ...vocabulary.nouns import EVERYWHERE, is_opened
 from ...vocabulary.quantities import NUMBERS
@@ -29,6 +30,17 @@ from .said import BEFORE_IT, Said
 
 SURE = 0.85  # probability from which a change without a time is supposed, or an unknown verb is left aside
 _STATIC = ("recolor", "hide", "remove", "move")  # kinds that need no time
+_ON_ITS_WAY = (  # kinds that may name where something goes by itself
+    "pause",
+    "halt",
+    "reverse",
+    "speed",
+    "duration",
+    "begin",
+    "still",
+    "repeat",
+    "longer",
+)
 _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
@@ -109,15 +121,16 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
         said = said.until_then()
     for wish in made(said):
         left = _left(wish, said)
-        if _is_whole(wish, said, left) and _says_no_more(kind, said, left):
+        if _is_whole(kind, chance, wish, said, left) and _says_no_more(kind, said, left):
             yield wish
 
 
-def _is_whole(wish: Wish, said: Said, left: str) -> bool:
+def _is_whole(kind: str, chance: float, wish: Wish, said: Said, left: str) -> bool:
     """Whether nothing that the instruction names is among the words that are `left`, and no time is lost."""
     if _times(said.moment) - _times(wish.moment) - {wish.spent}:
         return False
-    if (len(said.things) > wish.things and not wish.marked) or _TIMES_LEFT.search(left):
+    named = len(said.things) - (len(said.goals) if kind in _ON_ITS_WAY and chance >= SURE else 0)
+    if (named > wish.things and not wish.marked) or _TIMES_LEFT.search(left):
         return False
     return not any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in hues() for w in left.split())
 
@@ -362,7 +375,8 @@ def _spin(said: Said) -> Iterator[Wish]:
     if rate is None and (often := times or full) is not None:
         how = ("once" if often is full or often[0] in _ONCE else often[0], often[0])
         moment = _to_the_end(moment)
-    yield Wish(f"spin {said.things[0]} {how[0]}".strip(), moment, _with_its_place(said), how[1])
+    command = f"spin {said.things[0]} {how[0]}" if how[0] or not said.told else f"let {said.things[0]} spin"
+    yield Wish(command, moment, _with_its_place(said), how[1])
 
 
 def _to_the_end(moment: Moment) -> Moment:
@@ -498,8 +512,11 @@ def _speed(said: Said) -> Iterator[Wish]:
         yield from _spin(said)
         return
     plain = _TOO_SLOW.sub("faster", _TOO_FAST.sub("slower", said.beside))
-    if (often := _OFTEN.search(said.beside)) is not None and "slow" not in plain:
-        factor = float(often["n"]) / 100 if often["unit"] in ("%", "percent") else float(often["n"])
+    share = (often := _OFTEN.search(said.beside)) is not None and often["unit"] in ("%", "percent")
+    if often is not None and not (share and "slow" in plain):
+        factor = float(often["n"]) / 100 if share else float(often["n"])
+        if "slow" in plain and factor > 1:
+            factor = round(1 / factor, 4)
         if factor > 0 and (factor > 1 or not _HASTE.search(plain)):
             yield Wish(pace(said.whose, "speed", factor=factor), _plainly(said), holds=often[0])
         return
@@ -696,8 +713,10 @@ def _order(said: Said) -> Iterator[Wish]:
         one, other = said.things
         between = said.beside.split("|")[1]
         for word, (later, sooner) in {"after": (one, other), "before": (other, one)}.items():
-            if word in between.split():
-                yield Wish(f"let {_the(later)} start after {_the(sooner)} has stopped", Moment(), things=2, holds=word)
+            if word in between.split() and (first := said.thing(sooner)) is not None:
+                begun = pace(said.thing(later) or Query(last=True), "begin")
+                stopped = {"state": "moving", "of": first, "part": "after"}
+                yield Wish(replace(begun, during=stopped), Moment(), things=2, holds=word)
 
 
 def _the(name: str) -> str:
