@@ -26,6 +26,7 @@ from ..plan import MAX_OPS, EditPlan
 from .lighting.splitting import Part, may_be_light, parts_of
 from .meaning.changes import Fields
 from .meaning.phrases import Phrases
+from .naming import named_there
 from .parsing import Refusal
 from .reader import Reader
 from .restating.changes.filling import Heard, heard
@@ -157,6 +158,15 @@ def _shortened(words: Sequence[str]) -> tuple[str, ...]:
 
 
 def _understand(cleaned: str, previous: str | None, scene: Observation | None = None) -> _Outcome:
+    """Parse a cleaned instruction; what a scene lacks is looked for by a name that is as near.
+
+    Args, raises: as `_read_whole`.
+    """
+    outcome = _read_whole(cleaned, previous, scene)
+    return outcome if scene is None else replace(outcome, ops=tuple(named_there(outcome.ops, scene.lacks)))
+
+
+def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -> _Outcome:
     """Parse a cleaned instruction.
 
     Args:

@@ -174,7 +174,8 @@ class TimeReader:
             return found
         once = all(op["op"] in _WISHED and op.get("when") is None for op in found)
         words = _in_words(cleaned).split(" ")
-        return found if once and is_wished(words, marked(words)) else None
+        chance = next(iter(likely(cleaned)), ("", 0.0))[1]
+        return found if once and is_wished(words, marked(words), chance) else None
 
     def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields], least: float = _SAID_SO) -> bool:
         """Whether operations of a time, or of a look or a new thing, begin with one that no wish of the likeliest kind

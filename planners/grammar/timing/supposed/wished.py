@@ -19,8 +19,8 @@ _WISHES = re.compile(
     r"\b(?:i|we) (?:would|should) (?:\w+ ){0,2}?(?:like|love|prefer|want|go for|rather have)\b|"
     r"\b(?:i|we) (?:\w+ )?(?:want|wish|need|prefer)\b|^would (?:love|like|prefer)\b|"
     r"\b(?:should|must|ought to|needs? to|has to|have to|wants to|is to|are to) "
-    r"(?:be|go|become|turn|disappear|vanish)\b|"
-    r"\bwould (?:\w+ )?(?:look|read|suit|do|work|go) (?:\w+ )?(?:better|nicer|nice|great|good|lovely|well|prettier|"
+    r"(?:be|go|become|turn|disappear|vanish)\b|\b(?:can|could) (?:\w+ )?(?:be|go|become|turn)\b|"
+    r"\bwould (?:\w+ )?(?:look|read|suit|do|work|go|show|be|stand|sit) (?:\w+ )?(?:better|nicer|nice|great|good|lovely|well|prettier|"
     r"best)\b|^please\b"
 )
 _RID_OF_IT = re.compile(
@@ -28,6 +28,10 @@ _RID_OF_IT = re.compile(
     r"(?:remove|delete|bin|ditch|scrap|lose) (?:it|them))\b"
 )
 _DENIED = re.compile(r"\b(?:not|never|no one|nobody|if|unless|or|but)\b")
+SURELY = 0.95  # probability of a wish of its kind from which any other words may stand in it
+_ASKS = re.compile(
+    r"\b(?:know|knows|whether|wonder|wondering|remember|recall|what|which|who|whose|why|when|where|how)\b"
+)
 _CONTRARY = re.compile(r"(?:how|what) about not\b")
 _BESIDE = bag(  # that may stand in a wish beside what is marked
     "i we you would could can may might like love want wish prefer rather need needs to have make turn paint "
@@ -40,12 +44,13 @@ _BESIDE = bag(  # that may stand in a wish beside what is marked
 )
 
 
-def is_wished(words: Sequence[str], spans: Sequence[Span]) -> bool:
+def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float) -> bool:
     """Whether a sentence asks for something: "I would love the bed in pink", and not "the bed is pink already".
 
     Args:
         words: those of the sentence.
         spans: the marks in them.
+        chance: the probability that it is a wish of its kind.
     """
     idle = {at for tag, start, stop in spans if tag in ("off", "not") for at in range(start, stop)}
     held = {at for _, start, stop in spans for at in range(start, stop)}
@@ -55,4 +60,5 @@ def is_wished(words: Sequence[str], spans: Sequence[Span]) -> bool:
         return False
     if _RID_OF_IT.search(asked) and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"
-    return all(word in _BESIDE for word in left) and _WISHES.search(asked) is not None
+    plainly = chance >= SURELY and _DENIED.search(asked) is None and _ASKS.search(asked) is None
+    return (plainly or all(word in _BESIDE for word in left)) and _WISHES.search(asked) is not None

@@ -1,0 +1,48 @@
+"""Names that a scene lacks, as the ones that are meant (`named_there`): "the dinning table", "the wee robot"."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+
+from ...gaussians.language.query.query import Query
+from ...gaussians.world import kinds
+from .meaning.changes import Fields
+from .tagging.spelling import is_common, is_word, misspelled_name
+from .vocabulary import nouns
+
+
+def named_there(ops: Sequence[Fields], lacks: Callable[[Query], bool]) -> Iterator[Fields]:
+    """Operations whose targets a scene has, where it has them by a name that is spelt right, or without words that
+    are neither nouns nor known adjectives.
+
+    Args:
+        lacks: whether the scene has nothing that a query names.
+    """
+    for op in ops:
+        target = op.get("target")
+        if isinstance(target, Query) and target.text and not target.last and lacks(target):
+            others = (target.model_copy(update={"text": text}) for text in _as_near(target.text))
+            target = next((other for other in others if not lacks(other)), target)
+            op = {**op, "target": target}
+        yield op
+
+
+def _as_near(text: str) -> Iterator[str]:
+    """Other names that a name may stand for."""
+    words = text.split(" ")
+    strange = [not nouns.is_known(word) and not is_word(word) for word in words]
+    right = [
+        (not is_common(word) and misspelled_name(word, _nouns())) or word if odd else word
+        for word, odd in zip(words, strange, strict=True)
+    ]
+    if right != words:
+        yield " ".join(right)
+    known = next((at for at, odd in enumerate(strange) if not odd), len(words))
+    if 0 < known < len(words):
+        yield " ".join(words[known:])
+
+
+@cache
+def _nouns() -> frozenset[str]:
+    return nouns.everyday() | kinds.every_word()
