@@ -17,6 +17,7 @@ _SLANG = re.compile(
 )
 
 
+_SOONER = re.compile(r"\bwould sooner\b|(?<=\bi)'d sooner\b|(?<=\bwe)'d sooner\b", re.IGNORECASE)
 _IT_IS = re.compile(  # "its so slow"
     r"\b(?P<it>its) (?=(?:so|too|very|really|way too|not|just|always|still|all the way|half ?way|half open|fully|a bit|"
     r"going to|supposed to) )",
@@ -26,7 +27,7 @@ _IT_IS = re.compile(  # "its so slow"
 
 def written(spoken: str) -> str:
     """A text with the words in full that people shorten when they speak."""
-    text = _IT_IS.sub("it is ", spoken)
+    text = _SOONER.sub(" would rather", _IT_IS.sub("it is ", spoken))
     text = _SOON_AS.sub("as soon as", _DROPPED.sub(_in_full, _SLANG.sub("", text)))
     return _DO_NOT_BE.sub(_prohibited, text)
 

@@ -34,6 +34,9 @@ _ONE = re.compile(
     r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b"
     r"(?! (?:and|full|whole|half|third|quarter|seconds?|secs?|s|m|cm|met(?:re|er)s?|times?|turns?|by)\b)"
 )
+_RANKED = re.compile(  # "from when the first book falls until the last one is down"
+    r"\bthe (?:first|last|second|third) (?P<noun>[a-z]+)\b.*\bthe (?:first|last|second|third) (?P<one>one)\b"
+)
 
 
 def with_moving(text: str) -> str:
@@ -46,11 +49,14 @@ def with_nouns(text: str) -> str:
 
     def noun(found: re.Match[str]) -> str:
         before, after = (
-            [word for word in part.split() if is_known(word) and word not in _NO_THINGS and word != "can"]
+            [word for word in part.split() if is_known(word) and word not in _NO_THINGS and word not in ("can", "back")]
             for part in (text[: found.start()], text[found.end() :])
         )
         return f"{found['how']} {singular((before[-1:] or after[:1] or ['one'])[0])}"
 
+    ranked = _RANKED.search(text)
+    if ranked is not None and is_known(ranked["noun"]):
+        text = f"{text[: ranked.start('one')]}{ranked['noun']}{text[ranked.end('one') :]}"
     return _ONE.sub(noun, text)
 
 

@@ -44,6 +44,9 @@ _HOW_MANY = re.compile(  # ", all four of them"
     r"(?:all|both|each|every one)(?: (?:the )?(?:two|three|four|five|six))?(?: of (?:them|those|these))?"
 )
 _SO_THAT = re.compile(r"^(?:, )?(?:and )?so (?:that )?(?:it|he|she|they|we|i|you|people|everyone)\b")  # a reason
+_REMARKS = re.compile(  # what is said of oneself, or of how it is: ", i am after something dreamlike"
+    r"(?:, )?(?:and |but )?(?:i|we|it|that|this|they) (?:am|is|are|was|feels?|looks?|seems?|want|need|like|think)\b"
+)
 _AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _ANOTHER = re.compile(r"^(?:, )?(?:and |but )?then\b|\botherwise\b")
 _TO_THEN = re.compile(rf"(?:to|until|till|-) (?:{DURATION}|\d+(?:\.\d+)?|{'|'.join(NUMBERS)})(?= |$)")
@@ -60,6 +63,7 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     """
     moment, spans = Moment(), [_whole(words, _as_name(words, span, thing)) for span in spans]
     happening: Happening | None = None
+    clause = ""
     is_delayed, skipped = False, list[tuple[int, int]]()
     for tag, start, stop in spans:
         if tag not in TIMES:
@@ -105,7 +109,8 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     if happening is None:
         text, moment, happening = _with_unmarked(text, moment, thing, amounts)
     elif _begins(happening) and isinstance(moment.start, float) and not is_delayed:
-        happening = None  # "after it has been opened, from 3.5 s on"
+        clause = happening.said  # "after it has been opened, from 3.5 s on"
+        happening = None
     looks = any(tag == "as" for tag, _, _ in spans) or says_plainly("hide", text)
     if looks and happening is not None and _begins(happening) and moment.stop is None:
         unwanted = [" ".join(words[start:stop]) for tag, start, stop in spans if tag == "not"]
@@ -118,6 +123,9 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
     named = [(tag, _name(words, start, stop, thing)) for tag, start, stop in sorted(spans, key=lambda s: s[1])]
     goals = _things(named, "y", thing)
     things = _things(named, "x", thing) or tuple(name for name in names_in(text, thing) if name not in goals)[:1]
+    if not things and _PRONOUN.search(text):
+        said = (" ".join(words[start:stop]) for tag, start, stop in spans if tag in _IDLE)
+        things = names_in(clause or " . ".join(said), thing)[:1]  # "always shut the door, so have it close at 3 s"
     if not things and happening is not None:  # "once the door has opened, shut it"
         idle_names = (names_in(" ".join(words[start:stop]), thing) for tag, start, stop in spans if tag in _IDLE)
         if any(idle_names) and _PRONOUN.search(text) is None:
@@ -152,7 +160,7 @@ def _with_goal(
 
 def _is_odd(words: Sequence[str]) -> bool:
     """Whether words that belong to the sentence hold one that is none: "around nothing blorp"."""
-    if words[0] in ("so", "because", "as", "since", "for", "like", "if"):
+    if words[0] in ("so", "because", "as", "since", "for", "like", "if") or _REMARKS.match(" ".join(words)):
         return False
     return words[0].isalpha() and any(word.isalpha() and not is_any_word(word) for word in words)
 

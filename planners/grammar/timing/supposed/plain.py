@@ -81,6 +81,11 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
         r"(?: frame)?|to finish)$",
         _ALWAYS,
     ),
+    (
+        "in",
+        rf"^(?:for |over |during )?all (?:of )?(?:the )?{_NUMBER} seconds(?: of (?:it|the {_FILM}|this))?$",
+        _ALWAYS,
+    ),
     ("for", rf"^(?:for )?(?:just )?(?:briefly|an? (?:short |brief |wee |quick )?(?:{_BRIEFLY}))$", "for 1 seconds"),
     ("from", r"^(?:from|after|at) (?:the )?(?:off|get go|word go|very start)$", "from the start"),
     (
@@ -123,6 +128,7 @@ _OVER = re.compile(
     r"comes? to (?:rest|a standstill))(?: .*)?$"
 )
 _HAS = re.compile(r"^ ?(?:has|have|had|'s) (?!to )(?:\w+ )?[a-z]+(?:ed|en|ne|un|ut|ade|ought|aught|ent|ot|old|ung)\b")
+_BACK_IN = re.compile(r"^(?:is|are|'s|has|have)(?: \w+){0,4} back in(?: again)?$")
 _OVER_IT = re.compile(r"\b(?:over|across|along) (?P<what>it|the [a-z]+)\b")
 _GOES_ON = re.compile(r"^ ?(?:(?:is|are|'s) (?:\w+ )?[a-z]+ing|[a-z]+s)\b")
 
@@ -138,6 +144,8 @@ def loosely(phrase: str, thing: Thing) -> str | None:
         who, rest = " ".join(words[:size]), " ".join(words[size:])
         if thing(who) is None or _NOT_MOVING.search(rest):
             continue
+        if _BACK_IN.match(rest):
+            return f"{found['word']} {who} has closed"
         if _OVER.match(f" {rest}") or _HAS.match(rest):
             return f"{found['word']} {who} has stopped"
         if found["word"] in ("while", "whilst") and _GOES_ON.match(rest):

@@ -49,7 +49,7 @@ _ALL = re.compile(
     r"(?:beginning|start) to (?:the )?(?:end|finish))\b"
 )
 _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
-    (re.compile(r"\b(?:middle|half ?way|half time|midway|half the)\b"), "middle"),
+    (re.compile(r"\b(?:middle|half ?way|half time|mid ?way|mid ?point|half the)\b"), "middle"),
     (
         re.compile(
             r"^(?:un)?till? the (?:very )?last (?:second|moment)$|\b(?:end|ends|finish|close|last frame|over|finale)\b"
@@ -58,7 +58,7 @@ _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     ),
     (
         re.compile(
-            r"\b(?:beginning|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b|"
+            r"\b(?:begin(?:n?ing)?|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b|"
             r"\btop (?:of the (?:film|show|clip|video|scene|shot))?$"
         ),
         0.0,

@@ -20,8 +20,8 @@ _WISHES = re.compile(
     r"\b(?:i|we) (?:\w+ )?(?:want|wish|need|prefer)\b|^would (?:love|like|prefer)\b|"
     r"\b(?:should|must|ought to|needs? to|has to|have to|wants to|is to|are to) "
     r"(?:be|go|become|turn|disappear|vanish)\b|\b(?:can|could) (?:\w+ )?(?:be|go|become|turn)\b|"
-    r"\bwould (?:\w+ )?(?:look|read|suit|do|work|go|show|be|stand|sit) (?:\w+ )?(?:better|nicer|nice|great|good|lovely|well|prettier|"
-    r"best)\b|^please\b"
+    r"\bwould (?:\w+ )?(?:look|read|suit|do|work|go|show|be|stand|sit) (?:\w+ )?(?:better|nicer|nice|great|good|"
+    r"lovely|well|prettier|best)\b|^please\b"
 )
 _RID_OF_IT = re.compile(
     r"(?:[,.;:!] |\b(?:please|and|so|just|you) )(?:get rid of (?:it|them)|(?:take|throw) (?:it|them) (?:away|out)|"
@@ -29,8 +29,9 @@ _RID_OF_IT = re.compile(
 )
 _DENIED = re.compile(r"\b(?:not|never|no one|nobody|if|unless|or|but)\b")
 SURELY = 0.95  # probability of a wish of its kind from which any other words may stand in it
-_ASKS = re.compile(
-    r"\b(?:know|knows|whether|wonder|wondering|remember|recall|what|which|who|whose|why|when|where|how)\b"
+_ASKS = re.compile(  # or tells
+    r"\b(?:know|knows|whether|wonder|wondering|remember|recall|what|which|who|whose|why|when|where|how|said|says?|told|"
+    r"tells?|thought|heard|yesterday|ago|used to|tomorrow|earlier|last (?:week|month|year|time|night))\b"
 )
 _CONTRARY = re.compile(r"(?:how|what) about not\b")
 _BESIDE = bag(  # that may stand in a wish beside what is marked

@@ -145,7 +145,8 @@ _LEFT_SO = re.compile(  # "and leave it that way", "keep it hidden before that"
 )
 _IF_ONLY = re.compile(  # "I would be grateful if ..."
     r"\b(?:i|we|it) (?:would|should|will) (?:\w+ ){0,3}?(?:grateful|happy|glad|nice|nicer|good|great|lovely|better|"
-    r"best|delighted|suit \w+(?: \w+){0,2}?|appreciate it|like it|love it|prefer it|help)(?: \w+)?? if\b"
+    r"best|delighted|suit \w+(?: \w+){0,2}?|appreciate it|like it|love it|prefer it|help)(?: \w+)?? if\b|"
+    r"^(?:so |well )?it (?:would|will|might|could) (?:feel|look|be) (?:\w+ ){1,4}?if\b|^(?:and |so )?what if\b"
 )
 _AFTER_THAT = re.compile(r"\b(?:any ?more |ever |again |from then )?(?:after (?:that|this)|on after)\b")
 
@@ -174,7 +175,7 @@ def _left(wish: Wish, said: Said) -> str:
 _TELLING = {  # words that say something by themselves, and the kinds of wishes that say it
     r"slow|slower|fast|faster|quick|quicker|twice|double|half|speed": "speed duration spin repeat amount",
     r"slowly|quickly": "speed duration spin repeat amount move",
-    r"far|farther|further|wide|wider": "amount",
+    r"far(?! (?:too|better|nicer|more|less|from|prettier|cooler))|farther|further|wide|wider": "amount",
     r"earlier|sooner|later": "begin open order",
     r"backwards?|reverse|reversed": "reverse return order",
     r"back": "return reverse close stay still hide order repeat pause",
@@ -385,10 +386,14 @@ def _to_the_end(moment: Moment) -> Moment:
     return replace(moment, stop="end") if last or moment.always else moment
 
 
+_TRAVELS = re.compile(r"\b(?:travel|roll|walk|driv|slid|march|fall)(?:e?s|e|ing|ling)?\b|\bsetting (?:off|out)\b")
+
+
 def _reverse(said: Said) -> Iterator[Wish]:
     if not _BACKWARDS.search(said.text) and not _OTHER_WAY.search(said.text):
         return  # "roll up the wall"
-    if not said.told and _OTHER_WAY.search(said.text) and not _IN_REVERSE.search(said.text):
+    travels = _TRAVELS.search(said.text) is not None
+    if not said.told and not travels and _OTHER_WAY.search(said.text) and not _IN_REVERSE.search(said.text):
         yield Wish(f"let {said.things[0]} turn the other way round", said.moment)
     elif not said.told:
         whose = ALL_OF_IT if said.things[0] in (MOVING, "everything") else said.whose
@@ -398,9 +403,12 @@ def _reverse(said: Said) -> Iterator[Wish]:
 _AGAIN_FOR = re.compile(r"\b(?:over and over|again and again|all the time|keeps?|repeatedly|loops?|non ?stop)\b")
 
 
+_ANOTHER_TIME = re.compile(r"\b(?:an?|one|the) (?:second|other|more) time\b|\banother time\b")
+
+
 def _repeat(said: Said) -> Iterator[Wish]:
-    times = _TIMES.search(said.beside)
-    if times is None or times[0] in _ONCE:
+    times = _ANOTHER_TIME.search(said.beside) or _TIMES.search(said.beside)
+    if times is None or times[0] in _ONCE or times.re is _ANOTHER_TIME:
         holds = "" if times is None else times[0]
         if said.told and not _AGAIN_FOR.search(said.text):
             yield Wish(pace(said.whose, "repeat", times=1), said.moment, holds=holds)
@@ -484,7 +492,7 @@ def _begin(said: Said) -> Iterator[Wish]:
             yield Wish(pace(said.whose, "later", seconds=sign * seconds), Moment(), holds=words)
         if moment.lasting is not None and moment.start is None and moment.stop is None:
             yield Wish(pace(said.whose, "later", seconds=sign * moment.lasting), Moment(), spent=moment.lasting)
-    if _A_PART.search(said.text):  # "close it at 2 s" begins no other movement
+    if _A_PART.search(HELD_BACK.sub(" ", said.text)):  # "close it at 2 s" begins no other movement
         if is_opened(said.things[0]) and _SHUTS.search(said.text) and isinstance(moment.start, float):
             yield Wish(f"close {said.things[0]}", moment)
         return
