@@ -21,10 +21,10 @@ def named_there(ops: Sequence[Fields], lacks: Callable[[Query], bool]) -> Iterat
     """
     for op in ops:
         target = op.get("target")
-        near = list(_as_near(target.text)) if isinstance(target, Query) and not target.last else []
-        if near and lacks(target):
-            others = (target.model_copy(update={"text": text}) for text in near)
-            op = {**op, "target": next((other for other in others if not lacks(other)), target)}
+        if isinstance(target, Query) and not target.last:
+            others = [target.model_copy(update={"text": text}) for text in _as_near(target.text)]
+            if others and lacks(target):
+                op = {**op, "target": next((other for other in others if not lacks(other)), target)}
         yield op
 
 
