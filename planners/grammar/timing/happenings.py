@@ -211,6 +211,8 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
     if sense == "start" and slides:  # "it starts sliding back in"
         return ("opening" if manner.state == "open" else "closing"), _BEGINS
     if sense == "start" and manner.only("doing"):
+        if {"turn", "turning"} & set(clause.tail):
+            return "turning", _BEGINS
         return ("falling" if manner.doing == "fall" else "moving"), _BEGINS
     if sense in ("stop", "arrive", "close") and manner.only("doing", "state") and (sense != "close" or ended):
         return ("closing" if sense == "close" else "moving"), _ENDED

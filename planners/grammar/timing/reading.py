@@ -207,7 +207,7 @@ class TimeReader:
             return False  # "turn the chair round to face the other way"
         if told is None and (kind not in _PACED or op == "articulate"):
             return False  # "three more blocks, all green" are put in
-        if (kind, change) == ("stay", "open") and told is None:  # where it opens and closes by itself
+        if (kind, change) == ("stay", "open"):  # where it opens and closes by itself
             return self._moves is not None and self._moves(ops[0]["target"]) is True and chance >= least
         if (kind, change) in (("open", "close"), ("close", "open")):
             return chance >= least

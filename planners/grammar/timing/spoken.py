@@ -17,6 +17,19 @@ _SLANG = re.compile(
 )
 
 
+_FILM_OVER = re.compile(
+    r"(?P<film>\b(?:when|until|till|before|as|once|by the time) the (?:film|clip|video|movie|scene|shot|animation)) "
+    r"(?:is|has) (?:finished|over|done|ended|through|finish)\b",
+    re.IGNORECASE,
+)
+_OFF_AT = re.compile(  # "fan off at 2 s"
+    r"^(?:the )?(?P<thing>[a-z]+(?: fan)?) off (?=(?:at|from|after|once|when|for|until|till|by) )", re.IGNORECASE
+)
+_TOO_CLUTTERED = re.compile(  # a reason: "remove the chair, too cluttered"
+    r"^(?P<order>(?:please |just )?(?:remove|delete|hide|lose|ditch|scrap|bin|take|paint|get rid) [^,.]+), "
+    r"(?:it's |it is )?(?:way |far |a bit |just )?too [a-z]+[.!]?$",
+    re.IGNORECASE,
+)
 _SOONER = re.compile(r"\bwould sooner\b|(?<=\bi)'d sooner\b|(?<=\bwe)'d sooner\b", re.IGNORECASE)
 _IT_IS = re.compile(  # "its so slow"
     r"\b(?P<it>its) (?=(?:so|too|very|really|way too|not|just|always|still|all the way|half ?way|half open|fully|a bit|"
@@ -27,7 +40,8 @@ _IT_IS = re.compile(  # "its so slow"
 
 def written(spoken: str) -> str:
     """A text with the words in full that people shorten when they speak."""
-    text = _SOONER.sub(" would rather", _IT_IS.sub("it is ", spoken))
+    text = _TOO_CLUTTERED.sub(r"\g<order>", _FILM_OVER.sub(r"\g<film> ends", spoken))
+    text = _SOONER.sub(" would rather", _OFF_AT.sub(r"switch the \g<thing> off ", _IT_IS.sub("it is ", text)))
     text = _SOON_AS.sub("as soon as", _DROPPED.sub(_in_full, _SLANG.sub("", text)))
     return _DO_NOT_BE.sub(_prohibited, text)
 

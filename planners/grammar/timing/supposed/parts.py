@@ -47,6 +47,7 @@ _SO_THAT = re.compile(r"^(?:, )?(?:and )?so (?:that )?(?:it|he|she|they|we|i|you
 _REMARKS = re.compile(  # what is said of oneself, or of how it is: ", i am after something dreamlike"
     r"(?:, )?(?:and |but )?(?:i|we|it|that|this|they) (?:am|is|are|was|feels?|looks?|seems?|want|need|like|think)\b"
 )
+_ASKED_OF = re.compile(r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b")
 _AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _ANOTHER = re.compile(r"^(?:, )?(?:and |but )?then\b|\botherwise\b")
 _TO_THEN = re.compile(rf"(?:to|until|till|-) (?:{DURATION}|\d+(?:\.\d+)?|{'|'.join(NUMBERS)})(?= |$)")
@@ -204,6 +205,8 @@ def _loses(tag: str, words: Sequence[str]) -> bool:
         return True  # "then yellow", "blue otherwise"
     if _BEFORE.search(said) or _UNLESS.search(said):
         return True
+    if tag == "off" and _ASKED_OF.search(said):
+        return True  # "and the lamp should sing"
     if tag == "off" and re.search(r"\bnot [a-z]+ing$", said):
         return True  # "how about not making"
     if tag == "not" and CONTRAST.search(said):

@@ -53,6 +53,7 @@ _OTHER_EDITS = re.compile(
 _LIT = re.compile(r"\b(?:off|out|on)$")
 _A_LIGHT = re.compile(r"\b(?:lamps?|lights?|lanterns?|candles?|bulbs?)$")
 _EXCEPT = re.compile(r"(?<!\bat )\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
+_IN_PIECES = re.compile(r"\b(?:apart(?! from)|to pieces|in two)\b")
 _REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _TIMES_LEFT = re.compile(
     r"\b(?:when|whenever|while|whilst|until|till|untill|during|as soon|by the time|the moment|the instant|instead|"
@@ -103,8 +104,8 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
         return
     if _LIT.search(said.text) and _A_LIGHT.search(said.things[0]):
         return  # "turn the lamp off" stops no motion
-    if _EXCEPT.search(f"{said.text} {said.idle}"):
-        return  # "everything but the fan"
+    if _EXCEPT.search(f"{said.text} {said.idle}") or _IN_PIECES.search(f"{said.text} {said.idle}"):
+        return  # "everything but the fan", "take it apart"
     if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text):
         return
     if _OTHER_EDITS.search(said.text) and not (kind == "order" and said.listed):
@@ -129,10 +130,17 @@ def _is_whole(kind: str, chance: float, wish: Wish, said: Said, left: str) -> bo
     """Whether nothing that the instruction names is among the words that are `left`, and no time is lost."""
     if _times(said.moment) - _times(wish.moment) - {wish.spent}:
         return False
-    named = len(said.things) - (len(said.goals) if kind in _ON_ITS_WAY and chance >= SURE else 0)
+    goes = kind in _ON_ITS_WAY and chance >= SURE and all(_goes_to(goal, said.text) for goal in said.goals)
+    named = len(said.things) - (len(said.goals) if goes else 0)
     if (named > wish.things and not wish.marked) or _TIMES_LEFT.search(left):
         return False
     return not any(w[0].isdigit() or (w in NUMBERS and w != "one") or w in hues() for w in left.split())
+
+
+def _goes_to(goal: str, text: str) -> bool:
+    """Whether a name stands where words tell the place of something: "... then go on to the bed"."""
+    way = r"to|at|by|near|on|onto|into|towards?|from|off|over|beside|reach(?:es|ing)?|hits?"
+    return re.search(rf"\b(?:{way}) {re.escape(goal)}(?!\S)", text) is not None
 
 
 def _times(moment: Moment) -> set[End | None]:
