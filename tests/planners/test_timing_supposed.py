@@ -60,6 +60,12 @@ def test_what_is_no_wish_about_motion_has_no_kind(text: str) -> None:
          "hide the coat rack for the last two seconds"),
         ("ball is way too slow, i want it going twice as fast", "play the ball twice as fast"),
         ("Keep the fan going right to the end will you, no stopping at four", "let the fan keep turning"),
+        ("Have the car spin on the spot once the robot parks at the bed, folks love that",
+         "let the car spin once the robot has stopped"),
+        ("Desk slides over to the bookshelf, three secs to four, let's go",
+         "move the desk to the bookshelf from 3 s to 4 s"),
+        ("fan off at 2 seconds please, it's giving me a headache", "stop the fan at 2 s"),
+        ("i want the books to fall in super slow mo like 4 times slower", "play the books at quarter speed"),
     ],
 )  # fmt: skip
 def test_a_wish_is_planned_as_a_plain_command_of_its_kind(text: str, plainly: str) -> None:
@@ -396,6 +402,9 @@ def test_times_with_two_ends(text: str, when: dict[str, object] | None) -> None:
         ("Could the vase be cream instead of blue? It'd match the linens.", "recolor"),
         ("I would love the coffee table gone, it only gets in our way", "delete"),
         ("Coat rack's in the way of the shot. Get rid of it.", "delete"),
+        ("The wardrobe would show far better in white, if you can manage that", "recolor"),
+        ("bottom drawer can be red i guess", "recolor"),
+        ("remove the chair, too cluttered", "delete"),
     ],
 )
 def test_wishes_without_a_time(text: str, op: str) -> None:
@@ -461,3 +470,35 @@ def test_a_motion_is_changed_as_its_kind_says() -> None:
     assert repeat["change"] == "repeat"
     (still,) = planned("turn that fan off after 2 seconds, I get cold just looking at it")
     assert (still["op"], still["change"], still["when"]) == ("pace", "stop", {"start": 2.0})
+
+
+def test_what_only_tells_where_or_when_is_not_removed() -> None:
+    for text in (
+        "I'm afraid I don't care for the umbrella stand beside the bench; could you take it away?",
+        "That bedside lamp is too bright, could you get rid of it when the drawer closes?",
+    ):
+        assert all(op["target"]["text"] not in ("bench", "drawer") for op in planned(text))
+
+
+def test_where_something_goes_by_itself_may_be_named() -> None:
+    (stop,) = planned("the robot should pause for one second where it turns, then continue walking to the bed po")
+    assert (stop["change"], stop["when"]["lasting"], stop["when"]["during"]["state"]) == ("stop", 1.0, "turning")
+    assert planned("stop the fan at 2 s, and the lamp should sing") == []
+
+
+def test_what_is_turned_slowly_over_all_of_a_time_takes_all_of_it() -> None:
+    (turn,) = planned("I want to see the vase rotate gently, one full turn over the last two seconds.")
+    assert turn["when"] == {"start": -2.0, "stop": "end"}
+    (turn,) = planned("have the plant turn around once, slowly, over the whole film")
+    assert turn["when"] == {"stop": "end"}
+
+
+def test_one_begins_when_the_other_has_stopped() -> None:
+    (begin,) = planned("the red book should fall last, after the blue one")
+    assert begin["change"] == "begin" and begin["target"]["colors"] == ["red"]
+    assert begin["when"]["during"] == {"state": "moving", "of": {"text": "book", "colors": ["blue"]}, "part": "after"}
+
+
+def test_what_travels_the_other_way_goes_back() -> None:
+    (back,) = planned("Could we have the ball travelling the other way, starting from the wall?")
+    assert (back["op"], back["change"]) == ("pace", "reverse")

@@ -175,6 +175,8 @@ class Pace(TargetedOp):
                     (low if self.when.start is None and self.when.during is None else begin),
                     self.when.lasting,
                 )
+            if lasting < _NO_TIME:
+                raise InstructionError(f"it would begin at {begin:g} s and end then: say when it is to begin, or to end")
             return Warp((begin, begin + lasting), (low, high), 0.0, 0.0), begin + lasting
         if self.change == "later":
             assert self.seconds is not None

@@ -225,7 +225,8 @@ class TimeReader:
         for tag, start, stop in marked(words):
             query = self.thing(" ".join(words[start:stop])) if tag == "x" else IT
             if query is None:  # "that bedside lamp"
-                others.append(stop - start > 1 and target.split(" ")[-1] not in words[start:stop])
+                own = _PLACED.split(" ".join(words[start:stop]))[0].split()
+                others.append(stop - start > 1 and target.split(" ")[-1] not in own)
             elif query.text and not query.last:
                 others.append(query.text != target)
         return bool(others) and all(others)
@@ -233,8 +234,10 @@ class TimeReader:
     def is_named_beside(self, cleaned: str, target: Query) -> bool:
         """Whether the words for a thing only tell where or when something is to be done."""
         words = with_nouns(_in_words(cleaned)).split(" ")
-        noun, besides = target.text.split(" ")[-1], ("y", *TIMES)
-        return noun in {word for tag, start, stop in marked(words) if tag in besides for word in words[start:stop]}
+        spans = [(tag, " ".join(words[start:stop])) for tag, start, stop in marked(words)]
+        besides = [said for tag, said in spans if tag in ("y", *TIMES)]
+        besides += [part for tag, said in spans if tag == "x" for part in _PLACED.split(said)[1:]]
+        return target.text.split(" ")[-1] in " ".join(besides).split()
 
     def is_still(self, ops: Sequence[Fields]) -> bool:
         """Whether operations change how something moves that stands still in the scene."""
@@ -712,6 +715,7 @@ _PACED = (*COURSES, "amount")
 _LOOKS_OR_THINGS = ("insert", "recolor", "rotate", "scale")
 _REPEATS = re.compile(r"(?:please )?(?:repeat|replay)\b", re.IGNORECASE)
 _SWITCHED_OFF = re.compile(r"\b(?:turn|switch|shut)(?:ed|s)? (?:\w+ ){0,4}off\b", re.IGNORECASE)
+_PLACED = re.compile(r" (?:beside|on|near|by|in|at|under|behind|next to|above|with|of|from) ")
 _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")

@@ -188,6 +188,37 @@ def test_a_turn_is_trained_as_far_as_a_shift(swinging):
     assert np.abs(turn) * reach == pytest.approx(np.abs(shift), rel=0.02)
 
 
+@pytest.mark.parametrize("lined", [True, False])
+def test_a_body_settles_where_it_is_at_first_and_goes_its_way_from_there(swinging, lined):
+    columns, labels, body, footage = swinging
+    own = np.flatnonzero(labels == 1)
+    means, quats = columns[0].copy(), columns[1].copy()
+    means[own], quats[own] = body.placed(3, means[own], quats[own])
+    labelled, off = labelled_of((means, quats, *columns[2:]), labels), body.started_at(3)
+    off.line = off.line if lined else None
+    assert np.abs(off.quats[0] - [1, 0, 0, 0]).max() > 0.01
+    strategy = MCMCStrategy(len(labels), np.random.default_rng(0))
+    joint = Joint(labelled, [off], footage, strategy, np.random.default_rng(1))
+    before = [placed(labelled.columns(), labels, [off], t)[0] for t in range(6)]
+    joint.settle()
+    (settled,) = joint.bodies
+    assert (settled.offsets[0] == 0).all() and np.abs(settled.quats[0] - [1, 0, 0, 0]).max() < 1e-12
+    assert settled.line is None or settled.line.values[0] == 0
+    assert np.abs(labelled.means[own] - columns[0][own]).max() < 1e-5  # float32
+    for t in range(6):
+        assert np.abs(placed(labelled.columns(), labels, [settled], t)[0] - before[t]).max() < 1e-5
+
+
+def test_the_place_of_a_body_at_the_first_time_is_trained_as_any_other(swinging):
+    columns, labels, body, footage = swinging
+    free = Body(body.pivot, body.quats.copy(), body.offsets.copy())
+    strategy = MCMCStrategy(len(labels), np.random.default_rng(0))
+    joint = Joint(labelled_of(columns, labels), [free], footage, strategy, np.random.default_rng(1))
+    for _ in footage.shots:
+        joint.step(0.0)
+    assert (free.offsets[0] != 0).any()
+
+
 def test_what_stands_still_as_well_joins_no_body(swinging, monkeypatch):
     columns, labels, body, footage = swinging
     both = labels.copy()
@@ -257,6 +288,20 @@ def test_the_turns_of_what_rolls_are_told_by_its_way_and_those_of_what_does_not_
         rolled, turns = found
         assert abs(rolled.radius - 0.15) < 0.01
         assert np.degrees(2 * np.arccos(np.clip(np.abs((turns.quats * body.quats).sum(axis=1)), 0, 1))).max() < 20
+
+
+def test_a_ball_in_haze_rolls_by_the_radius_of_its_surface():
+    footage, body, columns, labels = rolling_film(True)
+    rng = np.random.default_rng(2)
+    seen = columns[0][labels == 1].astype(np.float64)
+    seen = seen[seen @ [0, -1, 0.6] > 0]
+    hazy = np.concatenate([1.25 * seen, seen[rng.permutation(len(seen))[:20]]])  # most lies outside of its surface
+    ball = Ball.of(hazy, np.ones(len(hazy)))
+    assert ball is not None and ball.radius > 0.17
+    found = ball.rolled(body, footage)
+    still = ball.rolled(Body(body.pivot, np.tile([1.0, 0, 0, 0], (9, 1)), body.offsets), footage)
+    assert found is None  # its own turns are as good: they are true
+    assert still is not None and abs(still[0].radius - 0.15) < 0.015
 
 
 def test_what_of_a_ball_is_not_seen_at_the_start_gets_the_colours_of_later_frames():

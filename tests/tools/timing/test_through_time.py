@@ -524,3 +524,14 @@ def test_what_is_to_be_shut_by_a_time_is_shut_then(drawn: Scene, context: Contex
     data = {"op": "articulate", "target": A_CHAIR, "change": "close", "when": {"stop": 2.5}}
     spans = movements(course_of(done(drawn, data, context).scene, CHAIR))
     assert [tuple(round(t, 1) for t in span) for span in spans] == [(0.5, 1.0), (2.0, 2.5)]
+
+
+def test_a_movement_that_would_end_as_it_begins_is_refused(moving: Scene, context: Context) -> None:
+    data = {
+        "op": "pace",
+        "target": A_CHAIR,
+        "change": "begin",
+        "when": {"during": {"state": "moving", "part": "until"}},
+    }
+    with pytest.raises(InstructionError, match="say when it is to begin"):
+        done(moving, data, context)

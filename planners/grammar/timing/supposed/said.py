@@ -15,7 +15,8 @@ from .names import MOVING, named, with_moving
 _PRONOUN = re.compile(r"\b(?:it|he|she|him|her|they|them)\b")
 BEFORE_IT = re.compile(  # "it waits until 2 s before it sets off"
     r"\bbefore (?:it |he |she |they |\| )?(?:to )?(?:sets?|starts?|begins?|commences?|goes|going|go|rolls?|rolling|"
-    r"moves?|moving|leaves?|leaving|walks?|walking|falls?|falling|drops?|dropping|opens?|opening|setting|starting|sliding|slides?)"
+    r"gets? (?:going|moving|started|rolling|under way)|moves?|moving|leaves?|leaving|walks?|walking|falls?|falling|"
+    r"drops?|dropping|opens?|opening|setting|starting|sliding|slides?)"
     r"(?: off| moving| rolling| going| walking| falling| to \w+| out)*"
 )
 _STILL_THERE = re.compile(r"\b(?:put|move|place|set|keep|leave|stay|bring|slide|push|roll)(?: \w+){0,2} $")
