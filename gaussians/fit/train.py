@@ -56,7 +56,7 @@ class Schedule:
     """Length and schedule of a training.
 
     Attributes:
-        steps, seconds: length of the training; exactly one is given.
+        steps, seconds: length of the training; at least one is given, and of two the one that is reached first counts.
         coarse: share of the training on photographs of half the size.
         degree: final SH degree; bands are added one by one in the first half.
         ssim_lambda: weight of D-SSIM in the loss.
@@ -131,7 +131,7 @@ class Trainer:
     def share(self) -> float:
         """Completed share of this training, in [0, 1]."""
         schedule = self.schedule
-        share = self.steps / schedule.steps if schedule.steps else self.seconds / (schedule.seconds or math.inf)
+        share = max(self.steps / (schedule.steps or math.inf), self.seconds / (schedule.seconds or math.inf))
         return min(1.0, share)
 
     @property

@@ -39,6 +39,7 @@ from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
+from .timing.judging import Judge
 from .timing.reading import TimeReader, is_misread, may_be_timed
 from .timing.spoken import written
 from .timing.supposed.wishes import SURE
@@ -180,37 +181,38 @@ def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):
         return _wished(cleaned, previous)
-    reader = TimeReader(_operations, _thing, scene.moves if scene is not None else None)
+    reader = TimeReader(_operations, _thing)
+    judge = Judge(reader, scene.moves if scene is not None else None)
     try:
         outcome = _timed(reader, cleaned, previous)
     except Refusal as refusal:
         if refusal.verdict == "unsafe" or (refusal.firm and refusal.verdict != "impossible"):
             raise
-        if (supposed := reader.supposed(cleaned, SURE if refusal.verdict == "impossible" else 0.0)) is None:
+        if (supposed := judge.supposed(cleaned, SURE if refusal.verdict == "impossible" else 0.0)) is None:
             raise
         return _guessed(supposed)
-    if reader.contradicts(cleaned, outcome.ops):
-        if (supposed := reader.supposed(cleaned)) is None:
+    if judge.contradicts(cleaned, outcome.ops):
+        if (supposed := judge.supposed(cleaned)) is None:
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
         return _guessed(supposed)
-    if (supposed := reader.timed(cleaned, outcome.ops)) is not None:
+    if (supposed := judge.timed(cleaned, outcome.ops)) is not None:
         return _guessed(supposed)
-    if reader.is_still(outcome.ops) and (supposed := reader.supposed(cleaned)) and not reader.is_still(supposed):
+    if judge.is_still(outcome.ops) and (supposed := judge.supposed(cleaned)) and not judge.is_still(supposed):
         return _guessed(supposed)
-    if reader.is_about_another(cleaned, outcome.ops):
-        if supposed := reader.supposed(cleaned):
-            return outcome if reader.is_about_another(cleaned, supposed) else _guessed(supposed)
+    if judge.is_about_another(cleaned, outcome.ops):
+        if supposed := judge.supposed(cleaned):
+            return outcome if judge.is_about_another(cleaned, supposed) else _guessed(supposed)
         plainly = outcome.ops[0]["op"] == "delete" and outcome.ops[0]["target"].text != "everything"
-        if plainly and reader.is_named_beside(cleaned, outcome.ops[0]["target"]):
+        if plainly and judge.is_named_beside(cleaned, outcome.ops[0]["target"]):
             raise Refusal("what is to be removed is not understood", cleaned[:200])
-    if reader.is_of_another_kind(cleaned, outcome.ops):
-        if supposed := reader.supposed(cleaned):
+    if judge.is_of_another_kind(cleaned, outcome.ops):
+        if supposed := judge.supposed(cleaned):
             return _guessed(supposed)
-        if reader.is_of_another_kind(cleaned, outcome.ops, SURE):
+        if judge.is_of_another_kind(cleaned, outcome.ops, SURE):
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
-    if scene is not None and _lacks(scene, outcome.ops) and (supposed := reader.supposed(cleaned)):
+    if scene is not None and _lacks(scene, outcome.ops) and (supposed := judge.supposed(cleaned)):
         return outcome if _lacks(scene, supposed) else _guessed(supposed)
-    if not _names_things(outcome.ops, previous) and (supposed := reader.supposed(cleaned)):
+    if not _names_things(outcome.ops, previous) and (supposed := judge.supposed(cleaned)):
         return _guessed(supposed) if _names_things(supposed, previous) else outcome
     return outcome
 
@@ -226,7 +228,7 @@ def _wished(cleaned: str, previous: str | None) -> _Outcome:
     except Refusal as refusal:
         if refusal.firm or refusal.verdict in ("unsafe", "impossible"):
             raise
-        if (wished := TimeReader(_operations, _thing).wished(cleaned)) is None:
+        if (wished := Judge(TimeReader(_operations, _thing)).wished(cleaned)) is None:
             raise
         return _guessed(wished)
 

@@ -36,6 +36,7 @@ PICTURES = 8  # of fewer pictures, only what is confirmed: too few see what is w
 BLOCKS = range(4, 13)  # pixels, side of the blocks that are covered: the first that keeps within the number
 WIDEST = 0.07  # of the cameras' radius: a standard deviation
 OPACITY = 0.6
+PASSES = 150  # over the first frames at most: more fits a few pictures by what no other picture sees
 ROOM = 1.1  # times the number of points: greatest number of Gaussians
 
 
@@ -150,7 +151,9 @@ def trainer(
         budget: of which it takes its share, if the fit is not measured in steps.
     """
     shots, most = [footage.shots[i] for i in footage.first], settings.max_gaussians
-    steps = settings.steps and max(1, round(START_UNTIL * settings.steps))
+    steps = PASSES * len(shots)
+    if settings.steps is not None:
+        steps = min(steps, max(1, round(START_UNTIL * settings.steps)))
     schedule = Schedule(steps, budget.left(START_UNTIL), settings.coarse)
     strategy = Carving(min(most, int(ROOM * len(cloud)) + 1), rng, sight=sight)
     return Trainer(shots, Parameters.of(cloud), strategy, extent, schedule, rng)

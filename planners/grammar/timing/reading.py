@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import cache, partial
-from itertools import islice
+from functools import partial
 
 from pydantic import BaseModel, ValidationError
 
@@ -19,18 +18,16 @@ from ....gaussians.errors import UserError
 from ....gaussians.language.query.nested import queries, with_queries
 from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds
-from ....gaussians.world.spelling import best_slip
 from ....tools.registry import OPS
 from ....tools.registry import parse as parse_op
 from ....tools.when import During, When
 from ..parsing import Refusal
 from ..restating.speech.frames import unframed
-from ..tagging.spelling import is_word
-from ..tagging.words import bag, split
+from ..tagging.words import bag
 from ..vocabulary.nouns import is_known
 from ..vocabulary.quantities import NUMBERS
 from . import happenings, moments, phrases
-from .asides import told_of, without_comparisons
+from .asides import told_of
 from .clauses import AUXILIARIES
 from .command import Command, Fields
 from .commands import commands, loose_commands
@@ -39,26 +36,12 @@ from .happenings import IT, Happening
 from .manner import MOTION
 from .moments import Moment
 from .pieces import without_remarks
-from .restated.restating import restated
-from .sentences import folded
-from .supposed.choosing import Offer, chosen, says_plainly
-from .supposed.kinds import COURSES, LEAST, is_changed_by, is_done_by, likely, marked
 from .supposed.lost import leaves_out
-from .supposed.names import with_nouns
-from .supposed.parts import divided
-from .supposed.said import Said, said_of
-from .supposed.times import TIMES
-from .supposed.wished import is_wished
-from .supposed.wishes import SURE, wishes
-from .verbs import SENSES, any_of, forms, has_form
+from .verbs import SENSES, any_of, has_form
 from .whens import closes_later, closes_when_open, inverse, of_one_movement, settled, when_of
+from .wording import in_words, spelt_right, tidy, timely_words
 
 Understand = Callable[[str], Sequence[Fields]]  # the operations of a plain command
-Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
-
-_HIDDEN = 0.6  # probability from which something is to be hidden though no word says so
-_SURELY = 0.7  # probability from which it speaks against another change of a motion
-_SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 
 
 def may_be_timed(cleaned: str) -> bool:
@@ -75,17 +58,12 @@ class TimeReader:
     Args:
         understand: reads plain commands of the grammar; raises `Refusal`.
         thing: reads a phrase for things.
-        moves: tells what moves in the scene; None if there is none.
     """
 
-    def __init__(
-        self, understand: Understand, thing: Callable[[str], Query | None], moves: Moves | None = None
-    ) -> None:  # fmt: skip
+    def __init__(self, understand: Understand, thing: Callable[[str], Query | None]) -> None:
         self._understand = understand
         self._thing = thing
-        self._moves = moves
         self._things: dict[str, Query | None] = {}
-        self._supposed: dict[tuple[str, float], tuple[Fields, ...] | None] = {}
 
     def read(self, cleaned: str) -> tuple[Fields, ...] | None:
         """The operations; None if the instruction says nothing of time or motion.
@@ -93,10 +71,10 @@ class TimeReader:
         Raises:
             Refusal: it names a time, and the rest is not understood.
         """
-        said = _in_words(cleaned)
+        said = in_words(cleaned)
         if phrases.ASKS.match(said) and cleaned.rstrip().endswith("?"):
             return None
-        said = _tidy(said)
+        said = tidy(said)
         if not said:
             return None
         if phrases.CONTRARY.search(said):
@@ -126,186 +104,11 @@ class TimeReader:
             raise Refusal(f"what is to happen “{clause[1].said}” is not understood", clause[1].said)
         return None
 
-    def supposed(self, cleaned: str, least: float = 0.0) -> tuple[Fields, ...] | None:
-        """The operations that an instruction most likely asks for, by the kind of its wish; None if that is not likely
-        enough, or if they would leave out anything that it names.
-
-        Args:
-            least: probability of a kind that no word has to say.
-        """
-        if (cleaned, least) not in self._supposed:
-            self._supposed[cleaned, least] = self._most_likely(cleaned, least)
-        return self._supposed[cleaned, least]
-
-    def _most_likely(self, cleaned: str, least: float) -> tuple[Fields, ...] | None:
-        """As `supposed`, which several checks of a plan ask for."""
-        words = _in_words(cleaned)
-        kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
-        if not kinds:
-            return None
-        spelled = _spelled(_spelt_out(words), _LONG_WORDS)
-        said = with_nouns(_tidy(spelled))
-        whole = (_with_delay(*reading) for reading in self._readings(said) if not _FRAGMENT.match(reading[0]))
-        readings = [
-            (said_of(rest, self.thing, moment, "" if happening is None else happening.said), happening)
-            for rest, moment, happening in islice(whole, 2)
-        ]
-        wording = with_nouns(spelled).split(" ")
-        if (by_marks := divided(wording, marked(wording), self.thing)) is not None:
-            readings.insert(0, by_marks)
-
-        def offered(kinds: Sequence[tuple[str, float]]) -> list[Offer]:
-            told = [(kind, p) for kind, p in kinds if kind != "hide" or p >= _HIDDEN or says_plainly(kind, words)]
-            return [Offer(kind, p, next(self._wished(kind, p, readings, wording), ())) for kind, p in told]
-
-        offers = offered(kinds)
-        if any(self.is_still(offer.made) for offer in offers):
-            said_so = [offer for offer in offered(likely(cleaned, still=True)) if says_plainly(offer.kind, words)]
-            found = chosen(said_so, words, least)
-            if found is not None:
-                return found  # else it is told that the thing does not move
-        return chosen(offers, words, least)
-
-    def wished(self, cleaned: str) -> tuple[Fields, ...] | None:
-        """The operations of a wish that has no words of time: for another look of something, or that it be gone, at
-        all times or at a time in bare numbers; None if that is not most likely asked for."""
-        found = self.supposed(cleaned, SURE)
-        if found is None or all(op.get("when") is not None for op in found):
-            return found
-        once = all(op["op"] in _WISHED and op.get("when") is None for op in found)
-        words = _in_words(cleaned).split(" ")
-        chance = next(iter(likely(cleaned)), ("", 0.0))[1]
-        return found if once and is_wished(words, marked(words), chance) else None
-
-    def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields], least: float = _SAID_SO) -> bool:
-        """Whether operations of a time, or of a look or a new thing, begin with one that no wish of the likeliest kind
-        is done by: "get the robot there by 3 s" hides nothing.
-
-        Args:
-            least: probability from which a kind counts.
-        """
-        alike = len({op["op"] for op in ops}) == 1 and (len(ops) == 1 or ops[0]["op"] in ("recolor", "move"))
-        if not alike or ops[0]["op"] not in _OF_A_KIND or (ops[0].get("when") or When()).gradual:
-            return False
-        if ops[0]["op"] == "delete" and ops[0].get("when") is not None and _SWITCHED_OFF.search(cleaned):
-            return _RIDS.search(cleaned) is None
-        told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
-        op, change = str(ops[0]["op"]), ops[0].get("change")
-        kind, chance = next(iter(likely(cleaned)), ("", 0.0))
-        if (
-            op == "move"
-            and kind in ("still", "stay", "halt")
-            and self._moves is not None
-            and self._moves(ops[0]["target"])
-        ):
-            return chance >= least  # "it must stay on the shelf" puts nothing there
-        if told is None and op not in (*_LOOKS_OR_THINGS, "pace", "articulate"):
-            return False
-        if ops[0]["op"] == "scale" and not _SPEEDS.search(cleaned):
-            return False  # "too slow. Double it" makes nothing larger
-        if ops[0]["op"] == "rotate" and not (self._moves is not None and self._moves(ops[0]["target"])):
-            return False  # "turn the chair round to face the other way"
-        if told is None and (kind not in _PACED or op == "articulate"):
-            return False  # "three more blocks, all green" are put in
-        if (kind, change) == ("stay", "open"):  # where it opens and closes by itself
-            return self._moves is not None and self._moves(ops[0]["target"]) is True and chance >= least
-        if (kind, change) in (("open", "close"), ("close", "open")):
-            return chance >= least
-        if change in ("begin", "later") and not is_changed_by(kind, str(change)):
-            return chance >= (LEAST if _REPEATS.match(cleaned) else max(least, _SURELY))
-        return chance >= least and not is_done_by(kind, op)
-
-    def is_about_another(self, cleaned: str, ops: Sequence[Fields]) -> bool:
-        """Whether an operation is about none of the things that the marks of an instruction name: "the chair is no good
-        there, roll it to the bed once the drawer is out" moves no drawer."""
-        if len(ops) != 1 or ops[0].get("target") is None or not ops[0]["target"].text or ops[0]["target"].also:
-            return False
-        words = with_nouns(_in_words(cleaned)).split(" ")
-        target, others = ops[0]["target"].text, list[bool]()
-        for tag, start, stop in marked(words):
-            query = self.thing(" ".join(words[start:stop])) if tag == "x" else IT
-            if query is None:  # "that bedside lamp"
-                own = _PLACED.split(" ".join(words[start:stop]))[0].split()
-                others.append(stop - start > 1 and target.split(" ")[-1] not in own)
-            elif query.text and not query.last:
-                others.append(query.text != target)
-        return bool(others) and all(others)
-
-    def is_named_beside(self, cleaned: str, target: Query) -> bool:
-        """Whether the words for a thing only tell where or when something is to be done."""
-        words = with_nouns(_in_words(cleaned)).split(" ")
-        spans = [(tag, " ".join(words[start:stop])) for tag, start, stop in marked(words)]
-        besides = [said for tag, said in spans if tag in ("y", *TIMES)]
-        besides += [part for tag, said in spans if tag == "x" for part in _PLACED.split(said)[1:]]
-        return target.text.split(" ")[-1] in " ".join(besides).split()
-
-    def is_still(self, ops: Sequence[Fields]) -> bool:
-        """Whether operations change how something moves that stands still in the scene."""
-        for op in ops:
-            if op["op"] == "pace" and self._moves is not None and self._moves(op["target"]) is False:
-                return True
-            if OPS[op["op"]].makes_motion:
-                return False
-        return False
-
-    def _wished(
-        self, kind: str, chance: float, readings: Sequence[tuple[Said, Happening | None]], wording: Sequence[str]
-    ) -> Iterator[tuple[Fields, ...]]:
-        """The operations of a kind of wish that leave out nothing that the words of an instruction name."""
-        for text, happening in readings:
-            for wish in wishes(kind, text, chance):
-                with suppress(Refusal, UserError, ValidationError):
-                    event = None if wish.timeless else happening
-                    if isinstance(wish.command, Command):
-                        found = self._made(wish.command, wish.moment, event)
-                    else:
-                        told = text.told and not wish.timeless
-                        found = self._command(wish.command, "", wish.moment, event, told)
-                    if found and not leaves_out(wording, found):
-                        yield of_one_movement(" ".join(wording), found)
-
-    def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
-        """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if
-        they leave none out, or if that is not told."""
-        at_all_times = all(op["op"] in _TIMELESS or op.get("change") == "stop" for op in ops)
-        if not ops or not at_all_times or any(op.get("when") is not None for op in ops):
-            return None
-        if any(op["target"].moving is not None for op in ops):
-            return None  # "the second book that falls"
-        words = _in_words(cleaned)
-        told = any(tag in TIMES for tag, _, _ in marked(words.split(" ")))
-        if not told and next(happenings.cut(words, self.thing), None) is None:
-            return None
-        found = self.supposed(cleaned)
-        return found if found and all(op.get("when") is not None for op in found) else None
-
-    def contradicts(self, cleaned: str, ops: Sequence[Fields]) -> bool:
-        """Whether operations leave out a number or a later colour of an instruction, or change what is there once and
-        for all where its words most likely ask for another course of a motion: "set off at 1 s" deletes nothing."""
-        if not ops:
-            return False
-        words = _in_words(cleaned).split(" ")
-        if leaves_out(words, ops) or self._leaves_time_out(words, ops):
-            return True
-        paced = not _PACES.isdisjoint(words)
-        if not any(op["op"] in _ONCE_FOR_ALL and (op.get("when") is not None or paced) for op in ops):
-            return False
-        kinds = likely(cleaned)
-        return bool(kinds) and kinds[0][0] in COURSES and kinds[0][1] >= _SAID_SO
-
-    def _leaves_time_out(self, words: Sequence[str], ops: Sequence[Fields]) -> bool:
-        """Whether no operation has a time, and a clause tells one by what a thing does: "before the robot comes"."""
-        looks = all(op.get("when") is None and op["op"] in _LOOKS for op in ops)
-        if not looks or not _CLAUSE.search(" ".join(words)):
-            return False
-        spans = (words[start:stop] for tag, start, stop in marked(words) if tag in TIMES)
-        return any(_CLAUSE.match(" ".join(said)) and any(map(is_known, said)) for said in spans)
-
     def _without_remarks(self, said: str, cleaned: str) -> tuple[Fields, ...] | None:
         """What is asked for beside the pieces that ask for nothing; None if that is not understood either."""
-        words = _in_words(cleaned).split(" ")
+        words = in_words(cleaned).split(" ")
         for shorter in without_remarks(said, self.thing, self._is_command):
-            shorter = self._unfronted(_tidy(shorter))
+            shorter = self._unfronted(tidy(shorter))
             with suppress(Refusal):
                 found = self._whole(shorter) or next(self._guesses(shorter), None)
                 if found is not None and not self._is_timeless(found, shorter):
@@ -431,10 +234,10 @@ class TimeReader:
         return None
 
     def _whole(self, said: str) -> tuple[Fields, ...] | None:
-        for rest, moment, happening in self._readings(said):
+        for rest, moment, happening in self.readings(said):
             told = moment.told or happening is not None
             for form, remark in _forms(rest):
-                found = self._command(form, remark, moment, happening, told)
+                found = self.command(form, remark, moment, happening, told)
                 if found:
                     return found
         return self._about_moving(said)
@@ -448,8 +251,9 @@ class TimeReader:
         topical = mark != "" and [head, rest] != parts and told_of(head) is not None
         if topical and (joined := self._joined([head, rest])) is not None:
             yield joined
-        if (spelled := _spelled(said, _timely_words())) != said and (right := self._whole(spelled)) is not None:
-            yield right
+        right = spelt_right(said, timely_words())
+        if right != said and (spelled := self._whole(right)) is not None:
+            yield spelled
         if (loose := self._loosely(said)) is not None:
             yield loose
 
@@ -474,22 +278,22 @@ class TimeReader:
         """One command about motion in any order of its words; None if its readings differ in what is to be done."""
         if _COMPLAINT.search(said):
             return None  # "too slow" asks for the contrary
-        for rest, moment, happening in self._readings(said):
+        for rest, moment, happening in self.readings(said):
             told, found = moment.told or happening is not None, list[tuple[Fields, ...]]()
-            if happening is None and moment.told and _CLAUSE.match(rest):
+            if happening is None and moment.told and CLAUSE.match(rest):
                 continue  # "when it comes out the chair should vanish, and return at 3 s"
             if happening is not None and happening.said.startswith("before ") and phrases.RIDDING.match(rest):
                 continue
             for command, when in loose_commands(_bare(rest), self.thing, moment, told):
                 with suppress(Refusal, UserError, ValidationError):
-                    if ops := self._made(command, when, happening):
+                    if ops := self.made(command, when, happening):
                         found.append(ops)
             if found:
                 meant = {tuple((op["op"], op.get("change")) for op in ops) for ops in found}
                 return found[0] if len(meant) == 1 else None
         return None
 
-    def _readings(self, said: str) -> Iterator[tuple[str, Moment, Happening | None]]:
+    def readings(self, said: str) -> Iterator[tuple[str, Moment, Happening | None]]:
         """The words without what they say of time, and what that is; the most cut first."""
         shorter = phrases.BACK_WHEN.sub("", said)
         flashes = shorter != said
@@ -514,7 +318,7 @@ class TimeReader:
                     seen.add(rest)
                     yield rest, moment, None
 
-    def _command(
+    def command(
         self, said: str, remark: str, moment: Moment, happening: Happening | None, told: bool
     ) -> tuple[Fields, ...] | None:
         if not said or (happening is None and _TIME_FIRST.match(said)):
@@ -532,16 +336,16 @@ class TimeReader:
             if not _goes_without_saying(remark, command, ends):
                 continue  # "roll to the wall and come back" is not half done
             with suppress(Refusal, UserError, ValidationError):
-                found = self._made(command, moment, happening)
+                found = self.made(command, moment, happening)
                 if found:
                     return found
         plain = Command(kind="look", text=said)
         if (told or moment.always) and _goes_without_saying(remark, plain, False):
             with suppress(Refusal, UserError, ValidationError):
-                return self._made(plain, moment, happening)
+                return self.made(plain, moment, happening)
         return None
 
-    def _made(self, command: Command, moment: Moment, happening: Happening | None) -> tuple[Fields, ...] | None:
+    def made(self, command: Command, moment: Moment, happening: Happening | None) -> tuple[Fields, ...] | None:
         """The operations of a command with its time; None if it cannot be that."""
         ops, kind = list(command.ops), command.kind
         if command.text:
@@ -700,28 +504,10 @@ class TimeReader:
 
 _TIME_FIRST = re.compile(r"(?:when|whenever|once|while|as soon as) (?:the|my|our|this|that|it|he|she|they) .* , ")
 _HALF_ITS_WAY = re.compile(r"(?:at )?(?:half ?way|midway)")
-_CLAUSE = re.compile(r"\b(?:when|whenever|once|while|until|till|before|after|as soon as|as) (?:the|that|this) ")
 _A_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(NUMBERS)})\b")
-_TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
-_WISHED = ("recolor", "delete")
-_PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
-_OF_A_KIND = (
-    "opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate", "rotate", "scale", "move",
-    "spin", "pace",
-)  # fmt: skip
-_LOOKS = ("opacity", "recolor", "restyle")
-_THROUGHOUT = re.compile(r"\b(?:throughout|all the (?:way|time)|(?:whole|entire) (?:film|time|clip|video))\b")
-_PACED = (*COURSES, "amount")
-_LOOKS_OR_THINGS = ("insert", "recolor", "rotate", "scale")
-_REPEATS = re.compile(r"(?:please )?(?:repeat|replay)\b", re.IGNORECASE)
-_SWITCHED_OFF = re.compile(r"\b(?:turn|switch|shut)(?:ed|s)? (?:\w+ ){0,4}off\b", re.IGNORECASE)
-_PLACED = re.compile(r" (?:beside|on|near|by|in|at|under|behind|next to|above|with|of|from) ")
-_RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
-_SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
-_ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
-_LONGEST = 45  # words of an instruction with one wish
+CLAUSE = re.compile(r"\b(?:when|whenever|once|while|until|till|before|after|as soon as|as) (?:the|that|this) ")
+TIMELESS = ("delete", "move", "opacity", "recolor", "restyle")  # that are of other times, too, where a time is said
 _COMPLAINT = re.compile(r"\btoo (?:slow|fast|quick|slowly|quickly|early|late)\b")
-_FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
 
 
 def _is_half_the_film(happening: Happening) -> bool:
@@ -736,73 +522,6 @@ def _on_its_way(op: Fields) -> Fields:
     if not isinstance(place, dict) or place.get("relation") != "next_to" or len(place.get("anchors", ())) != 1:
         return op
     return {**{k: v for k, v in op.items() if k != "place"}, "toward": place["anchors"][0]}
-
-
-def _with_delay(rest: str, moment: Moment, happening: Happening | None) -> tuple[str, Moment, Happening | None]:
-    """A reading with the seconds before what happens as its delay: "close it a second" after it has opened."""
-    if happening is None or not moment.empty or not happening.said.startswith(("after ", "once ")):
-        return rest, moment, happening
-    words = rest.split(" ")
-    for at in range(max(0, len(words) - 4), len(words)):
-        if (delay := moments.seconds_of(" ".join(words[at:]))) is not None:
-            return " ".join(words[:at]), replace(moment, start=delay), happening
-    return rest, moment, happening
-
-
-def _spelt_out(said: str) -> str:
-    """Words with "is" and "has" in full behind names: "the ball 's stopped" has stopped, "the door 's open" is open."""
-
-    def verb(found: re.Match[str]) -> str:
-        return "has" if has_form(found["then"], tuple(SENSES), "past") and found["then"] != "open" else "is"
-
-    return _SHORT_VERB.sub(lambda m: f" {verb(m)} {m['then']}", _FILLER.sub(" ", said))
-
-
-_FILLER = re.compile(r"(?: ,)? (?:uh|um|uhm|er|erm|hmm|(?<! as )well)(?: ,)?(?= )")
-_SHORT_VERB = re.compile(
-    r" 's (?P<then>[a-z]+(?:ing|ed)|to|fully|completely|all|just|already|been|done|open|closed|shut|out|in|gone|hit|"
-    r"left|fallen|come|begun|slid|stopped|reached|way|too|so|not)\b"
-)
-
-
-_STAMP = re.compile(
-    r"(?<![\d:])(?P<minutes>\d{1,2}):(?P<seconds>[0-5]\d)(?![\d:])(?: ?(?:s|secs?|seconds)\b)?"
-)  # "0:02"
-
-
-_FILM_ENDS = re.compile(
-    r"\b(until|till|when|as|once) (?:the )?(?:whole )?(?:film|clip|video|movie|scene|shot) (?:ends|is over|finishes|"
-    r"stops|is done)",
-    re.IGNORECASE,
-)
-_FILM_BEGINS = re.compile(
-    r"\b(?:(?:right |just )?(?:when|as|once)|the moment) (?:the )?(?:film|clip|video|movie|scene|shot) "
-    r"(?:begins|starts)",
-    re.IGNORECASE,
-)
-_CLOSE = re.compile(r"(?<=\b(?:to|ll|il|at) )the (?:close|finale)\b", re.IGNORECASE)
-_DOTS = re.compile(r"(?<=[a-z])\.\.+ ")
-_SYNONYMS = tuple(
-    (re.compile(rf"\b{said}\b", re.IGNORECASE), plain)
-    for said, plain in (
-        (r"(?:over|in) the course of the(?= (?:last|first))", "in the"),
-        (r"the initial(?= [a-z0-9.]+ sec)", "the first"),
-        (r"thereafter", "afterwards"),
-        (r"(?:all|all along|all through) the (?=film|clip|video|movie)", "for the whole "),
-    )
-)
-_NO_NEED = re.compile(r"(?: ?,)? (?:and |there is )?no need to (?:wait|hurry|rush)\b[^,.;!]*", re.IGNORECASE)
-
-
-def _in_words(cleaned: str) -> str:
-    """The words and marks of an instruction, with spaces between."""
-    cleaned = _FILM_ENDS.sub(r"\g<1> the end", _FILM_BEGINS.sub("at the start", _NO_NEED.sub("", cleaned)))
-    cleaned = _DOTS.sub(". ", _CLOSE.sub("the end", cleaned))
-    for pattern, plain in _SYNONYMS:
-        cleaned = pattern.sub(plain, cleaned)
-    stamped = _STAMP.sub(lambda m: f"{60 * int(m['minutes']) + int(m['seconds'])} s", cleaned)
-    ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", stamped)
-    return " ".join(w.text for w in split(ranged))
 
 
 _FRONTED = re.compile(
@@ -867,28 +586,6 @@ def _about(part: str) -> str | None:
     return None if topic is None else re.sub(r"^(?:this|that|these|those) ", "the ", topic)
 
 
-def _spelled(said: str, known: frozenset[str]) -> str:
-    """The words with those that are none as the known word from which they differ by a slip."""
-    right = known | _SPELLED_WORDS
-    return " ".join(w if w in right or len(w) < 3 or not w.isalpha() or is_word(w) else best_slip(w, known) or w
-                    for w in said.split(" "))  # fmt: skip
-
-
-@cache
-def _timely_words() -> frozenset[str]:
-    verbs = {word for sense in SENSES.values() for verb in sense.split(", ") for word in verb.split()}
-    inflected = {form for verb in verbs if verb.isalpha() for form, _ in forms(verb)}
-    return frozenset(inflected | _SPELLED_WORDS | set(NUMBERS))
-
-
-_SPELLED_WORDS = bag(
-    "the and should must while until after before between during when once then than second seconds twice times half "
-    "speed faster slower later earlier backwards slowly quickly everything whole again only from with into "
-    "completely fully entirely late early"
-)
-_LONG_WORDS = frozenset(word for word in _SPELLED_WORDS if len(word) > 4)
-
-
 def _is_verb(word: str) -> bool:
     """Whether a word is a verb of the lexicon, and no name of a thing."""
     return has_form(word, tuple(SENSES), "plain", "s", "past", "ing") and word not in _THINGS
@@ -917,26 +614,6 @@ def _place(found: re.Match[str]) -> int | None:
 def _in_order(query: Query, place: int) -> Query:
     """What of it begins to move as the first, the second, the last."""
     return _which_moves(query, True).model_copy(update={"pick": "nth", "ordinal": place})
-
-
-_MANY_COMMAS = re.compile(r"(?: ,)+")
-
-
-def _tidy(said: str) -> str:
-    """What is written, in words that the readers know."""
-    for _ in range(3):
-        said = phrases.NOISE.sub("", said).strip(" ,.!?\n")
-    said = _MANY_COMMAS.sub(" ,", said)
-    said = restated(without_comparisons(said))
-    for pattern, plain in phrases.RESTATED:
-        said = pattern.sub(plain, said)
-    said = folded(said)
-    said = re.sub(
-        r"^(?:can|could|would|will|may|should|must|shall) (?=(?:the|my|our|this|that|all|every|it) )",
-        "",
-        said.strip(" ,."),
-    )
-    return " ".join(_MANY_COMMAS.sub(" ,", said).split())
 
 
 def _forms(said: str) -> Iterator[tuple[str, str]]:

@@ -17,11 +17,6 @@ _SLANG = re.compile(
 )
 
 
-_FILM_OVER = re.compile(
-    r"(?P<film>\b(?:when|until|till|before|as|once|by the time) the (?:film|clip|video|movie|scene|shot|animation)) "
-    r"(?:is|has) (?:finished|over|done|ended|through|finish)\b",
-    re.IGNORECASE,
-)
 _OFF_AT = re.compile(  # "fan off at 2 s"
     r"^(?:the )?(?P<thing>[a-z]+(?: fan)?) off (?=(?:at|from|after|once|when|for|until|till|by) )", re.IGNORECASE
 )
@@ -40,7 +35,7 @@ _IT_IS = re.compile(  # "its so slow"
 
 def written(spoken: str) -> str:
     """A text with the words in full that people shorten when they speak."""
-    text = _TOO_CLUTTERED.sub(r"\g<order>", _FILM_OVER.sub(r"\g<film> ends", spoken))
+    text = _TOO_CLUTTERED.sub(r"\g<order>", spoken)
     text = _SOONER.sub(" would rather", _OFF_AT.sub(r"switch the \g<thing> off ", _IT_IS.sub("it is ", text)))
     text = _SOON_AS.sub("as soon as", _DROPPED.sub(_in_full, _SLANG.sub("", text)))
     return _DO_NOT_BE.sub(_prohibited, text)

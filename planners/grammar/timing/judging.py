@@ -1,0 +1,258 @@
+"""Judges what rules read of an instruction by what the models tell of it, and tells what it most likely asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from itertools import islice
+
+from pydantic import ValidationError
+
+from ....gaussians import late_re as re
+from ....gaussians.errors import UserError
+from ....gaussians.language.query.query import Query
+from ....tools.registry import OPS
+from ....tools.when import When
+from ..parsing import Refusal
+from ..tagging.words import bag
+from ..vocabulary.nouns import is_known
+from . import happenings, moments
+from .command import Command, Fields
+from .happenings import IT, Happening
+from .moments import Moment
+from .reading import CLAUSE, TIMELESS, TimeReader
+from .supposed.choosing import Offer, chosen, says_plainly
+from .supposed.kinds import COURSES, LEAST, is_changed_by, is_done_by, likely, marked
+from .supposed.lost import leaves_out
+from .supposed.names import with_nouns
+from .supposed.parts import divided
+from .supposed.said import Said, said_of
+from .supposed.times import TIMES
+from .supposed.wished import is_wished
+from .supposed.wishes import SURE, wishes
+from .whens import of_one_movement
+from .wording import LONG_WORDS, in_words, spelt_out, spelt_right, tidy
+
+Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
+
+_HIDDEN = 0.6  # probability from which something is to be hidden though no word says so
+_SURELY = 0.7  # probability from which it speaks against another change of a motion
+_SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
+_WISHED = ("recolor", "delete")
+_OF_A_KIND = (
+    "opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate", "rotate", "scale", "move",
+    "spin", "pace",
+)  # fmt: skip
+_PACES = bag("speed pace tempo slower faster")  # words that no change of size is said with
+_LOOKS = ("opacity", "recolor", "restyle")
+_THROUGHOUT = re.compile(r"\b(?:throughout|all the (?:way|time)|(?:whole|entire) (?:film|time|clip|video))\b")
+_PACED = (*COURSES, "amount")
+_LOOKS_OR_THINGS = ("insert", "recolor", "rotate", "scale")
+_REPEATS = re.compile(r"(?:please )?(?:repeat|replay)\b", re.IGNORECASE)
+_SWITCHED_OFF = re.compile(r"\b(?:turn|switch|shut)(?:ed|s)? (?:\w+ ){0,4}off\b", re.IGNORECASE)
+_PLACED = re.compile(r" (?:beside|on|near|by|in|at|under|behind|next to|above|with|of|from) ")
+_RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
+_SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
+_ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
+_LONGEST = 45  # words of an instruction with one wish
+_FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
+
+
+class Judge:
+    """Judges the operations of one instruction.
+
+    Args:
+        reader: reads its times, names and commands.
+        moves: tells what moves in the scene; None if there is none.
+    """
+
+    def __init__(self, reader: TimeReader, moves: Moves | None = None) -> None:
+        self._reader, self._moves = reader, moves
+        self._supposed: dict[tuple[str, float], tuple[Fields, ...] | None] = {}
+
+    def supposed(self, cleaned: str, least: float = 0.0) -> tuple[Fields, ...] | None:
+        """The operations that an instruction most likely asks for, by the kind of its wish; None if that is not likely
+        enough, or if they would leave out anything that it names.
+
+        Args:
+            least: probability of a kind that no word has to say.
+        """
+        if (cleaned, least) not in self._supposed:
+            self._supposed[cleaned, least] = self._most_likely(cleaned, least)
+        return self._supposed[cleaned, least]
+
+    def _most_likely(self, cleaned: str, least: float) -> tuple[Fields, ...] | None:
+        """As `supposed`, which several checks of a plan ask for."""
+        words = in_words(cleaned)
+        kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
+        if not kinds:
+            return None
+        spelled = spelt_right(spelt_out(words), LONG_WORDS)
+        said = with_nouns(tidy(spelled))
+        whole = (_with_delay(*reading) for reading in self._reader.readings(said) if not _FRAGMENT.match(reading[0]))
+        readings = [
+            (said_of(rest, self._reader.thing, moment, "" if happening is None else happening.said), happening)
+            for rest, moment, happening in islice(whole, 2)
+        ]
+        wording = with_nouns(spelled).split(" ")
+        if (by_marks := divided(wording, marked(wording), self._reader.thing)) is not None:
+            readings.insert(0, by_marks)
+
+        def offered(kinds: Sequence[tuple[str, float]]) -> list[Offer]:
+            told = [(kind, p) for kind, p in kinds if kind != "hide" or p >= _HIDDEN or says_plainly(kind, words)]
+            return [Offer(kind, p, next(self._wished(kind, p, readings, wording), ())) for kind, p in told]
+
+        offers = offered(kinds)
+        if any(self.is_still(offer.made) for offer in offers):
+            said_so = [offer for offer in offered(likely(cleaned, still=True)) if says_plainly(offer.kind, words)]
+            found = chosen(said_so, words, least)
+            if found is not None:
+                return found  # else it is told that the thing does not move
+        return chosen(offers, words, least)
+
+    def wished(self, cleaned: str) -> tuple[Fields, ...] | None:
+        """The operations of a wish that has no words of time: for another look of something, or that it be gone, at
+        all times or at a time in bare numbers; None if that is not most likely asked for."""
+        found = self.supposed(cleaned, SURE)
+        if found is None or all(op.get("when") is not None for op in found):
+            return found
+        once = all(op["op"] in _WISHED and op.get("when") is None for op in found)
+        words = in_words(cleaned).split(" ")
+        chance = next(iter(likely(cleaned)), ("", 0.0))[1]
+        return found if once and is_wished(words, marked(words), chance) else None
+
+    def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields], least: float = _SAID_SO) -> bool:
+        """Whether operations of a time, or of a look or a new thing, begin with one that no wish of the likeliest kind
+        is done by: "get the robot there by 3 s" hides nothing.
+
+        Args:
+            least: probability from which a kind counts.
+        """
+        alike = len({op["op"] for op in ops}) == 1 and (len(ops) == 1 or ops[0]["op"] in ("recolor", "move"))
+        if not alike or ops[0]["op"] not in _OF_A_KIND or (ops[0].get("when") or When()).gradual:
+            return False
+        if ops[0]["op"] == "delete" and ops[0].get("when") is not None and _SWITCHED_OFF.search(cleaned):
+            return _RIDS.search(cleaned) is None
+        told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
+        op, change = str(ops[0]["op"]), ops[0].get("change")
+        kind, chance = next(iter(likely(cleaned)), ("", 0.0))
+        if (
+            op == "move"
+            and kind in ("still", "stay", "halt")
+            and self._moves is not None
+            and self._moves(ops[0]["target"])
+        ):
+            return chance >= least  # "it must stay on the shelf" puts nothing there
+        if told is None and op not in (*_LOOKS_OR_THINGS, "pace", "articulate"):
+            return False
+        if ops[0]["op"] == "scale" and not _SPEEDS.search(cleaned):
+            return False  # "too slow. Double it" makes nothing larger
+        if ops[0]["op"] == "rotate" and not (self._moves is not None and self._moves(ops[0]["target"])):
+            return False  # "turn the chair round to face the other way"
+        if told is None and (kind not in _PACED or op == "articulate"):
+            return False  # "three more blocks, all green" are put in
+        if (kind, change) == ("stay", "open"):  # where it opens and closes by itself
+            return self._moves is not None and self._moves(ops[0]["target"]) is True and chance >= least
+        if (kind, change) in (("open", "close"), ("close", "open")):
+            return chance >= least
+        if change in ("begin", "later") and not is_changed_by(kind, str(change)):
+            return chance >= (LEAST if _REPEATS.match(cleaned) else max(least, _SURELY))
+        return chance >= least and not is_done_by(kind, op)
+
+    def is_about_another(self, cleaned: str, ops: Sequence[Fields]) -> bool:
+        """Whether an operation is about none of the things that the marks of an instruction name: "the chair is no good
+        there, roll it to the bed once the drawer is out" moves no drawer."""
+        if len(ops) != 1 or ops[0].get("target") is None or not ops[0]["target"].text or ops[0]["target"].also:
+            return False
+        words = with_nouns(in_words(cleaned)).split(" ")
+        target, others = ops[0]["target"].text, list[bool]()
+        for tag, start, stop in marked(words):
+            query = self._reader.thing(" ".join(words[start:stop])) if tag == "x" else IT
+            if query is None:  # "that bedside lamp"
+                own = _PLACED.split(" ".join(words[start:stop]))[0].split()
+                others.append(stop - start > 1 and target.split(" ")[-1] not in own)
+            elif query.text and not query.last:
+                others.append(query.text != target)
+        return bool(others) and all(others)
+
+    def is_named_beside(self, cleaned: str, target: Query) -> bool:
+        """Whether the words for a thing only tell where or when something is to be done."""
+        words = with_nouns(in_words(cleaned)).split(" ")
+        spans = [(tag, " ".join(words[start:stop])) for tag, start, stop in marked(words)]
+        besides = [said for tag, said in spans if tag in ("y", *TIMES)]
+        besides += [part for tag, said in spans if tag == "x" for part in _PLACED.split(said)[1:]]
+        return target.text.split(" ")[-1] in " ".join(besides).split()
+
+    def is_still(self, ops: Sequence[Fields]) -> bool:
+        """Whether operations change how something moves that stands still in the scene."""
+        for op in ops:
+            if op["op"] == "pace" and self._moves is not None and self._moves(op["target"]) is False:
+                return True
+            if OPS[op["op"]].makes_motion:
+                return False
+        return False
+
+    def _wished(
+        self, kind: str, chance: float, readings: Sequence[tuple[Said, Happening | None]], wording: Sequence[str]
+    ) -> Iterator[tuple[Fields, ...]]:
+        """The operations of a kind of wish that leave out nothing that the words of an instruction name."""
+        for text, happening in readings:
+            for wish in wishes(kind, text, chance):
+                with suppress(Refusal, UserError, ValidationError):
+                    event = None if wish.timeless else happening
+                    if isinstance(wish.command, Command):
+                        found = self._reader.made(wish.command, wish.moment, event)
+                    else:
+                        told = text.told and not wish.timeless
+                        found = self._reader.command(wish.command, "", wish.moment, event, told)
+                    if found and not leaves_out(wording, found):
+                        yield of_one_movement(" ".join(wording), found)
+
+    def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
+        """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if
+        they leave none out, or if that is not told."""
+        at_all_times = all(op["op"] in TIMELESS or op.get("change") == "stop" for op in ops)
+        if not ops or not at_all_times or any(op.get("when") is not None for op in ops):
+            return None
+        if any(op["target"].moving is not None for op in ops):
+            return None  # "the second book that falls"
+        words = in_words(cleaned)
+        told = any(tag in TIMES for tag, _, _ in marked(words.split(" ")))
+        if not told and next(happenings.cut(words, self._reader.thing), None) is None:
+            return None
+        found = self.supposed(cleaned)
+        return found if found and all(op.get("when") is not None for op in found) else None
+
+    def contradicts(self, cleaned: str, ops: Sequence[Fields]) -> bool:
+        """Whether operations leave out a number or a later colour of an instruction, or change what is there once and
+        for all where its words most likely ask for another course of a motion: "set off at 1 s" deletes nothing."""
+        if not ops:
+            return False
+        words = in_words(cleaned).split(" ")
+        if leaves_out(words, ops) or self._leaves_time_out(words, ops):
+            return True
+        paced = not _PACES.isdisjoint(words)
+        if not any(op["op"] in _ONCE_FOR_ALL and (op.get("when") is not None or paced) for op in ops):
+            return False
+        kinds = likely(cleaned)
+        return bool(kinds) and kinds[0][0] in COURSES and kinds[0][1] >= _SAID_SO
+
+    def _leaves_time_out(self, words: Sequence[str], ops: Sequence[Fields]) -> bool:
+        """Whether no operation has a time, and a clause tells one by what a thing does: "before the robot comes"."""
+        looks = all(op.get("when") is None and op["op"] in _LOOKS for op in ops)
+        if not looks or not CLAUSE.search(" ".join(words)):
+            return False
+        spans = (words[start:stop] for tag, start, stop in marked(words) if tag in TIMES)
+        return any(CLAUSE.match(" ".join(said)) and any(map(is_known, said)) for said in spans)
+
+
+def _with_delay(rest: str, moment: Moment, happening: Happening | None) -> tuple[str, Moment, Happening | None]:
+    """A reading with the seconds before what happens as its delay: "close it a second" after it has opened."""
+    if happening is None or not moment.empty or not happening.said.startswith(("after ", "once ")):
+        return rest, moment, happening
+    words = rest.split(" ")
+    for at in range(max(0, len(words) - 4), len(words)):
+        if (delay := moments.seconds_of(" ".join(words[at:]))) is not None:
+            return " ".join(words[:at]), replace(moment, start=delay), happening
+    return rest, moment, happening
