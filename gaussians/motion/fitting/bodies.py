@@ -25,7 +25,7 @@ class Line:
         kind: "hinge", a turn about the line through `pivot` along `axis`; "slide", a shift along `axis`.
         axis: `[3]` unit.
         pivot: `[3]` a point of the line of a hinge.
-        values: `[T]` radians or scene units at each time of the frames; the first is 0.
+        values: `[T]` radians or scene units at each time of the frames; the first is 0, but in training.
     """
 
     kind: Literal["hinge", "slide"]
@@ -70,8 +70,8 @@ class Body:
 
     Attributes:
         pivot: `[3]`.
-        quats: `[T, 4]` wxyz, unit, at each time of the frames; the first is the identity.
-        offsets: `[T, 3]` scene units; the first is 0.
+        quats: `[T, 4]` wxyz, unit, at each time of the frames; the first is the identity, but in training.
+        offsets: `[T, 3]` scene units; the first is 0, but in training (`Joint.settle`).
         line: the axis on which all poses lie, if the frames tell no more than that.
     """
 

@@ -78,6 +78,8 @@ class Ball:
         ]
         normals, frames = sphere(POINTS), np.random.default_rng(0).permutation(len(footage.shots))[:FRAMES]
         radius, best = min(tried, key=lambda each: self._colors(each[1], footage, normals, frames)[1])
+        if not 1.001 * RADII[0] < radius / self.radius < 0.999 * RADII[-1]:
+            return None  # none that was tried is the best
         ball = Ball(self.centre, radius)  # what lies around it hides how steady its surface is
         own, rolled = (ball._colors(b, footage, normals, frames)[1] for b in (body, best))
         return (ball, best) if rolled < TRUER * own else None

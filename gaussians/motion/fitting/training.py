@@ -141,6 +141,7 @@ class Joint:
         self._strategy.after_step(parameters, found.centers, (shot.camera.width, shot.camera.height), means_lr)
         self.steps += 1
         if self._single is None and self.steps % REFINE_EVERY == 0 and progress < GROWS_UNTIL:
+            self.settle()
             self._strategy.refine(parameters, self.steps)
             parameters.take(morton_order(parameters.means))
         self.seconds += time.perf_counter() - started
@@ -189,5 +190,7 @@ class Joint:
         value, pivot, axis = body.line.gradient(t, body.pivot + body.offsets[t], turn, shift)
         unit = wide if body.line.kind == "hinge" else far
         move = unit * moments.direction(run.start, np.r_[value, np.zeros(5)])
-        tilt = LINE_LR * moments.direction(len(self._footage.times), np.r_[pivot, axis])
+        tilt = np.zeros(6)
+        if run.start:  # where it is at the first time tells nothing of its line
+            tilt = LINE_LR * moments.direction(len(self._footage.times), np.r_[pivot, axis])
         self.bodies[number] = body.on(body.line.stepped(run, -float(move[0]), -far * tilt[:3], -wide * tilt[3:]))

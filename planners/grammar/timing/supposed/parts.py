@@ -45,12 +45,15 @@ _HOW_MANY = re.compile(  # ", all four of them"
 )
 _SO_THAT = re.compile(r"^(?:, )?(?:and )?so (?:that )?(?:it|he|she|they|we|i|you|people|everyone)\b")  # a reason
 _REMARKS = re.compile(  # what is said of oneself, or of how it is: ", i am after something dreamlike"
-    r"(?:, )?(?:and |but )?(?:i|we|it|that|this|they) (?:am|is|are|was|feels?|looks?|seems?|want|need|like|think)\b"
+    r"(?:, )?(?:and |but )?(?:i|we|it|that|this|they) (?:am|is|are|was|feels?|looks?|seems?|think)\b"
 )
 _ASKED_OF = re.compile(r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b")
 _AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _ANOTHER = re.compile(r"^(?:, )?(?:and |but )?then\b|\botherwise\b")
-_TO_THEN = re.compile(rf"(?:to|until|till|-) (?:{DURATION}|\d+(?:\.\d+)?|{'|'.join(NUMBERS)})(?= |$)")
+_TO_THEN = re.compile(
+    rf"(?:to|until|till|-) (?:{DURATION}|\d+(?:\.\d+)?|{'|'.join(NUMBERS)})"
+    r"(?= ?$| (?!times|percent|%|x\b|cm|m\b|met|deg|turns?|rounds?|per\b|of\b))"
+)
 _AS_IT_WAS = re.compile(r"\b(?:again|back|before|usual|normal|was|returns?|own|original|used to)\b")
 
 

@@ -18,7 +18,7 @@ _GONE = r"(?:has|have|had|is|are|'s|was) (?:passed|elapsed|gone(?: by)?|over|up|
 _WAYS = r"movement|motion|slide|climb|run|ride|trip|roll|walk|drop|fall|way|journey|swing|turn|descent|opening|closing"
 _ALWAYS, _TO_THE_END = "the whole time", "until the end"
 _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what they are put as
-    ("", rf"\bits (?=(?:{_STATES}|[a-z]+ing)\b)", "it is "),
+    ("", rf"\bits (?=(?:{_STATES}|(?!opening|closing|turning|landing|ending)[a-z]+ing)\b)", "it is "),
     ("", rf"\ba(?:nother)? (?:good|full|whole|solid|entire|complete|proper|mere|further) (?={_SECONDS})", ""),
     (
         "",
@@ -43,7 +43,6 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ("from", r"^(?:no|not) (?:earlier|sooner) than (?=\w)", "at "),
     ("from", r"^not (?:before|until|till) (?=(?:the|it|he|she) )", "once "),
     ("from", rf"^not (?:before|until|till) (?={_NUMBER})", "at "),
-    ("to", r"^(?:no|not) later than (?=\w)", "by "),
     ("from to", r"^(?:with effect )?from (?=second \w+$)", "at "),
     (
         "from",
@@ -127,10 +126,19 @@ _OVER = re.compile(
     r"over|gone|in place|parks?|parked|quits?|dies|settles?|settled|docks?|docked|dead|dies down|gives? up|calms? down|"
     r"comes? to (?:rest|a standstill))(?: .*)?$"
 )
-_HAS = re.compile(r"^ ?(?:has|have|had|'s) (?!to )(?:\w+ )?[a-z]+(?:ed|en|ne|un|ut|ade|ought|aught|ent|ot|old|ung)\b")
+_PATH = (
+    r"(?:by|past|over|across|through|along|around|round|about|away|off|in|into|out|up|down|to|towards?|at|near|home)"
+)
+_HAS = re.compile(
+    r"^ ?(?:has|have|had|'s) (?!been\b|to\b)(?:\w+ly )?(?:passed|crossed|finished|ended|arrived|docked|parked|"
+    rf"settled|landed|reached|[a-z]+(?:ed|en|ne|un|wn|ot|id|it|ept|ode|own) {_PATH})\b"
+)
+_GOES_ON = re.compile(
+    r"^ ?(?:(?:is|are|'s) (?:\w+ly )?(?:passing|crossing)|passes|crosses|"
+    rf"(?:(?:is|are|'s) )?[a-z]+(?:ing|s)(?<!wear)(?<!look)(?<!looking)(?<!looks) {_PATH})\b"
+)
 _BACK_IN = re.compile(r"^(?:is|are|'s|has|have)(?: \w+){0,4} back in(?: again)?$")
 _OVER_IT = re.compile(r"\b(?:over|across|along) (?P<what>it|the [a-z]+)\b")
-_GOES_ON = re.compile(r"^ ?(?:(?:is|are|'s) (?:\w+ )?[a-z]+ing|[a-z]+s)\b")
 
 
 def loosely(phrase: str, thing: Thing) -> str | None:

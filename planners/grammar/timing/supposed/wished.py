@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from .....gaussians import late_re as re
 from ...learned.marks import Span
 from ...tagging.words import bag
+from ..asides import HUES
 
 _ORDERS = (
     r"paint|make|turn|colou?r|recolou?r|change|dye|tint|take|get rid|remove|delete|strike|lose|ditch|bin|scrap|clear|"
@@ -31,7 +32,12 @@ _DENIED = re.compile(r"\b(?:not|never|no one|nobody|if|unless|or|but)\b")
 SURELY = 0.95  # probability of a wish of its kind from which any other words may stand in it
 _ASKS = re.compile(  # or tells
     r"\b(?:know|knows|whether|wonder|wondering|remember|recall|what|which|who|whose|why|when|where|how|said|says?|told|"
-    r"tells?|thought|heard|yesterday|ago|used to|tomorrow|earlier|last (?:week|month|year|time|night))\b"
+    r"tells?|thought|heard|believed?|agree|calls?|called|imagine|think|picture|treated|seen|for all|i (?:want|need) is|"
+    r"yesterday|ago|used to|tomorrow|earlier|last (?:week|month|year|time|night))\b"
+)
+_CHOICE = re.compile(rf"\b(?:{HUES}) or (?:\w+ )?(?:{HUES})\b")
+_THAT_I_WANT = re.compile(
+    r"\b(?:the|a|that|this) \w+ (?:that )?(?:i|we) (?:want|need|wanted|like|love) (?:is|are|was|were)\b"
 )
 _CONTRARY = re.compile(r"(?:how|what) about not\b")
 _BESIDE = bag(  # that may stand in a wish beside what is marked
@@ -57,7 +63,8 @@ def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float) -> boo
     held = {at for _, start, stop in spans for at in range(start, stop)}
     left = [word for at, word in enumerate(words) if at not in held and word.isalpha()]
     asked = " ".join(word for at, word in enumerate(words) if at not in idle).strip(" ,.")
-    if _CONTRARY.match(" ".join(words)):
+    said = " ".join(words)
+    if _CONTRARY.match(said) or _CHOICE.search(said) or _THAT_I_WANT.search(said):
         return False
     if _RID_OF_IT.search(asked) and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"

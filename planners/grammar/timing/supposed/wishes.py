@@ -336,7 +336,7 @@ def _remove(said: Said) -> Iterator[Wish]:
 
 
 def _move(said: Said) -> Iterator[Wish]:
-    if len(said.things) == 2 and _TOWARDS.search(said.beside.split("|")[-2]):
+    if len(said.things) == 2 and "|" in said.beside and _TOWARDS.search(said.beside.split("|")[-2]):
         yield Wish(f"move {said.things[0]} to {said.things[1]}", said.moment, things=2)
     length = _LENGTH.search(said.text)
     words = said.beside.split()
@@ -415,8 +415,9 @@ _ANOTHER_TIME = re.compile(r"\b(?:an?|one|the) (?:second|other|more) time\b|\ban
 
 
 def _repeat(said: Said) -> Iterator[Wish]:
-    times = _ANOTHER_TIME.search(said.beside) or _TIMES.search(said.beside)
-    if times is None or times[0] in _ONCE or times.re is _ANOTHER_TIME:
+    another = _ANOTHER_TIME.search(said.beside)
+    times = another or _TIMES.search(said.beside)
+    if times is None or another is not None or times[0] in _ONCE:
         holds = "" if times is None else times[0]
         if said.told and not _AGAIN_FOR.search(said.text):
             yield Wish(pace(said.whose, "repeat", times=1), said.moment, holds=holds)
@@ -727,7 +728,7 @@ def _order(said: Said) -> Iterator[Wish]:
                 yield Wish(f"let {said.things[0]} start {place}", Moment(), holds=place)
     elif len(said.things) == 2:
         one, other = said.things
-        between = said.beside.split("|")[1]
+        between = said.beside.split("|")[1] if "|" in said.beside else ""
         for word, (later, sooner) in {"after": (one, other), "before": (other, one)}.items():
             if word in between.split() and (first := said.thing(sooner)) is not None:
                 begun = pace(said.thing(later) or Query(last=True), "begin")
