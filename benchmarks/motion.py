@@ -20,7 +20,7 @@ from .harness import Metric, Point, Result
 
 PARTS = ("fit", "frame", "questions", "instructions")
 SETS = ("", "held_")  # of written questions and instructions: what the readers were developed with, and others
-STEPS, QUICK_STEPS = 2000, 500
+STEPS, QUICK_STEPS = 5000, 500
 WHOLE, INSIDE, PATH, OVERLAP = 28.0, 24.0, 0.02, 0.95  # goals with twelve cameras: dB, dB, metres, share
 RIGS: dict[Rig, tuple[str, ...]] = {
     "12": rooms.names(),

@@ -176,7 +176,9 @@ class Pace(TargetedOp):
                     self.when.lasting,
                 )
             if lasting < _NO_TIME:
-                raise InstructionError(f"it would begin at {begin:g} s and end then: say when it is to begin, or to end")
+                raise InstructionError(
+                    f"it would begin at {begin:g} s and end then: say when it is to begin, or to end"
+                )
             return Warp((begin, begin + lasting), (low, high), 0.0, 0.0), begin + lasting
         if self.change == "later":
             assert self.seconds is not None

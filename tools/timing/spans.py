@@ -224,13 +224,15 @@ def _snapped(time: float, edges: list[float]) -> float:
 
 
 def _own(course: Course, state: str, unit: float) -> list[Span]:
-    """When a thing turns about the vertical, or is away from where it is at the start, or goes away or comes back."""
+    """When a thing turns (about the vertical, if it ever does), or is away from where it is at the start, or goes away
+    or comes back."""
     from ...gaussians.motion.events import movements
     from ...gaussians.motion.holding import spans
 
     times = course.grid()
     if state == "turning":
-        return spans(lambda t: np.abs(course.turns(t) @ course.up), times, _TURNS)
+        upright = spans(lambda t: np.abs(course.turns(t) @ course.up), times, _TURNS)
+        return upright or spans(lambda t: np.linalg.norm(course.turns(t), axis=1), times, _TURNS)
     if state == "halfway":
         return [(_half(course, span), span[1]) for span in movements(course, unit)]
     first = course.centers(np.array([course.start]))

@@ -141,7 +141,6 @@ class Joint:
         self._strategy.after_step(parameters, found.centers, (shot.camera.width, shot.camera.height), means_lr)
         self.steps += 1
         if self._single is None and self.steps % REFINE_EVERY == 0 and progress < GROWS_UNTIL:
-            self.settle()
             self._strategy.refine(parameters, self.steps)
             parameters.take(morton_order(parameters.means))
         self.seconds += time.perf_counter() - started
