@@ -5,16 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 
+from ...gaussians import late_re as re
 from ...gaussians.language.query.query import Query
 from ...gaussians.world import kinds
 from .meaning.changes import Fields
 from .tagging.spelling import is_common, is_word, misspelled_name
 from .vocabulary import nouns
 
+_FEELS = re.compile(  # words that say what one thinks of a thing, and not which it is: no "garage door" is a door
+    r"wee|yon|yonder|poor|dear|cute|silly|daft|blasted|bloody|damn|darn|blessed|beloved|trusty|sorry|"
+    r"[a-z]{3,}(?:tly|rly|ous|ful|ish|some)",
+)
+
 
 def named_there(ops: Sequence[Fields], lacks: Callable[[Query], bool]) -> Iterator[Fields]:
-    """Operations whose targets a scene has, where it has them by a name that is spelt right, or without words that
-    are neither nouns nor known adjectives.
+    """Operations whose targets a scene has, where it has them by a name that is spelt right, or without words that only
+    say what one thinks of them.
 
     Args:
         lacks: whether the scene has nothing that a query names.
@@ -38,7 +44,7 @@ def _as_near(text: str) -> Iterator[str]:
     ]
     if right != words:
         yield " ".join(right)
-    known = next((at for at, odd in enumerate(strange) if not odd), len(words))
+    known = next((at for at, word in enumerate(words) if not _FEELS.fullmatch(word)), len(words))
     if 0 < known < len(words):
         yield " ".join(words[known:])
 
