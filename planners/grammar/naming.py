@@ -9,7 +9,7 @@ from ...gaussians import late_re as re
 from ...gaussians.language.query.query import Query
 from ...gaussians.world import kinds
 from .meaning.changes import Fields
-from .tagging.spelling import is_common, is_word, misspelled_name
+from .tagging.spelling import is_common, misspelled_name
 from .vocabulary import nouns
 
 _FEELS = re.compile(  # words that say what one thinks of a thing, and not which it is: no "garage door" is a door
@@ -37,10 +37,8 @@ def named_there(ops: Sequence[Fields], lacks: Callable[[Query], bool]) -> Iterat
 def _as_near(text: str) -> Iterator[str]:
     """Other names that a name may stand for."""
     words = text.split(" ")
-    strange = [not nouns.is_known(word) and not is_word(word) for word in words]
     right = [
-        (not is_common(word) and misspelled_name(word, _nouns())) or word if odd else word
-        for word, odd in zip(words, strange, strict=True)
+        word if nouns.is_known(word) or is_common(word) else misspelled_name(word, _nouns()) or word for word in words
     ]
     if right != words:
         yield " ".join(right)

@@ -46,12 +46,17 @@ def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
     Args:
         still: whether what it is about does not move by itself: it then asks for no other course of a motion.
     """
-    known = classifier().kinds_of(said)
+    known = list(_kinds_of(said))
     if still:
         rest = 1.0 - sum(chance for kind, chance in known if kind in COURSES)
         known = [(kind, chance / rest) for kind, chance in known if kind not in COURSES and chance >= LEAST]
     found = [(kind, chance) for kind, chance in known[:MOST] if chance >= LEAST]
     return [] if found and found[0][0] == NO_WISH else found
+
+
+@lru_cache(maxsize=64)  # several checks ask for the same words
+def _kinds_of(said: str) -> tuple[tuple[str, float], ...]:
+    return tuple(classifier().kinds_of(said))
 
 
 def is_done_by(kind: str, op: str) -> bool:
