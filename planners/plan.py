@@ -5,7 +5,7 @@ A plan holds queries, not ids, so that it can be carried out on another scene.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal, Protocol, Self, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, Protocol, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -154,6 +154,15 @@ class EditPlan(BaseModel):
         return self.verdict == "ok"
 
 
+class Movement(NamedTuple):
+    """How something moves in a scene: its first start and its last stop, seconds, and whether it only turns round and
+    round, so that its speed does not tell when it stops."""
+
+    start: float
+    stop: float
+    turns: bool
+
+
 class Observation(Protocol):
     """The scene as planners see it; each part is computed when it is first asked for."""
 
@@ -171,6 +180,10 @@ class Observation(Protocol):
 
     def moves(self, query: Query) -> bool | None:
         """Whether any of what a query names moves at some time; None if that cannot be told."""
+        ...
+
+    def movement(self, query: Query) -> Movement | None:
+        """How what a query names moves; None if it does not, or if that cannot be told."""
         ...
 
     def lacks(self, query: Query) -> bool:

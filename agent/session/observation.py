@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from ...gaussians.language.query.query import Query
     from ...gaussians.language.query.selection import Selection
     from ...gaussians.scene import Scene
+    from ...planners.plan import Movement
     from ...planners.rooms.graph import SceneGraph
     from ...planners.rooms.graph_scene import Stage
 
@@ -45,6 +46,20 @@ def any_moves(scene: Scene, selection: Selection) -> bool | None:
     if not selection.chosen:
         return None
     return bool(np.isin(moving_ids(scene.motion), selection.ids.cpu().numpy()).any())
+
+
+def movement_of(scene: Scene, selection: Selection) -> Movement | None:
+    """How the Gaussians of a selection move; None if they stand still, or if nothing was found."""
+    from ...planners.plan import Movement
+    from ...tools.ops.pace import is_turning
+    from ...tools.timing.retiming import divided, movement
+
+    if scene.motion is None or not selection.chosen:
+        return None
+    tracks, inside = divided(scene.motion, selection.ids.cpu().numpy())
+    own = [track for track, belongs in zip(tracks, inside, strict=True) if belongs]
+    span = movement(own, scene.motion.start, scene.motion.stop)
+    return None if span is None else Movement(*span, all(is_turning(track) for track in own))
 
 
 def picture_of(scene: Scene, camera: Camera) -> bytes:
@@ -85,6 +100,10 @@ class GraphObservation:
 
     def moves(self, query: Query) -> None:
         """None: a written graph does not tell what moves."""
+        return None
+
+    def movement(self, query: Query) -> None:
+        """None: a written graph does not tell how something moves."""
         return None
 
     def lacks(self, query: Query) -> bool:

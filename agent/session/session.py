@@ -27,7 +27,7 @@ from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
-from .observation import any_moves, graph_of, picture_of
+from .observation import any_moves, graph_of, movement_of, picture_of
 from .own_references import own_references
 from .picture_models import infill_of, photographed, restyler_of
 from .plan_runner import PlanFailed, has_queries, run_plan
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from ...gaussians.language.query.explain import Explanation
     from ...planners.budget import Budget, Ledger
     from ...planners.model.backend import ModelBackend
-    from ...planners.plan import EditPlan, Planner, Usage
+    from ...planners.plan import EditPlan, Movement, Planner, Usage
     from ...planners.questions.answer import Answer
     from ...planners.questions.describing import Description
     from ...planners.questions.survey import Survey
@@ -295,6 +295,12 @@ class Session:
         there. Embeds the scene if it is not embedded yet."""
         found = self._in_motion(query)
         return None if found is None else any_moves(self.scene, found)
+
+    def movement(self, query: Query) -> Movement | None:
+        """How what a query names moves; None if it stands still, or if it names nothing there. Embeds the scene if it
+        is not embedded yet."""
+        found = self._in_motion(query)
+        return None if found is None else movement_of(self.scene, found)
 
     def lacks(self, query: Query) -> bool:
         """Whether a scene with motion has nothing that a query names; no of others. Embeds the scene if it is not

@@ -40,6 +40,7 @@ from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
 from .timing.judging import Judge
+from .timing.keeping import held, without_kept
 from .timing.reading import TimeReader, is_misread, may_be_timed
 from .timing.spoken import written
 from .timing.supposed.wishes import SURE
@@ -181,6 +182,26 @@ def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):
         return _wished(cleaned, previous)
+    asked, kept = without_kept(cleaned)
+    if not kept:
+        return _in_time(cleaned, previous, scene)
+    try:
+        outcome = _in_time(asked, previous, scene)
+    except Refusal:
+        return _in_time(cleaned, previous, scene)  # what seems to stay as it is may be what is asked for
+    return replace(outcome, ops=held(outcome.ops, kept, scene.movement if scene is not None else _unknown))
+
+
+def _unknown(query: Query) -> None:
+    """How something moves where there is no scene."""
+
+
+def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _Outcome:
+    """As `_read_whole`, of an instruction that may be about time or motion.
+
+    Raises:
+        Refusal: as `_read_whole`.
+    """
     reader = TimeReader(_operations, _thing)
     judge = Judge(reader, scene.moves if scene is not None else None)
     try:

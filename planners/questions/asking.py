@@ -167,7 +167,7 @@ _WANTS_MORE = re.compile(
 def _of_motion(asked: Asked, survey: Survey) -> Reading | None:
     """The answer to a question about what moves, or the first reason why there is none; None if it is no such one."""
     refused: Reading | None = None
-    no_number = asked.words[0] in _NO_NUMBER and not _ASKED_FOR.search(asked.said)
+    no_number = (asked.words or ("",))[0] in _NO_NUMBER and not _ASKED_FOR.search(asked.said)
     wants_more = _WANTS_MORE.search(asked.said) is not None
     in_unit = _UNIT_AT_END.search(asked.said) is not None
     for kind in kinds.OF_MOTION:

@@ -15,7 +15,7 @@ from ...gaussians.language.query.selection import Selection
 from ...tools.binding import bound_targets, exchanged_likes
 from ...tools.operation import EditOp
 from ..impossible import Step, StepRefused, metres, refuse_above, refuse_impossible, refuse_part
-from ..plan import EditPlan, Observation, Planner, Verdict
+from ..plan import EditPlan, Movement, Observation, Planner, Verdict
 from .graph import SceneGraph
 from .graph_scene import Id, Stage
 
@@ -86,6 +86,9 @@ class _Later:
 
     def moves(self, query: Query) -> bool | None:
         return self.before.moves(query)
+
+    def movement(self, query: Query) -> Movement | None:
+        return self.before.movement(query)
 
     def lacks(self, query: Query) -> bool:
         return self.before.lacks(query)

@@ -65,6 +65,9 @@ class Blind:
     def moves(self, query: Query) -> bool | None:
         raise AssertionError("nothing here is about motion")
 
+    def movement(self, query: Query) -> None:
+        return None
+
     def lacks(self, query: Query) -> bool:
         raise AssertionError("nothing here is about motion")
 

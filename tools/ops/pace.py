@@ -132,7 +132,7 @@ class Pace(TargetedOp):
                 continue
             if (
                 self.change in ("speed", "reverse", "go_on")
-                and (turning := [_is_turning(t, motion) for t in own])
+                and (turning := [is_turning(t) for t in own])
                 and all(turning)
             ):
                 for i in held:
@@ -379,7 +379,7 @@ def _things(scene: Scene, selection: Selection, ids: I64, whole: bool) -> list[I
     return [own for own in (np.intersect1d(thing, ids) for thing in found) if len(own)]
 
 
-def _is_turning(track: Track, motion: Motion) -> bool:
+def is_turning(track: Track) -> bool:
     """Whether a track turns round and round, so that its speed is turns a second."""
     if track.angles is None or track.kind == "slide":
         return False

@@ -72,7 +72,8 @@ _LACKS = _Course("unless", "unless", "until_end", "after")  # "it is closed"
 _COMES = _Course("from", "while", "until", "from")  # "it hits the wall"
 
 _ONCE = (
-    r"(?:(?:right |just )as|(?:on|at|from) the (?:frame|point|instant|moment|time) (?:where|when|that|at which)|"
+    r"(?:(?:right |just )as|(?:on|at|from|with) the (?:very |exact |same )?(?:frame|point|instant|moment|time) "
+    r"(?:where|when|that|(?:at|in|on) which)|(?:on|from) the (?:very |exact |same )?frame(?= (?:the|my|our|it|he|she|they) )|"
     r"the (?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|"
     r"once(?! (?:on|in|at|around|round|to|from|over|about|every|per|each) )|when|as soon as|the moment|"
     r"the instant|the second|at the moment when|at the moment|immediately when|right when|from when|from the moment|"
@@ -123,6 +124,10 @@ _EVENT_OVER = re.compile(
     r"^(?:the|its|his|her) (?:motion|movement|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|spin)"
     r"(?: of (?P<who>.+?))? (?:is|has) (?:over|done|ended|finished|completed?)$"
 )
+_IS_SHUT = re.compile(  # which is no closing
+    r"^(?P<who>.+?) (?:is|are|'s|stays?|remains?|stands?|sits?|lies?) (?:(?:still|fully|completely|all) )*"
+    r"(?:closed|shut)$"
+)
 _AT_TURN = re.compile(
     r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at|"
     r"has (?:taken|made|done)|turns|rounds|goes (?:a)?round|has "
@@ -162,6 +167,10 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
         return During(state="opening" if way["way"] == "out" else "closing", of=whose, part=_part(word, _LASTS))
     if (turn := _AT_TURN.match(said)) is not None and (whose := _who(turn["who"], thing)) is not None:
         return During(state="turning", of=whose, part=_part(word, _EVENT))
+
+    shut = _IS_SHUT.match(said) if re.fullmatch(_WHILE, word) else None
+    if shut is not None and (whose := _who(shut["who"], thing)) is not None:
+        return During(state="open", of=whose, part="unless")
 
     def who(phrase: str) -> Query | None:
         return _who(phrase, thing)

@@ -156,6 +156,8 @@ Made = Callable[[Moment, "re.Match[str]"], Moment | None]
 
 def _range(moment: Moment, found: re.Match[str]) -> Moment | None:
     start, stop = _end(found["a"]), _end(found["b"])
+    if moment.start is not None or moment.stop is not None:
+        return None  # "hide the shelf from 1 to 2 s and the bed from 2 to 3 s"
     if start is None or stop is None or (isinstance(start, float) and isinstance(stop, float) and stop <= start):
         return None
     return replace(moment, start=None if start == 0.0 else start, stop=None if stop == "end" else stop)
@@ -189,12 +191,12 @@ def _takes(moment: Moment, found: re.Match[str]) -> Moment | None:
 
 def _first(moment: Moment, found: re.Match[str]) -> Moment | None:
     value = _value(found["a"])
-    return None if not value else replace(moment, stop=value)
+    return None if not value or moment.stop is not None else replace(moment, stop=value)
 
 
 def _last(moment: Moment, found: re.Match[str]) -> Moment | None:
     value = _value(found["a"])
-    return None if not value else replace(moment, start=-value)
+    return None if not value or moment.start is not None else replace(moment, start=-value)
 
 
 _OVER, _OF_CLIP = r"(?:for |during |in |over |within )?(?:the )?", rf"(?: of (?:the |this )?{_CLIP})?"

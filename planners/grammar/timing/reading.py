@@ -84,7 +84,7 @@ class TimeReader:
         said = self._unfronted(said)
         found = self._whole(said)
         if found is not None:
-            return of_one_movement(said, found)
+            return of_one_movement(said, self._each(said) or found)
         refusal: Refusal | None = None
         try:
             guess = next(self._guesses(said), None)
@@ -103,6 +103,23 @@ class TimeReader:
         if clause is not None and clause[1].said.split()[0] not in ("as", "after", "before"):
             raise Refusal(f"what is to happen “{clause[1].said}” is not understood", clause[1].said)
         return None
+
+    def _each(self, said: str) -> tuple[Fields, ...] | None:
+        """What each part of an instruction asks for, where only the last tells a time: "delete the bed, and hide the
+        shelf from 1 to 2 s"; None for others."""
+        parts = _parts(said)
+        times = [self._tells_time(part) for part in parts]
+        if len(parts) < 2 or times != [False] * (len(parts) - 1) + [True]:
+            return None
+        with suppress(Refusal):
+            found = self._joined(parts)
+            if found is not None and len({op["op"] for op in found}) + len({op.get("change") for op in found}) > 2:
+                return found
+        return None
+
+    def _tells_time(self, part: str) -> bool:
+        """Whether words tell a time, in numbers or by what happens."""
+        return moments.cut(part)[1].told or next(happenings.cut(part, self.thing), None) is not None
 
     def _without_remarks(self, said: str, cleaned: str) -> tuple[Fields, ...] | None:
         """What is asked for beside the pieces that ask for nothing; None if that is not understood either."""

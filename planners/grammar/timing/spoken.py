@@ -30,9 +30,50 @@ _IT_IS = re.compile(  # "its so slow"
 )
 
 
+_TITLE = re.compile(  # "TC-01: ...", "Requirement 4.1: ..."
+    r"^(?:(?:test ?case|tc|req|requirement|test|case|step|task|shot|cue|note|item|ticket|bug|spec)\b[ #]?[\w.-]*|"
+    r"[a-z]{1,4}-?\d[\w.-]*) ?: +(?=\w)",
+    re.IGNORECASE,
+)
+_NOTATION = tuple(  # of times and rates
+    (re.compile(pattern, re.IGNORECASE), plain)
+    for pattern, plain in (
+        (r"(?<![\w,.])(?P<a>\d{1,2}),(?P<b>\d{1,2})(?![\w,.]*\d)", r"\g<a>.\g<b>"),
+        (r"(?<![\w.])(?P<n>\d+(?:\.\d+)?) ?(?:ms|milliseconds?)\b", lambda m: f"{float(m['n']) / 1000:g} s"),
+        (r"(?<![\w.])(?P<n>\d+(?:\.\d+)?) ?rpm\b", lambda m: f"{round(float(m['n']) / 60, 4):g} turns per second"),
+        (
+            r"\b(?P<what>turns?|rotations?|rev(?:olution)?s?|spins?|rounds?) ?/ ?s(?:ec(?:onds?)?)?\b",
+            r"\g<what> per second",
+        ),
+        (r"\b(?:in the )?(?:time )?(?:interval|window|range) (?=\[)", ""),
+        (
+            r"\[ ?(?P<a>\d+(?:\.\d+)?)(?: ?s)? ?(?:,|;|-|–|\.\.+) ?(?P<b>\d+(?:\.\d+)?)(?: ?s)? ?\]",
+            r"from \g<a> s to \g<b> s",
+        ),
+        (r"\bt_?(?:start|begin|0) ?= ?", "from "),
+        (r"\bt_?(?:end|stop|1) ?= ?", "to "),
+        (
+            r"(?<![\w.:-])(?:from )?(?P<a>\d+\.\d+)(?: ?s)? ?[-–] ?(?P<b>\d+(?:\.\d+)?)(?: ?s)?(?= ?(?:$|[,;!?)]|\.(?!\d)))",
+            r"from \g<a> s to \g<b> s",
+        ),
+    )
+)
+
+
+_FROM_ROOM = re.compile(  # which all of it is in
+    r"^(?P<order>(?:please |can you |could you |just )*(?:remove|delete|take|get rid|clear|strike|erase) .+?),? (?:from|out of|in) "
+    r"(?:the|this|my|our) (?:entrance )?(?:hall|hallway|corridor|(?:living |dining |bed ?)?room|kitchen|bedroom|bathroom|office|"
+    r"scene|picture|image|film|video|clip|shot)(?P<end> altogether| for good| please)?[.!?]*$",
+    re.IGNORECASE,
+)
+
+
 def written(spoken: str) -> str:
-    """A text with the words in full that people shorten when they speak."""
-    text = _TOO_CLUTTERED.sub(r"\g<order>", spoken)
+    """A text with the words in full that people shorten when they speak or write notes."""
+    text = _TITLE.sub("", spoken)
+    for pattern, plain in _NOTATION:
+        text = pattern.sub(plain, text)
+    text = _FROM_ROOM.sub(r"\g<order>\g<end>", _TOO_CLUTTERED.sub(r"\g<order>", text))
     text = _SOONER.sub(" would rather", _OFF_AT.sub(_switched, _IT_IS.sub("it is ", text)))
     text = _SOON_AS.sub("as soon as", _DROPPED.sub(_in_full, _SLANG.sub("", text)))
     return _DO_NOT_BE.sub(_prohibited, text)

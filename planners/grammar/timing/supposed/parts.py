@@ -48,6 +48,13 @@ _REMARKS = re.compile(  # what is said of oneself, or of how it is: ", i am afte
     r"(?:, )?(?:and |but )?(?:i|we|it|that|this|they) (?:am|is|are|was|feels?|looks?|seems?|think)\b"
 )
 _ASKED_OF = re.compile(r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b")
+_AFTER_IT = re.compile(  # "after that it pops in", "before it goes on"
+    r"\b(?:before|after)(?: (?:and|or) (?:before|after))? (?:that|this|then|which)\b|"
+    r"\bbefore (?:it|he|she|they) (?:then |finally )?(?:continues?|goes on|go on|carr(?:y|ies) on|resumes?|moves? on|proceeds?)\b"
+)
+_ARRIVES = re.compile(
+    r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?)\b"
+)
 _AMOUNT = re.compile(r"\b(?:quarter|half|third|twice|double|triple|thrice|percent|faster|slower|backwards?|reverse)\b")
 _ANOTHER = re.compile(r"^(?:, )?(?:and |but )?then\b|\botherwise\b")
 _TO_THEN = re.compile(
@@ -78,6 +85,12 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
             tag, skipped = "to", [*skipped, (gone, start)]
         if tag == "from" and UNTIL.match(phrase):
             tag = "to"
+        if (
+            tag == "from"
+            and isinstance(moment.start, float)
+            and _ARRIVES.search(" ".join(words[max(0, start - 4) : start]))
+        ):
+            tag = "to"  # "leaving at 3 s and in position at 4.5 s"
         if tag in ("from", "to") and LASTS.match(phrase):
             tag = "for"
         phrase, delay = delayed(LEADING.sub("", phrase))
@@ -201,7 +214,7 @@ def _whole(words: Sequence[str], span: Span) -> Span:
 
 def _loses(tag: str, words: Sequence[str]) -> bool:
     """Whether words that seem to ask for nothing tell a time."""
-    said = " ".join(words).strip(" ,.;")
+    said = _AFTER_IT.sub(" ", " ".join(words).strip(" ,.;"))
     if len(hues() & set(said.split())) > 1:
         return True  # "first blue, then green, and red for the finale"
     if _ANOTHER.search(said) and hues() & set(said.split()) and not _AS_IT_WAS.search(said):

@@ -33,6 +33,24 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
         r"\g<word> ",
     ),
     ("for", rf"^of (?={_SECONDS})", ""),
+    ("", rf"\bthe usual (?={_NUMBER}\b)", ""),
+    ("", r"\bbusy (?=[a-z]+ing\b)", ""),
+    ("", rf"\bthe (?P<n>{_NUMBER}) second (?:mark|point)\b", r"\g<n> seconds"),
+    (
+        "in",
+        r"^(?:during|throughout|in|over|for) (?:the|its|his|her) (?P<doing>[a-z]+ing)(?P<way>(?: (?:open|shut|out|back|in|down|away))*) "
+        r"of (?P<who>(?:the|my|our) .+)$",
+        r"while \g<who> is \g<doing>\g<way>",
+    ),
+    (
+        "",
+        r"\b(?:the )?(?:impact|landing|touchdown) of (?P<who>(?:the|my|our) (?:[a-z]+ )?[a-z]+)",
+        r"when \g<who> lands",
+    ),
+    ("in", r"(?<=lands and )that of (?P<who>(?:the|my|our) (?:[a-z]+ )?[a-z]+)$", r"when \g<who> lands"),
+    ("from", r"^(?:immediately|directly|right|straight|just|shortly) (?=(?:after|when|once|as)\b)", ""),
+    ("from", r"^after (?:its|his|her|the) (?:\d+ (?:degrees? )?|left |right |first )?turn$", "after it has turned"),
+    ("from", r"^having been (?=[a-z])", "once it has been "),
     (
         "from to",
         r"^(?:when|once|as soon as|after|until|till|before|only when|not until) "

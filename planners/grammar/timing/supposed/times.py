@@ -28,6 +28,7 @@ LASTS = re.compile(r"^(?:and )?(?:tak(?:es?|ing)|last(?:s|ing)?)\b")  # how long
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 _BARE = re.compile(
     r"^(?:(?:by|at|on|from|in|to|till|until|after|before|up|for|over|within|during|the|only|just|about|around|exactly|"
+    r"somewhere|roughly|approximately|precisely|"
     r"say|like|mark|starting|beginning|finished|done|,) )*(?P<value>.+?)(?: (?:mark|on|onwards?|already|sharp|flat|in|"
     r"long|exactly|precisely|or so))*$"
 )

@@ -45,7 +45,8 @@ _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|s
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
 _PROHIBITED = re.compile(
-    r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b"
+    r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b|"
+    r"\b(?:nobody|no one|none of us) (?:wants?|needs?|asked|asks|should|may|must|is to|likes?)\b"
 )
 _OTHER_EDITS = re.compile(
     r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b"
@@ -359,6 +360,11 @@ _ROUND = re.compile(
 _BACKWARDS = re.compile(
     r"\b(?:back|backwards?|revers\w+|in reverse|rewind|rewound|opposite|undo\w*|invert\w*|flip\w*|contrary)\b"
 )
+_TURNS = re.compile(  # "two full spins", "a quarter turn", "by 180 degrees"
+    rf"\b(?P<n>\d+(?:\.\d+)?|half an?|(?:a )?quarter(?: of an?)?|{'|'.join(NUMBERS)}) "
+    r"(?:(?:full|whole|complete|quick|slow|single|proper) )*(?:turns?|spins?|rotations?|revolutions?|twirls?|"
+    r"rounds?|circles?|pirouettes?)\b|\b(?P<degrees>\d+(?:\.\d+)?) ?(?:degrees?|deg|°)"
+)
 _RATE = re.compile(
     r"\b(?:once|twice|(?:[a-z]+|\d+(?:\.\d+)?) (?:full |whole |complete )?(?:times|turns?|rounds?|rotations?|"
     r"revolutions?|spins?|twirls?|circles?)) (?:a|per|every|each) (?:(?:[a-z]+|\d+(?:\.\d+)?) )?seconds?\b"
@@ -381,11 +387,23 @@ def _with_its_place(said: Said) -> int:
 def _spin(said: Said) -> Iterator[Wish]:
     rate, times, full = (p.search(said.beside) for p in (_RATE, _TIMES, _ROUND))
     how, moment = ("", "") if rate is None else (rate[0], rate[0]), said.moment
+    if rate is None and (turns := _TURNS.search(said.beside)) is not None:
+        yield Wish(f"spin {said.things[0]} {_turns(turns)}", _to_the_end(moment), _with_its_place(said), turns[0])
+        return
     if rate is None and (often := times or full) is not None:
         how = ("once" if often is full or often[0] in _ONCE else often[0], often[0])
         moment = _to_the_end(moment)
     command = f"spin {said.things[0]} {how[0]}" if how[0] or not said.told else f"let {said.things[0]} spin"
     yield Wish(command, moment, _with_its_place(said), how[1])
+
+
+def _turns(found: re.Match[str]) -> str:
+    """How far something turns, in words that the grammar knows."""
+    if found["degrees"] is not None:
+        return f"by {found['degrees']} degrees"
+    if "quarter" in found["n"] or "half" in found["n"]:
+        return "a quarter turn" if "quarter" in found["n"] else "half a turn"
+    return f"{NUMBERS.get(found['n'], found['n'])} turns"
 
 
 def _to_the_end(moment: Moment) -> Moment:
@@ -447,12 +465,14 @@ _A_PART = re.compile(
 )  # of a movement that has two
 _SHUTS = re.compile(r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|(?:go|going|slides?|sliding|moving|comes?|coming) back)\b")
 _A_STRETCH = re.compile(r"\b(?:first|second|last|latter|other|final) (?:half|third|quarter|part|stretch|leg|bit)\b")
-_LATER = re.compile(r"\b(?:later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
-_EARLIER = re.compile(r"\b(?:earlier|sooner|early|ahead|forward)\b")
+_LATER = re.compile(r"\b(?:plus|later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
+_EARLIER = re.compile(r"\b(?:minus|earlier|sooner|early|ahead|forward)\b")
 _TOO_LATE = re.compile(r"\b(?:too|so) (?:\w+ )?(late|early|soon)\b")
 _FACTORS = tuple(
     (re.compile(pattern), factor)
     for pattern, factor in (
+        (r"\b(?:one|1) and a half times\b", 1.5),
+        (r"\b(?:two|2) and a half times\b", 2.5),
         (r"\bhalf (?:of )?(?:the|its|that) time\b", 2.0),
         (r"\b(?:twice|double) (?:of )?(?:the|its|that) time\b|\btwice as long\b", 0.5),
         (r"\b(?:twice|double[ds]?|two times)\b", 2.0),
@@ -472,6 +492,7 @@ _TOO_SLOW = re.compile(
     r"\b(?:too|so|painfully)(?: \w+)? (?:slow|slowly|sluggish|lazy)\b|\b(?:less|not so|not as|not that) slow\b"
 )
 _SLOWER = re.compile(r"\b(?:slow|slower|slowly|half|calm|calmer|gentle|gentler|lazy|leisurely)\b")
+_AS_FAST = re.compile(r" (?:as |its |the |present |current )*(?:fast|quick|rapid|speed|pace|rate)")
 _HASTE = re.compile(r"\b(?:faster|quicker|hurry|rush)\b")
 _FASTER = re.compile(r"\b(?:fast|faster|quick|quicker|quickly|hurry|speed .*up|rush|snappier|brisk|brisker|zip)\b")
 
@@ -547,7 +568,7 @@ def _speed(said: Said) -> Iterator[Wish]:
                 factor = 1 + factor if faster else 1 - factor
             elif factor < 1 and _HASTE.search(plain):
                 return  # "faster in the second half"
-            elif factor > 1 and "slow" in plain:
+            elif factor > 1 and "slow" in plain and not _AS_FAST.match(said.beside[found.end() :]):
                 factor = 1 / factor  # "three times slower"
             factor = round(factor, 4)
             yield Wish(pace(said.whose, "speed", factor=factor), _plainly(said), holds=found[0])
@@ -571,7 +592,11 @@ def _duration(said: Said) -> Iterator[Wish]:
         if not any(words.startswith("by ") for words in moment.said):  # that is a time, and no duration
             yield Wish(pace(said.whose, "begin"), replace(_plainly(said), taken=True), 1 + len(said.goals))
     elif moment.start is None and _MOVED_ON.search(said.text) is None:
-        told = [span for span in _durations(said.text) if f"for {span[1]}" not in said.text]
+        told = [
+            (seconds, words)
+            for seconds, words in _durations(said.text)
+            if f"for {words}" not in said.text and not re.search(rf"\bby (?:plus |minus |another )?{words}", said.text)
+        ]
         for seconds, words in told if len(told) == 1 or _TAKES.search(said.text) else ():
             yield Wish(pace(said.whose, "begin"), Moment(lasting=seconds, taken=True), 1 + len(said.goals), words)
 

@@ -1,0 +1,197 @@
+"""What an instruction says stays as it is: "half as fast, still starting at 1 s", "... and the other two fall as now".
+
+The words are cut out, the rest is read as any instruction, and what they say is held against what was read: where it is
+so anyway nothing changes, where the plan can be made so it is, and what contradicts itself is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from ....gaussians import late_re as re
+from ....gaussians.language.query.query import Query
+from ....tools.when import When
+from ...plan import Movement
+from ..parsing import Refusal
+from ..vocabulary.nouns import is_known
+from .command import Fields
+from .supposed.kinds import marked
+from .wording import in_words
+
+TAG = "keep"  # the mark of words that say that something stays as it is
+_LEAST = 2  # words beside them that can ask for anything
+_NEAR = 0.05  # seconds by which times of a plan may differ from those that are to stay
+_SAME = re.compile(  # words by which something stays as it is
+    r"\b(?:same|still|un(?:changed|touched|altered|affected|modified)|identical|constant|otherwise|alone|present|usual|"
+    r"normal|hitherto|(?:is|are|was|were|be) fine|no change|nothing (?:else|about)|as (?:is|now|it|they|he|she|before|"
+    r"specified|planned|ever|in the|at present|usual|today|fast|long|quick|slow)|like (?:now|before|it|they|always)|"
+    r"when (?:it|they|he|she) \w+|(?:it|they|he|she) (?:does|do|has|have) now|(?:keep|stay|remain|retain|leav)\w*|"
+    r"kept|left|without \w+ing|"
+    r"not (?:(?:to|being|is|are|be) )*(?:chang|alter|touch|affect|mov|modif|retim|delay)\w*)\b"
+)
+_SUBJECTS = {  # what stays, and the words for it
+    "start": r"start\w*|begin\w*|onset|setting off|sets? off|departure|leav(?:es|ing)|kick\w*|set(?:ting)? out|"
+    r"letting go|take ?off|comes? out|falls?|timings?|times?|schedule|moment|cue|entrance|slots?",
+    "stop": r"ends?|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|arriv\w*|off|done|"
+    r"timings?|times|schedule|slots?",
+    "speed": r"speeds?|pace|rate|tempo|velocity|rpm|fast|quick|slow|takes?|taking|duration|long|length|last|lasting|"
+    r"cycle time|turns? a second",
+}
+_SAID = {name: re.compile(rf"\b(?:{words})\b") for name, words in _SUBJECTS.items()}
+_NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?=$| (?!x\b|times|rpm|turns?|rounds?|rev|cm|m\b|deg|%))")
+_ITS_OWN = ("start", "stop")
+_NO_OTHERS = frozenset(
+    [
+        "start",
+        "beginning",
+        "fall",
+        "drop",
+        "stop",
+        "end",
+        "speed",
+        "turn",
+        "time",
+        "second",
+        "roll",
+        "walk",
+        "swing",
+        "opening",
+        "motion",
+    ]
+)
+
+
+MovementOf = Callable[
+    [Query], Movement | None
+]  # how what a query names moves; None if it does not, or if that is unknown
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What stays as it is of the movement that an instruction is about.
+
+    Attributes:
+        facts: "start", "stop", "speed".
+        start, stop: seconds that are said with it.
+        said: the words.
+    """
+
+    facts: frozenset[str]
+    start: float | None = None
+    stop: float | None = None
+    said: str = ""
+
+
+def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
+    """An instruction without the words that say that something stays as it is, and what they say.
+
+    >>> without_kept("make the door open half as fast , still starting at 1 s")[0]
+    'make the door open half as fast'
+    """
+    words = in_words(cleaned).split(" ")
+    spans = [(a, b) for tag, a, b in marked(words) if tag == TAG and _SAME.search(" ".join(words[a:b]))]
+    cut = {at for a, b in spans for at in range(a, b)}
+    rest = " ".join(word for at, word in enumerate(words) if at not in cut).strip(" ,;:")
+    if not spans or len(re.findall(r"[a-z]+", rest)) < _LEAST:
+        return cleaned, ()
+    return rest, tuple(kept_by(" ".join(words[a:b]).strip(" ,.;:")) for a, b in spans)
+
+
+def kept_by(said: str) -> Kept:
+    """What words say that stays. Of what other things do nothing is told: no operation changes that."""
+    if any(is_known(word) and word not in _NO_OTHERS for word in said.split()) or re.search(
+        r"\b(?:others?|rest)\b", said
+    ):
+        return Kept(frozenset(), said=said)
+    facts = frozenset(name for name, words in _SAID.items() if words.search(said))
+    numbers = [float(found) for found in _NUMBER.findall(said)]
+    if len(numbers) == len(_ITS_OWN) and not facts & {"speed"}:
+        return Kept(facts | set(_ITS_OWN), numbers[0], numbers[1], said)
+    own = [name for name in _ITS_OWN if name in facts]
+    value = {own[0]: numbers[0]} if len(own) == len(numbers) == 1 and "speed" not in facts else {}
+    return Kept(facts, value.get("start"), value.get("stop"), said)
+
+
+def held(ops: Sequence[Fields], kept: Sequence[Kept], movement: MovementOf) -> tuple[Fields, ...]:
+    """Operations with which everything stays that is to stay.
+
+    Args:
+        movement: how things move in the scene before.
+
+    Raises:
+        Refusal: they change just what is to stay.
+    """
+    for own in kept:
+        ops = tuple(_held(op, own, movement) for op in ops)
+    return tuple(ops)
+
+
+def _held(op: Fields, kept: Kept, movement: MovementOf) -> Fields:
+    change = op.get("change") if op["op"] == "pace" else None
+    if change is None or not kept.facts:
+        return op
+    moves = movement(op["target"])
+    start = kept.start if kept.start is not None or moves is None else moves.start
+    stop = kept.stop if kept.stop is not None or moves is None else moves.stop
+    made: Fields | None = op
+    if change == "speed":
+        made = _faster(op, kept, moves, stop)
+    elif change in ("begin", "later"):
+        made = _begun(op, kept, start, stop)
+    elif change == "stop" and "stop" in kept.facts and not _ends(op):
+        made = None  # it stops early
+    if made is None:
+        raise Refusal("it asks to change just what is to stay as it is", kept.said, verdict="impossible")
+    return made
+
+
+def _faster(op: Fields, kept: Kept, moves: Movement | None, stop: float | None) -> Fields | None:
+    """Another speed, with the end that is to stay; None if the speed is to stay."""
+    if "speed" in kept.facts:
+        return None
+    if kept.facts >= set(_ITS_OWN):
+        return op if moves is not None and moves.turns else None
+    if "stop" not in kept.facts or moves is None or moves.turns or stop is None or op.get("when") is not None:
+        return op
+    lasting = (moves.stop - moves.start) / op["factor"]
+    return _at(op, round(stop - lasting, 4), stop) if stop > lasting else None
+
+
+def _begun(op: Fields, kept: Kept, start: float | None, stop: float | None) -> Fields | None:
+    """Another beginning or duration, with what is to stay; None if that is what is asked to change."""
+    when = op.get("when") or When()
+    if when.during is not None or when.until is not None:
+        return op
+    begins = when.start if isinstance(when.start, float | int) else None
+    if op["change"] == "later":
+        if "start" in kept.facts:
+            return None
+        if "stop" not in kept.facts or start is None or stop is None:
+            return op
+        begins = round(start + op["seconds"], 4)
+        return _at(op, begins, stop) if 0 <= begins < stop and "speed" not in kept.facts else None
+    if "speed" in kept.facts and (when.lasting is not None or when.stop is not None):
+        return None
+    if "start" in kept.facts and begins is None and kept.start is not None:
+        return {**op, "when": when.model_copy(update={"start": kept.start})}
+    if "start" in kept.facts and begins is not None and start is not None and abs(begins - start) > _NEAR:
+        return None
+    if "stop" not in kept.facts or stop is None or when.stop is not None:
+        return op
+    if when.lasting is None:
+        return _at(op, begins, stop) if begins is not None and begins < stop else None
+    if "start" in kept.facts or begins is not None or stop < when.lasting:
+        return None
+    return _at(op, round(stop - when.lasting, 4), stop)
+
+
+def _at(op: Fields, start: float, stop: float) -> Fields:
+    """A movement with another beginning and end."""
+    return {"op": "pace", "target": op["target"], "change": "begin", "when": When(start=start, stop=stop)}
+
+
+def _ends(op: Fields) -> bool:
+    """Whether a rest has an end."""
+    when = op.get("when")
+    return when is not None and (when.stop is not None or when.lasting is not None or when.until is not None)
