@@ -182,7 +182,8 @@ View = Annotated[
 Size = Annotated[str | None, typer.Option("--size", metavar="WxH", help="Size of pictures in pixels, e.g. 1280x720.")]
 Up = Annotated[str | None, typer.Option("--up", metavar="X,Y,Z", help="Up direction, if the estimated one is wrong.")]
 Scale = Annotated[
-    float | None, typer.Option("--metres-per-unit", metavar="M", help="Scale of the scene, if its file has none.")
+    float | None,
+    typer.Option("--metres-per-unit", metavar="M", help="Scale of the scene, whatever its file says."),
 ]
 JUDGE = "built-in"  # what --judge alone means
 Judge = Annotated[

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -97,6 +98,12 @@ def command(
 
     if minutes is not None and steps is not None:
         raise UserError("give --minutes or --steps, not both")
+    if not 0 <= guidance < math.inf:
+        raise UserError(f"--guidance is a number from 0 on, got {guidance:g}")
+    if model is not None and model.startswith((LIBRARY, PREFIX)) and (idle := _idle(model, image, start, pictures)):
+        raise UserError(f"{idle} does nothing with {model}; it is for diffusers:FOLDER")
+    if image is not None and not image.is_file():
+        raise UserError(f"there is no picture {image}")
     if height is not None and not 0.005 <= height <= 100:
         raise UserError(f"--height is between 0.005 and 100 metres, got {height:g}")
     _check_targets(output, pictures, force)
@@ -135,6 +142,16 @@ def command(
     save(scene, output, force=force)
     checkpoint.delete(kept)
     terminal.result(_summary(done, output), _data(done, output, model, settings, first, told))
+
+
+def _idle(model: str, image: Path | None, start: str, pictures: Path | None) -> str:
+    """The first given option that has no effect where nothing is dreamt; "" if there is none."""
+    given = {
+        "--from": start != "auto",
+        "--pictures": pictures is not None,
+        "--image": model == LIBRARY and image is not None,
+    }
+    return next((name for name, said in given.items() if said), "")
 
 
 def _check_targets(output: Path, pictures: Path | None, force: bool) -> None:

@@ -40,7 +40,8 @@ def command(
     ] = False,
     up: Up = None,
     metres_per_unit: Annotated[
-        float | None, typer.Option("--metres-per-unit", metavar="M", help="Scale of the scene, if its file has none.")
+        float | None,
+        typer.Option("--metres-per-unit", metavar="M", help="Scale of the scene, whatever its file says."),
     ] = None,
     encoder: Encoder = "auto",
     force: Force = False,

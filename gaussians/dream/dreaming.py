@@ -17,7 +17,7 @@ import numpy as np
 import torch
 
 from ..cloud import GaussianCloud
-from ..errors import FileError, UserError
+from ..errors import BackendError, FileError, UserError
 from ..fit import checkpoint
 from ..fit.densify import MCMCStrategy
 from ..fit.engine import engine_for, resolve_device
@@ -31,6 +31,7 @@ from .views import drawn
 EXTENT = 2.6  # distance of the views from the object, radii: what the learning rate of means is multiplied with
 COARSE, SMALL = 0.4, 0.5  # share of the dreaming in small pictures, and their side over the whole one
 FAINT = 0.02  # opacity below which a Gaussian is left out at the end
+_SILENT = 10  # answers in a row without a finite number after which a dream ends
 _NOISE = 5e3  # of the strategy: a tenth of that for photographs, as an object has no far places to find
 
 
@@ -149,7 +150,7 @@ class _Work:
         )  # fmt: skip
         engine = engine_for(resolve_device(settings.device))
         self._engine = engine(Parameters.of(start.cloud), self._strategy, 0.0)
-        self.steps, self.seconds, self.residual = 0, 0.0, math.nan
+        self.steps, self.seconds, self.residual, self._silent = 0, 0.0, math.nan, 0
 
     @property
     def share(self) -> float:
@@ -172,6 +173,11 @@ class _Work:
             return distilled(self._denoiser, picture, asked, share, self._rng)
 
         off = self._engine.learn(asked.camera, asked.background, slope, MEANS_LR * EXTENT * LR_DECAY**share)
+        self._silent = self._silent + 1 if off == 0 else 0  # what is not finite counts as no difference
+        if self._silent == _SILENT:
+            raise BackendError(
+                f"the model gave no finite numbers {_SILENT} times in a row: its weights may be damaged; fetch it anew"
+            )
         self.residual = off if math.isnan(self.residual) else 0.98 * self.residual + 0.02 * off
         self.steps += 1
         if self.refined and share < REFINE_STOP:

@@ -39,6 +39,7 @@ from .restating.speech.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
+from .timing.ending import with_end
 from .timing.judging import Judge
 from .timing.keeping import held, without_kept
 from .timing.reading import TimeReader, is_misread, may_be_timed
@@ -182,14 +183,16 @@ def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):
         return _wished(cleaned, previous)
+    movement = scene.movement if scene is not None else _unknown
     asked, kept = without_kept(cleaned)
-    if not kept:
-        return _in_time(cleaned, previous, scene)
     try:
         outcome = _in_time(asked, previous, scene)
     except Refusal:
-        return _in_time(cleaned, previous, scene)  # what seems to stay as it is may be what is asked for
-    return replace(outcome, ops=held(outcome.ops, kept, scene.movement if scene is not None else _unknown))
+        if not kept:
+            raise
+        asked, kept = cleaned, ()  # what seems to stay as it is may be what is asked for
+        outcome = _in_time(asked, previous, scene)
+    return replace(outcome, ops=held(with_end(asked.lower(), outcome.ops, movement), kept, movement))
 
 
 def _unknown(query: Query) -> None:

@@ -118,6 +118,11 @@ class Pace(TargetedOp):
             raise InstructionError(
                 f"{self.target.describe()} does not move: say what it is to do, as 'move it to the sofa in 3 seconds'"
             )
+        if any(np.isin(residual.ids, ids).any() for residual in motion.residuals) or (self._whole and motion.residuals):
+            raise InstructionError(
+                f"some of {self.target.describe()} moves point by point (a displacement of each Gaussian), and when "
+                "that happens cannot be changed: name things that move as a whole"
+            )
         when = When(during=self.when.during) if self.when is not None and self._of_one_movement else self.when
         spans = spans_of(when, scene, selection, context) if when is not None else []
         movements = spans_of(_WHILE_MOVING, scene, selection, context) if self._of_one_movement else []
@@ -256,7 +261,7 @@ class Pace(TargetedOp):
             if not back and turn + 1 < count:  # what does not end where it began jumps there
                 new.append(first + taken + _NO_TIME)
                 old.append(low)
-        end = new[-1] if self.times is not None else whole
+        end = new[-1] if self.times is not None or count == 1 else whole  # there and back is longer than the scene
         return Warp(tuple(new), tuple(old), 0.0, 0.0), end
 
     def _until(self, scene: Scene, own: list[Track], group: I64, span: Span) -> float:

@@ -128,12 +128,14 @@ class Spin(TargetedOp):
 
     def _again(self, old: Track, begin: float, stop: float, timed: bool) -> Track:
         """A track that turns already, at another rate, or the other way."""
-        assert old.axis is not None and old.angles is not None
-        if timed:
-            return self._meanwhile(old, begin, stop)
+        assert old.axis is not None and old.angles is not None and old.pivot is not None
         lasting, turned = np.diff(old.times), np.diff(old.angles)
         span = max(float(lasting[turned != 0].sum()), 1e-9)  # it may rest before and after
         rate = float(turned.sum()) / (2 * math.pi * span)
+        if self.turns is None and self.turns_per_second is None and not self.other_way and turned.any():
+            return self._as_it_does(old, rate, begin, stop, timed)
+        if timed:
+            return self._meanwhile(old, begin, stop)
         wanted = (
             rate
             if self.turns_per_second is None
@@ -143,6 +145,18 @@ class Spin(TargetedOp):
             wanted = math.copysign(self.turns / span, rate)
         factor = (-1.0 if self.other_way else 1.0) * wanted / (rate or 1.0)
         return replace(old, angles=old.angles * factor)
+
+    def _as_it_does(self, old: Track, rate: float, begin: float, stop: float, timed: bool) -> Track:
+        """What turns already, at its own rate: only from `begin` to `stop`, or without an end."""
+        assert old.axis is not None and old.angles is not None
+        if not timed:
+            last = int(np.flatnonzero(np.diff(old.angles))[-1]) + 2  # what rests in the end goes on
+            return replace(old, kind="spin", times=old.times[:last], angles=old.angles[:last], smooth=False)
+        if math.isinf(stop):
+            return replace(Track.spin(old.ids, rate, old.axis, old.pivot, begin), name=old.name)
+        angle = 2 * math.pi * rate * (stop - begin)
+        only = Track.hinge(old.ids, (begin, stop), (0.0, angle), old.axis, old.pivot, smooth=False)
+        return replace(only, name=old.name)
 
     def _meanwhile(self, old: Track, begin: float, stop: float) -> Track:
         """What turns already, at another rate from `begin` to `stop`, and before and after that as ever."""

@@ -26,7 +26,8 @@ def load(spec: str, prompt: str, image: Path | None = None, guidance: float = GU
     name, _, folder = spec.partition(":")
     if name != "diffusers" or not folder:
         raise BackendError(
-            f"unknown model {spec!r} to dream with; use diffusers:FOLDER, a folder with a text-to-image pipeline"
+            f"unknown model {spec!r} to dream with; use diffusers:FOLDER (a folder with a text-to-image pipeline), "
+            'command:"PROGRAM {prompt} {output}", or library'
         )
     if image is None:
         from .text_to_image import TextToImage

@@ -22,11 +22,11 @@ class ImageVariation(Latent):
 
     def __init__(self, name: str, pipeline: Any, image: Path, guidance: float) -> None:
         import torch
-        from PIL import Image, UnidentifiedImageError
+        from PIL import Image, ImageOps, UnidentifiedImageError
 
         try:
             with Image.open(image) as file:
-                shown = file.convert("RGBA")
+                shown = ImageOps.exif_transpose(file).convert("RGBA")
         except (OSError, UnidentifiedImageError, Image.DecompressionBombError) as error:
             raise UserError(f"cannot read the picture {image}: {error}") from error
         white = Image.new("RGBA", shown.size, (255, 255, 255, 255))

@@ -73,7 +73,8 @@ _COMES = _Course("from", "while", "until", "from")  # "it hits the wall"
 
 _ONCE = (
     r"(?:(?:right |just )as|(?:on|at|from|with) the (?:very |exact |same )?(?:frame|point|instant|moment|time) "
-    r"(?:where|when|that|(?:at|in|on) which)|(?:on|from) the (?:very |exact |same )?frame(?= (?:the|my|our|it|he|she|they) )|"
+    r"(?:where|when|that|(?:at|in|on) which)|(?:on|from) the (?:very |exact |same )?frame"
+    r"(?= (?:the|my|our|it|he|she|they) )|"
     r"the (?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|"
     r"once(?! (?:on|in|at|around|round|to|from|over|about|every|per|each) )|when|as soon as|the moment|"
     r"the instant|the second|at the moment when|at the moment|immediately when|right when|from when|from the moment|"
@@ -129,7 +130,7 @@ _IS_SHUT = re.compile(  # which is no closing
     r"(?:closed|shut)$"
 )
 _AT_TURN = re.compile(
-    r"^(?P<who>.+?) (?:gets to|reaches|comes to|arrives at|makes|takes|does|is at|"
+    r"^(?P<who>.+?) (?:begins|starts|gets to|reaches|comes to|arrives at|makes|takes|does|is at|"
     r"has (?:taken|made|done)|turns|rounds|goes (?:a)?round|has "
     r"turned|has rounded|has reached) (?:(?:its|his|her|the|that) (?:left |right |sharp )?"
     r"(?:turn|turning point|corner|bend|curve)|(?:to )?where (?:it|he|she) (?:turns|makes (?:its|his|her|the) turn))$"
@@ -191,7 +192,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
             if state == "open" and not clause.negated and re.fullmatch(_AFTER, word):
                 state = "fully_open"
             if clause.negated:
-                part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: ignore[assignment]
+                part = {"while": "unless", "from": "after", "until": "after"}.get(part, part)  # type: ignore[assignment]
             return During(state=state, anchors=anchors, of=clause.target, part=part)
     return _touching(word, said, who) or _noun_event(word, said, who)
 
@@ -289,7 +290,7 @@ def _touching(word: str, said: str, who: Thing) -> During | None:
             course = _LASTS
         part = _part(word, course)
         if clause.negated:
-            part = {"while": "unless", "from": "until", "until": "after"}.get(part, part)  # type: ignore[assignment]
+            part = {"while": "unless", "from": "after", "until": "after"}.get(part, part)  # type: ignore[assignment]
         return During(state=state, anchors=(whom,), of=clause.target, part=part)
     return None
 

@@ -14,6 +14,7 @@ from ....gaussians.language.query.query import Query
 from ....tools.when import When
 from ...plan import Movement
 from ..parsing import Refusal
+from ..tagging.words import bag
 from ..vocabulary.nouns import is_known
 from .command import Fields
 from .supposed.kinds import marked
@@ -32,34 +33,20 @@ _SAME = re.compile(  # words by which something stays as it is
 )
 _SUBJECTS = {  # what stays, and the words for it
     "start": r"start\w*|begin\w*|onset|setting off|sets? off|departure|leav(?:es|ing)|kick\w*|set(?:ting)? out|"
-    r"letting go|take ?off|comes? out|falls?|timings?|times?|schedule|moment|cue|entrance|slots?",
+    r"letting go|take ?off|comes? out|falls?|timings?|times|schedule|moment|cue|entrance|slots?",
     "stop": r"ends?|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|arriv\w*|off|done|"
     r"timings?|times|schedule|slots?",
     "speed": r"speeds?|pace|rate|tempo|velocity|rpm|fast|quick|slow|takes?|taking|duration|long|length|last|lasting|"
     r"cycle time|turns? a second",
 }
 _SAID = {name: re.compile(rf"\b(?:{words})\b") for name, words in _SUBJECTS.items()}
+_STILL = re.compile(  # "..., but it should still stop at four seconds"
+    r" (?:, )?(?:and |but |; )*(?:(?:it|he|she|they) )?(?:(?:should|must|has to|is to|needs to|to) )*still (?:to )?"
+    r"(?:stop|start|begin|end|finish|kick|set|leav|arriv|cut|switch|tak)[a-z]*\b[^.;]*\.?$"
+)
 _NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?=$| (?!x\b|times|rpm|turns?|rounds?|rev|cm|m\b|deg|%))")
 _ITS_OWN = ("start", "stop")
-_NO_OTHERS = frozenset(
-    [
-        "start",
-        "beginning",
-        "fall",
-        "drop",
-        "stop",
-        "end",
-        "speed",
-        "turn",
-        "time",
-        "second",
-        "roll",
-        "walk",
-        "swing",
-        "opening",
-        "motion",
-    ]
-)
+_NO_OTHERS = bag("start beginning fall drop stop end speed turn time second roll walk swing opening motion")
 
 
 MovementOf = Callable[
@@ -91,6 +78,8 @@ def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
     """
     words = in_words(cleaned).split(" ")
     spans = [(a, b) for tag, a, b in marked(words) if tag == TAG and _SAME.search(" ".join(words[a:b]))]
+    if not spans and (found := _STILL.search(said := " ".join(words))) is not None:
+        spans = [(said[: found.start()].count(" ") + 1, len(words))]
     cut = {at for a, b in spans for at in range(a, b)}
     rest = " ".join(word for at, word in enumerate(words) if at not in cut).strip(" ,;:")
     if not spans or len(re.findall(r"[a-z]+", rest)) < _LEAST:
@@ -142,7 +131,8 @@ def _held(op: Fields, kept: Kept, movement: MovementOf) -> Fields:
     elif change == "stop" and "stop" in kept.facts and not _ends(op):
         made = None  # it stops early
     if made is None:
-        raise Refusal("it asks to change just what is to stay as it is", kept.said, verdict="impossible")
+        reason = "it asks to change what it says is to stay as it is; leave one of the two out"
+        raise Refusal(reason, kept.said, verdict="impossible")
     return made
 
 
@@ -152,8 +142,10 @@ def _faster(op: Fields, kept: Kept, moves: Movement | None, stop: float | None) 
         return None
     if kept.facts >= set(_ITS_OWN):
         return op if moves is not None and moves.turns else None
-    if "stop" not in kept.facts or moves is None or moves.turns or stop is None or op.get("when") is not None:
+    if "stop" not in kept.facts or moves is None or moves.turns or stop is None:
         return op
+    if op.get("when") is not None:
+        return None
     lasting = (moves.stop - moves.start) / op["factor"]
     return _at(op, round(stop - lasting, 4), stop) if stop > lasting else None
 

@@ -45,6 +45,8 @@ _NOTATION = tuple(  # of times and rates
             r"\b(?P<what>turns?|rotations?|rev(?:olution)?s?|spins?|rounds?) ?/ ?s(?:ec(?:onds?)?)?\b",
             r"\g<what> per second",
         ),
+        (r"(?<=\bby )\+ ?(?=\d)", "plus "),
+        (r"(?<=\bby )[-−–] ?(?=\d)", "minus "),
         (r"\b(?:in the )?(?:time )?(?:interval|window|range) (?=\[)", ""),
         (
             r"\[ ?(?P<a>\d+(?:\.\d+)?)(?: ?s)? ?(?:,|;|-|–|\.\.+) ?(?P<b>\d+(?:\.\d+)?)(?: ?s)? ?\]",
@@ -53,7 +55,8 @@ _NOTATION = tuple(  # of times and rates
         (r"\bt_?(?:start|begin|0) ?= ?", "from "),
         (r"\bt_?(?:end|stop|1) ?= ?", "to "),
         (
-            r"(?<![\w.:-])(?:from )?(?P<a>\d+\.\d+)(?: ?s)? ?[-–] ?(?P<b>\d+(?:\.\d+)?)(?: ?s)?(?= ?(?:$|[,;!?)]|\.(?!\d)))",
+            r"(?<![\w.:-])(?:from )?(?P<a>\d+\.\d+)(?: ?s)? ?[-–] ?(?P<b>\d+(?:\.\d+)?)(?: ?s)?"
+            r"(?= ?(?:$|[,;!?)]|\.(?!\d)))",
             r"from \g<a> s to \g<b> s",
         ),
     )
@@ -61,9 +64,10 @@ _NOTATION = tuple(  # of times and rates
 
 
 _FROM_ROOM = re.compile(  # which all of it is in
-    r"^(?P<order>(?:please |can you |could you |just )*(?:remove|delete|take|get rid|clear|strike|erase) .+?),? (?:from|out of|in) "
-    r"(?:the|this|my|our) (?:entrance )?(?:hall|hallway|corridor|(?:living |dining |bed ?)?room|kitchen|bedroom|bathroom|office|"
-    r"scene|picture|image|film|video|clip|shot)(?P<end> altogether| for good| please)?[.!?]*$",
+    r"^(?P<order>(?:please |can you |could you |just )*(?:remove|delete|take|get rid|clear|strike|erase) .+?),? "
+    r"(?:from|out of|in) (?:the|this|my|our) (?:entrance )?(?:hall|hallway|corridor|(?:living |dining |bed ?)?room|"
+    r"kitchen|bedroom|bathroom|office|scene|picture|image|film|video|clip|shot)"
+    r"(?P<end> altogether| for good| please)?[.!?]*$",
     re.IGNORECASE,
 )
 

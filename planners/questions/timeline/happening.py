@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -228,6 +229,18 @@ def _starts_open(body: Body, timeline: Timeline) -> bool:
     return bool(apart[0] > apart[1] + 0.02 * timeline.unit)
 
 
+_RATE = 30  # looks a second at which way something goes
+
+
+def _strokes(value: Callable[[F64], F64], span: Span) -> list[Span]:
+    """The parts of a movement in which a value only grows or only falls: a door may close as soon as it is open."""
+    times = np.linspace(*span, max(int((span[1] - span[0]) * _RATE), 1) + 1)
+    ways = np.sign(np.round(np.diff(value(times)), 4))
+    turns = [at for at in range(1, len(ways)) if ways[at] * ways[at - 1] <= 0 and ways[at] != ways[at - 1]]
+    ends = [0, *turns, len(ways)]
+    return [(float(times[a]), float(times[b])) for a, b in pairwise(ends) if ways[a] != 0]
+
+
 def _opening(deed: Deed, body: Body, timeline: Timeline) -> list[Span] | None:
     if not body.moving:
         return None
@@ -242,7 +255,8 @@ def _opening(deed: Deed, body: Body, timeline: Timeline) -> list[Span] | None:
 
     if deed.kind in ("open", "close"):
         sign = 1 if deed.kind == "open" else -1
-        return [(a, b) for a, b in body.moving if sign * float(np.diff(value(np.array([a, b])))[0]) > 0.2]
+        strokes = (stroke for span in body.moving for stroke in _strokes(value, span))
+        return [(a, b) for a, b in strokes if sign * float(np.diff(value(np.array([a, b])))[0]) > 0.2]
     if deed.kind == "is_closed":
         return spans(lambda t: -value(t), times, -AJAR)
     if deed.phase in _SHARES:

@@ -50,7 +50,8 @@ _REMARKS = re.compile(  # what is said of oneself, or of how it is: ", i am afte
 _ASKED_OF = re.compile(r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b")
 _AFTER_IT = re.compile(  # "after that it pops in", "before it goes on"
     r"\b(?:before|after)(?: (?:and|or) (?:before|after))? (?:that|this|then|which)\b|"
-    r"\bbefore (?:it|he|she|they) (?:then |finally )?(?:continues?|goes on|go on|carr(?:y|ies) on|resumes?|moves? on|proceeds?)\b"
+    r"\bbefore (?:it|he|she|they) (?:then |finally )?(?:continues?|goes on|go on|carr(?:y|ies) on|resumes?|moves? on|"
+    r"proceeds?)\b"
 )
 _ARRIVES = re.compile(
     r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?)\b"

@@ -38,8 +38,8 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ("", rf"\bthe (?P<n>{_NUMBER}) second (?:mark|point)\b", r"\g<n> seconds"),
     (
         "in",
-        r"^(?:during|throughout|in|over|for) (?:the|its|his|her) (?P<doing>[a-z]+ing)(?P<way>(?: (?:open|shut|out|back|in|down|away))*) "
-        r"of (?P<who>(?:the|my|our) .+)$",
+        r"^(?:during|throughout|in|over|for) (?:the|its|his|her) (?P<doing>[a-z]+ing)"
+        r"(?P<way>(?: (?:open|shut|out|back|in|down|away))*) of (?P<who>(?:the|my|our) .+)$",
         r"while \g<who> is \g<doing>\g<way>",
     ),
     (

@@ -45,9 +45,9 @@ _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|s
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
 _PROHIBITED = re.compile(
-    r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b|"
-    r"\b(?:nobody|no one|none of us) (?:wants?|needs?|asked|asks|should|may|must|is to|likes?)\b"
+    r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b"
 )
+_UNWANTED = re.compile(r"\b(?:nobody|no one|none of us) (?:wants?|needs?|asked|asks|likes?)\b")
 _OTHER_EDITS = re.compile(
     r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b"
 )
@@ -108,6 +108,8 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
     if _EXCEPT.search(f"{said.text} {said.idle}") or _IN_PIECES.search(f"{said.text} {said.idle}"):
         return  # "everything but the fan", "take it apart"
     if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text):
+        return
+    if _UNWANTED.search(f"{said.idle} {said.text}"):
         return
     if _OTHER_EDITS.search(said.text) and not (kind == "order" and said.listed):
         return
@@ -499,6 +501,7 @@ _FASTER = re.compile(r"\b(?:fast|faster|quick|quicker|quickly|hurry|speed .*up|r
 
 _SAME_SPEED = re.compile(r"\bsame (?:speed|pace|tempo|rate)\b")
 _MOVED_ON = re.compile(r"\b(?:shift|delay|postpone|move|later|earlier|sooner)\b")
+_BE_AT = re.compile(r"\b(?:be|is|been) (?:\w+ ){0,2}?(?:at|by|in|on|there|home|done|finished|through)\b")
 _TAKES = re.compile(
     r"\b(?:takes?|taking|lasts?|needs?|stretch(?:ed)?|spread|drag(?:ged)?|spends?|within|over|to|whole|full|in) "
     rf"(?:just |only |about |a |the )*{DURATION}"
@@ -581,6 +584,14 @@ def _duration(said: Said) -> Iterator[Wish]:
     moment = said.moment
     if _is_of_a_part(said):
         return
+    if (
+        isinstance(moment.start, float)
+        and moment.stop is None
+        and moment.lasting is None
+        and _BE_AT.search(said.beside)
+    ):
+        moment = replace(moment, start=None, stop=moment.start)  # "it has to be at the bed at 2 s"
+        said = replace(said, moment=moment)
     done = isinstance(moment.stop, float) and moment.start is None and moment.lasting is None
     if done and _MOVED_ON.search(said.text) is None:
         yield Wish(pace(said.whose, "begin"), _plainly(said), things=1 + len(said.goals))
@@ -651,10 +662,7 @@ def _halt(said: Said) -> Iterator[Wish]:
     if said.told and moment.lasting is None and (moment.stop in (None, "end") or waits):
         yield Wish(pace(said.whose, "stop"), _plainly(said))
     elif not said.told and (half := _HALF_DONE.search(said.beside)) is not None:
-        if is_opened(said.things[0]):
-            yield Wish(f"open {said.things[0]} only halfway", Moment(), holds=half[0])
-        else:
-            yield Wish(replace(pace(said.whose, "stop"), during=_HALFWAY), Moment(), holds=half[0])
+        yield Wish(replace(pace(said.whose, "stop"), during=_HALFWAY), Moment(), holds=half[0])
 
 
 _KEPT_ONLY = re.compile(r"(?:please |just )*(?:keep|leave|put|have) \|(?: please)?")  # it, and not its motion

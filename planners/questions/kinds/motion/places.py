@@ -165,6 +165,8 @@ def _place(told: Told, body: Body, time: float) -> tuple[str, str, tuple[int, ..
     """Where a body is at a time: as an answer, as a sentence, and the ids of it and of what it is on."""
     assert body.thing is not None
     survey = told.timeline.survey_at(time)
+    if body.thing.id not in survey.stage.ids:
+        raise Untold(f"{cap(body.name)} is not to be seen at {at(time)}.")
     thing = survey.thing(body.thing.id)
     place, rest = place_of(thing, survey)
     sheet = _sheet_under(body, time, told)

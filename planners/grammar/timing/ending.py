@@ -1,0 +1,48 @@
+"""An end that is to be earlier or later than it is: "the fan stops two seconds earlier than now".
+
+Only the scene tells when that is. What turns round and round stops then, or goes on until then; what goes somewhere is
+there then, at another speed, or stops on its way if that is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from ....gaussians import late_re as re
+from ....gaussians.language.query.query import Query
+from ....tools.when import When
+from ...plan import Movement
+from .command import Fields
+
+_ENDS = re.compile(
+    r"\b(?:stop(?:s|ping)?|halt\w*|finish\w*|end(?:s|ing)?|arriv\w+|be there|(?:switch|turn|cut|go)\w* (?:off|out)|"
+    r"come\w* to (?:a |its )?(?:stop|halt|rest|standstill))\b"
+)
+_STARTS = re.compile(r"\b(?:start\w*|begin\w*|set\w* off|leav\w+|clos\w+|shut\w*|open\w*|back|fall\w*|drop\w*)\b")
+_STOPS = re.compile(r"\b(?:stop|halt|standstill|rest|off)")
+_SHORTEST = 0.05  # seconds of a movement
+
+
+def with_end(said: str, ops: Sequence[Fields], movement: Callable[[Query], Movement | None]) -> tuple[Fields, ...]:
+    """Operations that move a whole movement in time, as ones that move its end, if that is what is said.
+
+    Args:
+        said: the instruction, in lower case.
+        movement: how things move in the scene.
+    """
+    shifts = len(ops) == 1 and ops[0]["op"] == "pace" and ops[0].get("change") == "later" and ops[0].get("when") is None
+    if not shifts or _STARTS.search(said) or not _ENDS.search(said):
+        return tuple(ops)
+    op = ops[0]
+    moves = movement(op["target"])
+    if moves is None:
+        return tuple(ops)
+    stop = round(moves.stop + op["seconds"], 4)
+    if stop < moves.start + _SHORTEST:
+        return tuple(ops)
+    made: Fields = {"op": "pace", "target": op["target"]}
+    if op["seconds"] < 0 and (moves.turns or _STOPS.search(said)):
+        return ({**made, "change": "stop", "when": When(start=stop)},)
+    if moves.turns:
+        return ({**made, "change": "go_on", "when": When(stop=stop)},)
+    return ({**made, "change": "begin", "when": When(start=round(moves.start, 4), stop=stop)},)
