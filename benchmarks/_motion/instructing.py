@@ -329,7 +329,7 @@ def _reaching(expect: dict[str, Any], course: Course, earlier: Course, spans: li
         if abs(far / expect["distance_m"] - 1) > 0.15:
             return f"it moves by {far:.2f} m"
     for key in ("toward", "at_end"):
-        if expect.get(key) in (None, "up", "open"):
+        if expect.get(key) in (None, "up", "open", "left", "right"):
             continue
         pair = events.Encounter.of(effect.after, course.group, [effect.group(expect[key])])
         first, gap = (float(g) for g in pair.gaps(np.array([0.0, effect.end])))

@@ -221,6 +221,8 @@ def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _
         return _guessed(supposed)
     if (supposed := judge.timed(cleaned, outcome.ops)) is not None:
         return _guessed(supposed)
+    if (fuller := judge.fuller(cleaned, outcome.ops)) is not None:
+        return _guessed(fuller)
     if judge.is_still(outcome.ops) and (supposed := judge.supposed(cleaned)) and not judge.is_still(supposed):
         return _guessed(supposed)
     if judge.is_about_another(cleaned, outcome.ops):

@@ -125,6 +125,10 @@ _EVENT_OVER = re.compile(
     r"^(?:the|its|his|her) (?:motion|movement|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|spin)"
     r"(?: of (?P<who>.+?))? (?:is|has) (?:over|done|ended|finished|completed?)$"
 )
+_TURN_DONE = re.compile(
+    r"(?: (?:is|has|are|have|gets)|'s) (?:all )?(?:done|finished|through|over|completed) (?:with )?(?:its|his|her|the) "
+    r"(?:left |right )?turn(?:ing)?$"
+)
 _IS_SHUT = re.compile(  # which is no closing
     r"^(?P<who>.+?) (?:is|are|'s|stays?|remains?|stands?|sits?|lies?) (?:(?:still|fully|completely|all) )*"
     r"(?:closed|shut)$"
@@ -157,6 +161,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     if _PEOPLE.match(said) or _A_LEG.match(said):
         return None
     said = _WHOLLY.sub("fully", said)
+    said = _TURN_DONE.sub(" has turned", said)
     said = _USUALLY.sub(" ", _UNDER_WAY.sub(" is moving", _DONE.sub("has stopped", said)))
     said = _AT_REST.sub(" has stopped", said)
     said = _HAS_HIT.sub(r" has \g<done>", _IS_BACK.sub(" has stopped", _IS_THERE.sub(" has stopped", said)))

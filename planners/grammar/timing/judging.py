@@ -16,7 +16,7 @@ from ....tools.registry import OPS
 from ....tools.when import When
 from ..parsing import Refusal
 from ..tagging.words import bag
-from ..vocabulary.nouns import is_known
+from ..vocabulary.nouns import is_known, is_opened
 from . import happenings, moments
 from .command import Command, Fields
 from .happenings import IT, Happening
@@ -134,7 +134,9 @@ class Judge:
             return False
         if ops[0]["op"] == "delete" and ops[0].get("when") is not None and _SWITCHED_OFF.search(cleaned):
             return _RIDS.search(cleaned) is None
-        told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned)
+        if ops[0]["op"] == "spin" and is_opened(ops[0]["target"].text):
+            return True  # a door turns on its hinge only
+        told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned) or ops[0].get("when")
         op, change = str(ops[0]["op"]), ops[0].get("change")
         kind, chance = next(iter(likely(cleaned)), ("", 0.0))
         if (
@@ -224,6 +226,17 @@ class Judge:
         found = self.supposed(cleaned)
         return found if found and all(op.get("when") is not None for op in found) else None
 
+    def fuller(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
+        """What an instruction most likely asks for, if that is the same at a time that more of its words tell: "vanish
+        the moment the door moves, and be back at 4 s"; None for others."""
+        if len(ops) != 1 or ops[0].get("when") is None:
+            return None
+        found = self.supposed(cleaned)
+        if found is None or len(found) != 1 or found[0]["op"] != ops[0]["op"] or found[0].get("when") is None:
+            return None
+        same = found[0].get("target") == ops[0].get("target") and found[0].get("change") == ops[0].get("change")
+        return found if same and _ends_told(found[0]["when"]) > _ends_told(ops[0]["when"]) else None
+
     def contradicts(self, cleaned: str, ops: Sequence[Fields]) -> bool:
         """Whether operations leave out a number or a later colour of an instruction, or change what is there once and
         for all where its words most likely ask for another course of a motion: "set off at 1 s" deletes nothing."""
@@ -245,6 +258,11 @@ class Judge:
             return False
         spans = (words[start:stop] for tag, start, stop in marked(words) if tag in TIMES)
         return any(CLAUSE.match(" ".join(said)) and any(map(is_known, said)) for said in spans)
+
+
+def _ends_told(when: When) -> int:
+    """How much a time tells of when it begins and ends."""
+    return sum(end is not None for end in (when.start, when.stop, when.lasting, when.during, when.until))
 
 
 def _with_delay(rest: str, moment: Moment, happening: Happening | None) -> tuple[str, Moment, Happening | None]:

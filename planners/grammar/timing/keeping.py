@@ -40,9 +40,11 @@ _SUBJECTS = {  # what stays, and the words for it
     r"cycle time|turns? a second",
 }
 _SAID = {name: re.compile(rf"\b(?:{words})\b") for name, words in _SUBJECTS.items()}
-_STILL = re.compile(  # "..., but it should still stop at four seconds"
-    r" (?:, )?(?:and |but |; )*(?:(?:it|he|she|they) )?(?:(?:should|must|has to|is to|needs to|to) )*still (?:to )?"
-    r"(?:stop|start|begin|end|finish|kick|set|leav|arriv|cut|switch|tak)[a-z]*\b[^.;]*\.?$"
+_STILL = re.compile(  # "..., but it should still stop at four seconds", "? It should still be off at 4 s"
+    r" (?:[,.?;!] )?(?:and |but )*(?:(?:it|he|she|they) )?(?:(?:should|must|has to|is to|needs to|to) )*"
+    r"still (?:has to )?"
+    r"(?:to )?(?:be (?:off|over|done|there)|(?:stop|start|begin|end|finish|kick|set|leav|arriv|cut|switch|tak)[a-z]*)"
+    r"\b[^.;]*\.?$"
 )
 _NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?=$| (?!x\b|times|rpm|turns?|rounds?|rev|cm|m\b|deg|%))")
 _ITS_OWN = ("start", "stop")

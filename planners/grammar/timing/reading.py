@@ -419,6 +419,10 @@ class TimeReader:
             happening = replace(happening, during=happening.during.model_copy(update={"part": "from"}))
         if kind == "look" and happening is not None and moment.start is None and _is_half_the_film(happening):
             moment, happening = replace(moment, start="middle"), None
+        ends = moment.stop not in (None, "end") or moment.lasting is not None
+        ends |= happening is not None and happening.during.part in ("while", "until", "until_end", "unless")
+        if ends and ops and all(op["op"] == "delete" for op in ops):  # gone for a time: what stands on it stays there
+            ops = [{"op": "opacity", "target": op["target"], "value": 0.0} for op in ops]
         stops = bool(ops) and all(op.get("change") == "stop" for op in ops)
         if happening is None and stops and moment.start == "middle" and any(map(_HALF_ITS_WAY.fullmatch, moment.said)):
             happening = Happening(During(state="halfway", part="from"), "")
@@ -461,7 +465,7 @@ class TimeReader:
                 if happening.from_start:
                     during, until = None, during
                 ends = all(isinstance(end, float) for end in (moment.start, moment.stop))
-                exact = ends or any(map(_AT_A_TIME.match, moment.said))
+                exact = moment.start is not None and (ends or any(map(_AT_A_TIME.match, moment.said)))
                 if during is not None and during.part in ("from", "after") and exact:
                     during = None  # "once it has opened, shut it at 3 s" is no 3 s later
                 op = {**op, **({"target": target} if target is not None else {})}
