@@ -47,6 +47,10 @@ _NOTATION = tuple(  # of times and rates
         ),
         (r"(?<=\bby )\+ ?(?=\d)", "plus "),
         (r"(?<=\bby )[-−–] ?(?=\d)", "minus "),
+        (
+            r"(?P<what>\b(?:turns?|rotations?|revolutions?|spins?|rounds?|times)) (?P<each>an?|per|each|every) sec\b",
+            r"\g<what> \g<each> second",
+        ),
         (r"\b(?:in the )?(?:time )?(?:interval|window|range) (?=\[)", ""),
         (
             r"\[ ?(?P<a>\d+(?:\.\d+)?)(?: ?s)? ?(?:,|;|-|–|\.\.+) ?(?P<b>\d+(?:\.\d+)?)(?: ?s)? ?\]",

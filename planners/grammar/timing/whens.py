@@ -86,6 +86,8 @@ def of_one_movement(said: str, ops: Sequence[Fields]) -> tuple[Fields, ...]:
         return tuple(ops)
     said = HELD_BACK.sub(" ", said)
     opens, closes = _OPENS.search(said) is not None, _CLOSES.search(said) is not None
+    if opens and closes:  # "it hangs open for too long, it has to slide shut a second earlier"
+        opens, closes = _OPENS_LATER.search(said) is not None, _CLOSES_LATER.search(said) is not None
     if len(ops) != 1 or opens == closes or not _is_paced(ops[0]):
         return tuple(ops)
     when = ops[0].get("when") or When()
@@ -112,6 +114,12 @@ HELD_BACK = re.compile(
 _OPENS = re.compile(r"\b(?:open(?:s|ing)?|out)\b")
 _CLOSES = re.compile(
     r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back(?: in)?|(?:go|goes|slides?|comes?|going|sliding) in)\b"
+)
+_THEN_LATER = r"(?: (?!and\b|,|\.)\S+){0,6}? (?:earlier|sooner|later)\b"
+_OPENS_LATER = re.compile(rf"{_OPENS.pattern}{_THEN_LATER}")
+_CLOSES_LATER = re.compile(
+    rf"{_CLOSES.pattern}{_THEN_LATER}|"
+    r"\b(?:hold|keep|stay|stays|leave|remain|remains|hang|hangs)(?: \S+){0,4}? (?:open|out)(?: \S+){0,6}? longer\b"
 )
 _FLIPPED: dict[Part, Part] = {
     "from": "until", "after": "until_end", "until": "from", "until_end": "after", "while": "unless", "unless": "while",

@@ -33,7 +33,17 @@ def test_the_library_stands_in(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert _run("a red armchair", "-o", out, "--model", "library") == 2  # never overwritten unasked
 
 
-@pytest.mark.parametrize("wrong", [("--steps", 3, "--minutes", 1), ("--height", 0), ("--height", "nan")])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        ("--steps", 3, "--minutes", 1),
+        ("--height", 0),
+        ("--height", "nan"),
+        ("--guidance", "nan"),
+        ("--from", "sphere"),
+        ("--image", "none.png"),
+    ],
+)
 def test_options_that_make_no_sense(tmp_path: Path, wrong: tuple[object, ...]) -> None:
     assert _run("a chair", "-o", tmp_path / "chair.ply", "--model", "library", *wrong) == 2
     assert not list(tmp_path.iterdir())

@@ -74,6 +74,18 @@ def test_a_dream_through_a_pipeline(pipelines: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
+def test_a_photograph_is_seen_upright(pipelines: Path, tmp_path: Path) -> None:
+    shown = Image.fromarray(np.random.default_rng(0).integers(0, 255, (8, 12, 3), dtype=np.uint8))
+    shown.save(tmp_path / "upright.png")
+    tag = shown.getexif()
+    tag[0x0112] = 6  # turned by a quarter, as a phone writes it
+    shown.transpose(Image.Transpose.ROTATE_90).save(tmp_path / "turned.png", exif=tag)
+    spec = f"diffusers:{pipelines / 'picture'}"
+    names = {load(spec, "", tmp_path / f"{name}.png", 3.0).name for name in ("upright", "turned")}
+    assert len(names) == 1  # the digest of what is shown is a part of it
+
+
 def test_pipelines_that_do_not_fit_are_named(pipelines: Path) -> None:
     with pytest.raises(BackendError, match="StableDiffusionPipeline"):
         load(f"diffusers:{pipelines / 'picture'}", "a red chair")

@@ -16,8 +16,8 @@ from scenewright.gaussians.dream import dreaming
 from scenewright.gaussians.dream.dreaming import Settings, dream
 from scenewright.gaussians.dream.prior import kind_of, library_thing, standing, start_for
 from scenewright.gaussians.dream.start import form, sphere
-from scenewright.gaussians.dream.views import view
-from scenewright.gaussians.errors import FileError, UserError
+from scenewright.gaussians.dream.views import Asked, view
+from scenewright.gaussians.errors import BackendError, FileError, UserError
 from scenewright.gaussians.harmonics import color_to_dc
 from scenewright.gaussians.render import render
 
@@ -87,6 +87,18 @@ def test_the_same_seed_gives_the_same_bytes_also_after_an_interruption(
     kept.write_bytes(b"torn")
     with pytest.raises(FileError, match="delete it"):
         dream(Knowing(target, SIDE), start, settings, checkpoint_path=kept)
+
+
+class _Silent(Knowing):
+    """A model whose weights are damaged."""
+
+    def noise(self, noisy: torch.Tensor, step: int, asked: Asked) -> torch.Tensor:
+        return torch.full_like(noisy, torch.nan)
+
+
+def test_a_model_without_finite_numbers_ends_the_dream() -> None:
+    with pytest.raises(BackendError, match="no finite numbers"):
+        dream(_Silent(_target(), SIDE), sphere(np.random.default_rng(0), 100), SETTINGS)
 
 
 def test_a_form_keeps_its_place_and_becomes_paler() -> None:

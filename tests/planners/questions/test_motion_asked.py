@@ -195,3 +195,15 @@ def test_a_static_scene_says_that_nothing_moves() -> None:
         given = still.ask(text)
         assert given.answer is None and given.text == "Nothing moves in this scene.", text
     assert still.ask("what colour is the ball?").answer == "red"
+
+
+def test_what_is_hidden_then_has_no_place() -> None:
+    session = Session(moving())
+    session.do("hide the ball from 3.2 s on")
+    answer = session.ask("where is the ball at 3.5 s?")
+    assert not answer.answer and "not to be seen" in answer.text
+
+
+@pytest.mark.parametrize("text", ["", "?", "..."])
+def test_a_question_without_words_is_not_understood(text: str) -> None:
+    assert "not understood" in Session(moving()).ask(text).text

@@ -15,7 +15,7 @@ from scenewright.gaussians.errors import InstructionError, UserError
 from scenewright.gaussians.motion.at import at
 from scenewright.gaussians.motion.courses import course_of
 from scenewright.gaussians.motion.events import movements
-from scenewright.gaussians.motion.motion import Motion, Track, moving_ids
+from scenewright.gaussians.motion.motion import Motion, Residual, Track, moving_ids
 from scenewright.gaussians.scene import Scene
 from scenewright.tools.execute import Done, carry_out
 from scenewright.tools.judging.changes import changes_between
@@ -339,6 +339,46 @@ def test_what_turns_and_then_rests_turns_at_the_rate_that_is_said(corner: Scene,
     made = done(scene, {"op": "spin", "target": A_CHAIR, "turns_per_second": 2}, context).scene.motion
     assert made is not None and made.tracks[0].angles is not None
     np.testing.assert_allclose(made.tracks[0].angles / (2 * math.pi), [0, 8, 8], atol=1e-6)
+
+
+def _turning(corner: Scene) -> Scene:
+    """The corner, in which the chair turns once a second until 4 s and rests until 5 s."""
+    ids = corner.cloud.ids[corner.cloud.group == CHAIR].numpy()
+    angles = (0.0, 8 * math.pi, 8 * math.pi)
+    track = Track.hinge(ids, (0.0, 4.0, 5.0), angles, (0, 0, 1), middle(corner, 0.0), smooth=False)
+    return corner.replace(motion=Motion((track,), (), (), 0.0, 5.0))
+
+
+@pytest.mark.parametrize(
+    ("when", "span"), [(None, (0.0, 5.0)), ({"stop": 2}, (0.0, 2.0)), ({"start": 1, "stop": 3}, (1.0, 3.0))]
+)
+def test_what_turns_already_turns_at_the_time_that_is_said(
+    corner: Scene, context: Context, when: Json | None, span: tuple[float, float]
+) -> None:
+    data = {"op": "spin", "target": A_CHAIR} | ({"when": when} if when else {})
+    made = done(_turning(corner), data, context).scene
+    assert movements(course_of(made, CHAIR)) == [pytest.approx(span, abs=0.02)]
+    assert made.motion is not None
+    (track,) = made.motion.tracks
+    at_first, later = angles_at(track, np.array([span[0], span[0] + 0.25]))
+    assert later - at_first == pytest.approx(math.pi / 2)  # still once a second
+
+
+def test_going_there_and_back_makes_a_short_scene_longer(moving: Scene, context: Context) -> None:
+    made = done(moving, {"op": "pace", "target": A_CHAIR, "change": "back_and_forth"}, context).scene
+    assert made.motion is not None and made.motion.stop == pytest.approx(5.0)  # it goes from 1 to 3 s
+    assert np.allclose(middle(made, 5.0), middle(moving, 0.0), atol=1e-4)
+
+
+def test_the_time_of_what_moves_point_by_point_is_not_changed(moving: Scene, context: Context) -> None:
+    ids = moving.cloud.ids[moving.cloud.group == VASE].numpy()
+    weights = np.full((len(ids), 1, 3), 0.01, np.float32)
+    residual = Residual(ids, np.array([0.0, 4.0]), np.array([[0.0], [1.0]]), weights)
+    assert moving.motion is not None
+    scene = moving.replace(motion=replace(moving.motion, residuals=(residual,)))
+    with pytest.raises(InstructionError, match="point by point"):
+        done(scene, {"op": "pace", "target": {"groups": [VASE]}, "change": "reverse"}, context)
+    done(scene, {"op": "pace", "target": A_CHAIR, "change": "reverse"}, context)
 
 
 def test_what_spins_turns_about_itself_as_often_as_was_said(corner: Scene, context: Context) -> None:
