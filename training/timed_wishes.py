@@ -2,9 +2,9 @@
 
     python -m scenewright.training.timed_wishes
 
-Reads `timed_wishes.tsv` (writers 1 to 10, 29, 30 and 32 knew the kinds and wrote about any films, the others about six
-rooms), tells how often the sentences of a writer are told right by what the others wrote, and writes the weights of
-`planners/grammar/timing/supposed/`.
+Reads `timed_wishes.tsv` (writers 1 to 10, 29, 30, 32 and 70 to 73 knew the kinds and wrote about any films, too, the
+others about six rooms), tells how often the sentences of a writer are told right by what the others wrote, and writes
+the weights of `planners/grammar/timing/supposed/`.
 """
 
 from __future__ import annotations

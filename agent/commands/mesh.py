@@ -62,6 +62,8 @@ def command(
     refuse_existing([output], force)
     session, _ = open_session(SessionOptions(scene, encoder=encoder, up=up, metres_per_unit=metres_per_unit))
     chosen = None if select is None else _chosen(session.select(select))
+    if chosen is not None and chosen.verdict == "unconfirmed":
+        terminal.say(f"note: {select!r} is not confirmed: {chosen.reason}; look at it before you use it")
     made = mesh(
         session.scene, None if chosen is None else chosen.ids, faces=faces, texture=texture, watertight=watertight,
         cells=cells, in_place=in_place, name=select or scene.stem, progress=terminal.progress,
@@ -70,6 +72,8 @@ def command(
     terminal.clear()
     if faces is not None and len(made.faces) > faces:
         terminal.say(f"note: {len(made.faces):,} triangles are the fewest that keep its pieces closed")
+    if session.scene.frame.up_source == "unknown":
+        terminal.say("note: which way is up is unknown; the third axis of the scene is taken for it (--up)")
     if session.scene.frame.metres_per_unit is None:
         terminal.say("note: the scene's scale is unknown; one of its units is written as a metre (--metres-per-unit)")
     data = _data(made, output, chosen) | {"seconds": round(time.perf_counter() - started, 2)}

@@ -184,3 +184,17 @@ def test_how_far_something_turns(text: str, amount: dict[str, float]) -> None:
 def test_as_fast_is_no_slower() -> None:
     (op,) = planned("The robot feels slow to our testers, so please make it one and a half times as fast.")
     assert op["factor"] == 1.5
+
+
+@pytest.mark.parametrize(
+    ("text", "metres"), [("stop the ball after two metres", 2.0), ("halt the ball after 1.5 m", 1.5)]
+)
+def test_what_stops_after_a_length_goes_so_far(text: str, metres: float) -> None:
+    (op,) = planned(text)
+    assert (op["change"], op["distance"]["value"]) == ("part", metres)
+
+
+def test_two_sentences_have_two_times() -> None:
+    first, second = planned("hide the bed at 1 s. Hide the shelf at 2 s.")
+    assert (first["when"], second["when"]) == ({"start": 1.0}, {"start": 2.0})
+    assert second["target"]["text"] == "shelf"

@@ -103,6 +103,12 @@ RESTATED: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ..
     # what people write, and the same in words that the readers know
     (re.compile(pattern), plain)
     for pattern, plain in (
+        (
+            r"^(?:stop|halt|freeze|park) (?P<np>.+?) (?:after|at) (?:(?:it|he|she) has (?:gone|rolled|moved|walked) )?"
+            r"(?P<far>(?:\d+(?:\.\d+)?|half an?|an?|one|two|three|four|five|ten|twenty|thirty|forty|fifty) ?"
+            r"(?:m|cm|met(?:re|er)s?|centimet(?:re|er)s?))$",
+            r"let \g<np> only move \g<far>",
+        ),
         (r"(?<=\d) ?= ?", " "), (r"(?: [.!?])+$", ""), (r" ?[!?] ?", " . "), (r"^(?P<x>[\w'.= ]+?) : ", r"\g<x> "),
         (r"\bits (?=(?:fully|completely|wide|all the way|halfway|on|in|under|at|near|next|behind|still|not|over|off|"
          r"open|closed|\w+ing)\b)", "it is "),

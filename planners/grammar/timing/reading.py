@@ -366,6 +366,8 @@ class TimeReader:
         """The operations of a command with its time; None if it cannot be that."""
         ops, kind = list(command.ops), command.kind
         if command.text:
+            if _A_TIME_LEFT.search(command.text):
+                return None  # "hide the bed at 1 s . hide the shelf at 2 s" has two
             ops = list(self._understand(command.text.replace("rightwards", "to the right")))
             ways = all(op["op"] in ("move", "rotate") for op in ops)
             if len(ops) > 1 and _AFTERWARDS.search(command.text):
@@ -566,6 +568,7 @@ _PART_OF_TIME = re.compile(r"\b(?:start|beginning|speed|motion|movement) of\b")
 _AT_A_TIME = re.compile(r"at (?!once\b)")
 _FROM_A_TIME = re.compile(r"(?:at (?!once\b)|from|starting|beginning|halfway|midway)")
 _OF_A_WAY = bag("it he she they its his her their is has gone down up across along there")
+_A_TIME_LEFT = re.compile(r"\b(?:at|from|until|till|between|to|before|after) \d+(?:\.\d+)? ?(?:s|secs?|seconds?)\b")
 _AGAIN = re.compile(r"\b(?:again|back|as (?:before|usual|normal|ever)|like before)\b")
 _NOT_SEEN = re.compile(r"\b(?:not|never) (?:ever )?(?:see|be seen)\b")
 _COMES_BACK = re.compile(r"\b(?:back|returns?|comes?|again|normal|reappears?|appears?|shows?)\b")
