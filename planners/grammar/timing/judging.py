@@ -262,7 +262,7 @@ class Judge:
 
 def _ends_told(when: When) -> int:
     """How much a time tells of when it begins and ends."""
-    return sum(end is not None for end in (when.start, when.stop, when.lasting, when.during, when.until))
+    return sum(end not in (None, 0.0) for end in (when.start, when.stop, when.lasting, when.during, when.until))
 
 
 def _with_delay(rest: str, moment: Moment, happening: Happening | None) -> tuple[str, Moment, Happening | None]:

@@ -517,8 +517,10 @@ def _begin(said: Said) -> Iterator[Wish]:
     if _is_of_a_part(said):
         return
     moment, sign = said.moment, _sign(said.text)
+    by = any(words.startswith("by ") for words in moment.said)
+    if by and sign is None and _MOVED_ON.search(said.text):
+        return  # "shift it by 1 s" tells not which way
     if sign is not None:
-        by = any(words.startswith("by ") for words in moment.said)
         if by and isinstance(moment.stop, float) and moment.start is None:  # "delay it by one second"
             yield Wish(pace(said.whose, "later", seconds=sign * moment.stop), Moment(), spent=moment.stop)
         for seconds, words in _durations(said.text):
