@@ -158,7 +158,7 @@ _NEXT = ("touching", "in contact with", "resting against")
 
 def clause_of(word: str, said: str, thing: Thing) -> During | None:
     """What a clause behind a conjunction tells of; None if the whole of it is not understood."""
-    if _PEOPLE.match(said) or _A_LEG.match(said):
+    if _PEOPLE.match(said) or _A_LEG.match(said) or " , then " in said:
         return None
     said = _WHOLLY.sub("fully", said)
     said = _TURN_DONE.sub(" has turned", said)
@@ -196,6 +196,12 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
             part = _part(word, course)
             if state == "open" and not clause.negated and re.fullmatch(_AFTER, word):
                 state = "fully_open"
+            if (
+                (state, part) == ("open", "unless")
+                and re.fullmatch(_ONCE, word)
+                and (word != "when" or _AGAIN.search(said))
+            ):
+                state, part = "closing", "after"  # "as soon as the top drawer is in again"
             if clause.negated:
                 part = {"while": "unless", "from": "after", "until": "after"}.get(part, part)  # type: ignore[assignment]
             return During(state=state, anchors=anchors, of=clause.target, part=part)
@@ -329,6 +335,7 @@ def _part(word: str, course: _Course) -> Part:
     return course.through
 
 
+_AGAIN = re.compile(r"\b(?:again|back)\b")
 _FROM_THEN = re.compile(r"from |the (?:very |exact )?(?:moment|instant|second)")
 _ONE_OF = re.compile(
     r"^(?:the )?(?P<rank>first|last)(?: one)? of (?:the|those|these|all|all the)(?: two| three| four)? "

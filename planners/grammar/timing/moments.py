@@ -253,7 +253,7 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
         _at_once,
     ),
     (
-        r"(?P<a>halfway) (?:through|in)(?! (?:its|his|her|their|the [a-z]+ing)\b)"
+        r"(?P<a>halfway) (?:through|in)(?! (?:its|his|her|their|(?:the )?[a-z]+ing)\b)"
         r"(?: (?:it|the (?:clip|scene|film|video|animation)))?",
         _start,
     ),

@@ -53,6 +53,7 @@ _AFTER_IT = re.compile(  # "after that it pops in", "before it goes on"
     r"\bbefore (?:it|he|she|they) (?:then |finally )?(?:continues?|goes on|go on|carr(?:y|ies) on|resumes?|moves? on|"
     r"proceeds?)\b"
 )
+_IS_THERE = re.compile(r"\b(?:be|is|gets?|been|arriv\w+) there$")
 _ARRIVES = re.compile(
     r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?)\b"
 )
@@ -86,11 +87,9 @@ def divided(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[
             tag, skipped = "to", [*skipped, (gone, start)]
         if tag == "from" and UNTIL.match(phrase):
             tag = "to"
-        if (
-            tag == "from"
-            and isinstance(moment.start, float)
-            and _ARRIVES.search(" ".join(words[max(0, start - 4) : start]))
-        ):
+        before = " ".join(words[max(0, start - 4) : start])
+        begins = isinstance(moment.start, float)
+        if tag == "from" and (_IS_THERE.search(before) or (begins and _ARRIVES.search(before))):
             tag = "to"  # "leaving at 3 s and in position at 4.5 s"
         if tag in ("from", "to") and LASTS.match(phrase):
             tag = "for"
