@@ -247,11 +247,9 @@ def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list
     if closes and start < expect["start"] - _near(expect):
         return f"it closes at {start:.2f} s"
     returns = expect.get("distance_m") is not None and expect["kind"] == "articulate"
-    stops = (
-        (spans[0][1], spans[-1][1]) if returns else (spans[-1][1],)
-    )  # a drawer may be told until it is out, or back in
+    stops = {spans[0][1], spans[-1][1]} if returns else {spans[-1][1]}  # until it is out, or back in
     if expect.get("stop") is not None and min(abs(stop - expect["stop"]) for stop in stops) > _near(expect):
-        return f"it ends at {stops[0]:.2f} s"
+        return f"it ends at {min(stops):.2f} s"
     if "starts_after_s" in expect and start < expect["starts_after_s"]:
         return f"it begins at {start:.2f} s"
     later = closes or (expect["kind"] == "path" and start > spans[0][0])  # it goes on from another movement

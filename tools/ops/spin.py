@@ -153,10 +153,9 @@ class Spin(TargetedOp):
             last = int(np.flatnonzero(np.diff(old.angles))[-1]) + 2  # what rests in the end goes on
             return replace(old, kind="spin", times=old.times[:last], angles=old.angles[:last], smooth=False)
         if math.isinf(stop):
-            return replace(Track.spin(old.ids, rate, old.axis, old.pivot, begin), name=old.name)
+            return Track.spin(old.ids, rate, old.axis, old.pivot, begin, name=old.name)
         angle = 2 * math.pi * rate * (stop - begin)
-        only = Track.hinge(old.ids, (begin, stop), (0.0, angle), old.axis, old.pivot, smooth=False)
-        return replace(only, name=old.name)
+        return Track.hinge(old.ids, (begin, stop), (0.0, angle), old.axis, old.pivot, smooth=False, name=old.name)
 
     def _meanwhile(self, old: Track, begin: float, stop: float) -> Track:
         """What turns already, at another rate from `begin` to `stop`, and before and after that as ever."""

@@ -22,8 +22,10 @@ _STARTS = re.compile(r"\b(?:start\w*|begin\w*|set\w* off|leav\w+|clos\w+|shut\w*
 _STOPS = re.compile(r"\b(?:stop|halt|standstill|rest|off)")
 _SHORTEST = 0.05  # seconds of a movement
 
+MovementOf = Callable[[Query], Movement | None]  # how what a query names moves; None if it does not, or if unknown
 
-def with_end(said: str, ops: Sequence[Fields], movement: Callable[[Query], Movement | None]) -> tuple[Fields, ...]:
+
+def with_end(said: str, ops: Sequence[Fields], movement: MovementOf) -> tuple[Fields, ...]:
     """Operations that move a whole movement in time, as ones that move its end, if that is what is said.
 
     Args:
@@ -40,9 +42,14 @@ def with_end(said: str, ops: Sequence[Fields], movement: Callable[[Query], Movem
     stop = round(moves.stop + op["seconds"], 4)
     if stop < moves.start + _SHORTEST:
         return tuple(ops)
-    made: Fields = {"op": "pace", "target": op["target"]}
+    made = {"op": "pace", "target": op["target"]}
     if op["seconds"] < 0 and (moves.turns or _STOPS.search(said)):
         return ({**made, "change": "stop", "when": When(start=stop)},)
     if moves.turns:
         return ({**made, "change": "go_on", "when": When(stop=stop)},)
-    return ({**made, "change": "begin", "when": When(start=round(moves.start, 4), stop=stop)},)
+    return (between(op, round(moves.start, 4), stop),)
+
+
+def between(op: Fields, start: float, stop: float) -> Fields:
+    """An operation on a movement as one that gives it another beginning and end."""
+    return {"op": "pace", "target": op["target"], "change": "begin", "when": When(start=start, stop=stop)}

@@ -203,7 +203,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
             ):
                 state, part = "closing", "after"  # "as soon as the top drawer is in again"
             if clause.negated:
-                part = {"while": "unless", "from": "after", "until": "after"}.get(part, part)  # type: ignore[assignment]
+                part = _NEGATED.get(part, part)
             return During(state=state, anchors=anchors, of=clause.target, part=part)
     return _touching(word, said, who) or _noun_event(word, said, who)
 
@@ -301,7 +301,7 @@ def _touching(word: str, said: str, who: Thing) -> During | None:
             course = _LASTS
         part = _part(word, course)
         if clause.negated:
-            part = {"while": "unless", "from": "after", "until": "after"}.get(part, part)  # type: ignore[assignment]
+            part = _NEGATED.get(part, part)
         return During(state=state, anchors=(whom,), of=clause.target, part=part)
     return None
 
@@ -336,6 +336,7 @@ def _part(word: str, course: _Course) -> Part:
 
 
 _AGAIN = re.compile(r"\b(?:again|back)\b")
+_NEGATED: dict[Part, Part] = {"while": "unless", "from": "after", "until": "after"}  # "once it is not turning"
 _FROM_THEN = re.compile(r"from |the (?:very |exact )?(?:moment|instant|second)")
 _ONE_OF = re.compile(
     r"^(?:the )?(?P<rank>first|last)(?: one)? of (?:the|those|these|all|all the)(?: two| three| four)? "

@@ -6,17 +6,17 @@ so anyway nothing changes, where the plan can be made so it is, and what contrad
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ....gaussians import late_re as re
-from ....gaussians.language.query.query import Query
 from ....tools.when import When
 from ...plan import Movement
 from ..parsing import Refusal
 from ..tagging.words import bag
 from ..vocabulary.nouns import is_known
 from .command import Fields
+from .ending import MovementOf, between
 from .supposed.kinds import marked
 from .wording import in_words
 
@@ -48,12 +48,8 @@ _STILL = re.compile(  # "..., but it should still stop at four seconds", "? It s
 )
 _NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?=$| (?!x\b|times|rpm|turns?|rounds?|rev|cm|m\b|deg|%))")
 _ITS_OWN = ("start", "stop")
+_OTHERS = re.compile(r"\b(?:others?|rest)\b")
 _NO_OTHERS = bag("start beginning fall drop stop end speed turn time second roll walk swing opening motion")
-
-
-MovementOf = Callable[
-    [Query], Movement | None
-]  # how what a query names moves; None if it does not, or if that is unknown
 
 
 @dataclass(frozen=True)
@@ -91,13 +87,11 @@ def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
 
 def kept_by(said: str) -> Kept:
     """What words say that stays. Of what other things do nothing is told: no operation changes that."""
-    if any(is_known(word) and word not in _NO_OTHERS for word in said.split()) or re.search(
-        r"\b(?:others?|rest)\b", said
-    ):
+    if _OTHERS.search(said) or any(is_known(word) and word not in _NO_OTHERS for word in said.split()):
         return Kept(frozenset(), said=said)
     facts = frozenset(name for name, words in _SAID.items() if words.search(said))
     numbers = [float(found) for found in _NUMBER.findall(said)]
-    if len(numbers) == len(_ITS_OWN) and not facts & {"speed"}:
+    if len(numbers) == len(_ITS_OWN) and "speed" not in facts:
         return Kept(facts | set(_ITS_OWN), numbers[0], numbers[1], said)
     own = [name for name in _ITS_OWN if name in facts]
     value = {own[0]: numbers[0]} if len(own) == len(numbers) == 1 and "speed" not in facts else {}
@@ -149,7 +143,7 @@ def _faster(op: Fields, kept: Kept, moves: Movement | None, stop: float | None) 
     if op.get("when") is not None:
         return None
     lasting = (moves.stop - moves.start) / op["factor"]
-    return _at(op, round(stop - lasting, 4), stop) if stop > lasting else None
+    return between(op, round(stop - lasting, 4), stop) if stop > lasting else None
 
 
 def _begun(op: Fields, kept: Kept, start: float | None, stop: float | None) -> Fields | None:
@@ -164,7 +158,7 @@ def _begun(op: Fields, kept: Kept, start: float | None, stop: float | None) -> F
         if "stop" not in kept.facts or start is None or stop is None:
             return op
         begins = round(start + op["seconds"], 4)
-        return _at(op, begins, stop) if 0 <= begins < stop and "speed" not in kept.facts else None
+        return between(op, begins, stop) if 0 <= begins < stop and "speed" not in kept.facts else None
     if "speed" in kept.facts and (when.lasting is not None or when.stop is not None):
         return None
     if "start" in kept.facts and begins is None and kept.start is not None:
@@ -174,15 +168,10 @@ def _begun(op: Fields, kept: Kept, start: float | None, stop: float | None) -> F
     if "stop" not in kept.facts or stop is None or when.stop is not None:
         return op
     if when.lasting is None:
-        return _at(op, begins, stop) if begins is not None and begins < stop else None
+        return between(op, begins, stop) if begins is not None and begins < stop else None
     if "start" in kept.facts or begins is not None or stop < when.lasting:
         return None
-    return _at(op, round(stop - when.lasting, 4), stop)
-
-
-def _at(op: Fields, start: float, stop: float) -> Fields:
-    """A movement with another beginning and end."""
-    return {"op": "pace", "target": op["target"], "change": "begin", "when": When(start=start, stop=stop)}
+    return between(op, round(stop - when.lasting, 4), stop)
 
 
 def _ends(op: Fields) -> bool:

@@ -113,7 +113,7 @@ class TimeReader:
             return None
         with suppress(Refusal):
             found = self._joined(parts)
-            if found is not None and len({op["op"] for op in found}) + len({op.get("change") for op in found}) > 2:
+            if found is not None and len({(op["op"], op.get("change")) for op in found}) > 1:
                 return found
         return None
 
