@@ -5,25 +5,32 @@ A file of sentences holds on each line a writer, a kind and a sentence with mark
 
 from __future__ import annotations
 
+import math
+import random
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-import numpy as np
 import torch
+from torch import nn
 
 from ..gaussians import late_re as re
-from ..planners.grammar.learned import kinds, marks
-from ..planners.grammar.learned.kinds import Classifier
-from ..planners.grammar.learned.marks import Span, Tagger, labels_of
+from ..planners.grammar.learned.marks import OUTSIDE, Span, labels_of
+from ..planners.grammar.learned.network import LAYERS, ROWS, UNKNOWN, WAYS, Network, pieces
 from ..planners.grammar.tagging.words import split
 
-RARE = 2  # sentences, or words, in which a feature must stand
-RIDGE = 1e-5  # of the squares of the classifier's weights
-PULL = 0.1  # the same of the tagger's, which sees sums and not means
-STEPS = 120
+OFTEN = 2  # sentences' words that stand so often have a row of their own
+WIDTH = 96  # of an embedding
+HIDDEN = 128
+DROPPED = 0.4
+HIDDEN_WORDS = 0.1  # share of the words that are shown by their classes, or by their pieces, alone
+PASSES = 20
+BATCH = 48
+RATE, DECAY, CLIP = 3e-3, 1e-2, 2.0
+SMOOTHED = 0.02  # of the probability of a kind
+CHAIN = 1 / 6  # weight of the marks of a sentence against its kind
 _MARK = re.compile(r"\[(?P<tag>[a-z]+) (?P<said>[^\[\]]*)\]")
 
 
@@ -58,125 +65,181 @@ class Sentence:
         return tuple(found)
 
 
+Tasks = Mapping[str, Sequence[Sentence]]
+
+
 def sentences(path: Path) -> list[Sentence]:
     """The sentences of a file."""
     return [Sentence(*line.split("\t")) for line in path.read_text(encoding="utf-8").splitlines()]
 
 
-def classifier(known: Sequence[Sentence], ridge: float = RIDGE) -> Classifier:
-    """What tells the kinds of sentences best: logistic regression with a Gaussian prior.
+class Learner(nn.Module):
+    """The network while it learns; its forward pass is that of `Network`, with dropout.
 
     Args:
-        ridge: weight of the squares of its weights; less for many kinds, of which each has few sentences.
+        tasks: the sentences of each task, for its words, kinds and tags.
     """
-    seen = [kinds.features(sentence.said) for sentence in known]
-    names, rows = _numbered(seen)
-    labels = sorted({sentence.kind for sentence in known})
-    each = [len(row) ** -0.5 for row in rows for _ in row]
-    given = _sparse(rows, each, len(names))
-    wanted = torch.tensor([labels.index(sentence.kind) for sentence in known])
-    weights = torch.zeros(len(names) + 1, len(labels), dtype=torch.float64, requires_grad=True)
 
-    def loss() -> torch.Tensor:
-        scores = torch.sparse.mm(given, weights[:-1]) + weights[-1]
-        return torch.nn.functional.cross_entropy(scores, wanted) + ridge * weights[:-1].square().sum()
+    def __init__(self, tasks: Tasks) -> None:
+        super().__init__()
+        counts = Counter(word for known in tasks.values() for sentence in known for word in sentence.words)
+        often = sorted(word for word, count in counts.items() if count >= OFTEN and not word[0].isdigit())
+        self.lists: dict[str, list[str]] = {"words": ["", *often]}
+        self.places = {word: row for row, word in enumerate(self.lists["words"])}
+        self.words = nn.Embedding(len(self.places), WIDTH)
+        self.pieces = nn.EmbeddingBag(ROWS, WIDTH, mode="mean")
+        self.rnn = nn.LSTM(2 * WIDTH, HIDDEN, LAYERS, batch_first=True, dropout=DROPPED, bidirectional=True)
+        self.dropped = nn.Dropout(DROPPED)
+        self.heads = nn.ModuleDict()
+        self.moves = nn.ParameterDict()
+        for task, known in tasks.items():
+            tags = sorted({tag for sentence in known for tag, _, _ in sentence.spans})
+            kinds = sorted({sentence.kind for sentence in known})
+            labels = [OUTSIDE, *(f"{part}-{tag}" for tag in tags for part in "BI")]
+            self.lists |= {f"kinds.{task}": kinds, f"labels.{task}": labels}
+            self.heads[f"kinds {task}"] = nn.Linear(4 * HIDDEN, len(kinds))
+            self.heads[f"labels {task}"] = nn.Linear(2 * HIDDEN, len(labels))
+            self.moves[task] = nn.Parameter(torch.zeros(len(labels), len(labels)))
+        nn.init.normal_(self.words.weight, std=0.3)
+        nn.init.normal_(self.pieces.weight, std=0.6)
 
-    _minimized(loss, [weights])
-    return Classifier(labels, names, weights.detach().numpy().astype(np.float32))
+    def loss(self, task: str, batch: Sequence[Sentence], chance: random.Random) -> torch.Tensor:
+        """What the kinds and marks of some sentences, the longest first, lack of being told."""
+        kinds, marks, here = self._scores(task, [sentence.words for sentence in batch], chance)
+        names, labels = self.lists[f"kinds.{task}"], self.lists[f"labels.{task}"]
+        wanted = torch.tensor([names.index(sentence.kind) for sentence in batch])
+        rows = torch.zeros(here.shape, dtype=torch.long)
+        for row, sentence in zip(rows, batch, strict=True):
+            told = [labels.index(label) for label in labels_of(len(sentence.words), sentence.spans)]
+            row[: len(told)] = torch.tensor(told)
+        of_kinds = nn.functional.cross_entropy(kinds, wanted, label_smoothing=SMOOTHED)
+        return of_kinds + CHAIN / len(batch) * _chain_loss(marks, self.moves[task], here, rows)
+
+    def _scores(
+        self, task: str, batch: Sequence[Sequence[str]], chance: random.Random
+    ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+        """The scores `[sentences, kinds]` and `[sentences, words, labels]`, and where words are."""
+        counts = torch.tensor([len(words) for words in batch])
+        here = torch.arange(int(counts.max())) < counts[:, None]
+        known = torch.full(here.shape, UNKNOWN)
+        built, starts = list[int](), list[int]()
+        for i, words in enumerate(batch):
+            for j in range(here.shape[1]):
+                starts.append(len(built))
+                if j >= len(words):
+                    continue
+                hidden = chance.random() < HIDDEN_WORDS
+                known[i, j] = UNKNOWN if hidden else self.places.get(words[j], UNKNOWN)
+                own = pieces(words[j])
+                built += own[:2] if hidden and chance.random() < 0.5 else own
+        bags = self.pieces(torch.tensor(built), torch.tensor(starts)).view(*here.shape, WIDTH)
+        given = self.dropped(torch.cat([self.words(known), bags], 2))
+        packed = nn.utils.rnn.pack_padded_sequence(given, counts, batch_first=True)
+        held, _ = nn.utils.rnn.pad_packed_sequence(self.rnn(packed)[0], batch_first=True)
+        greatest = held.masked_fill(~here[..., None], -math.inf).max(dim=1).values
+        mean = (held * here[..., None]).sum(dim=1) / counts[:, None]
+        kinds = self.heads[f"kinds {task}"](self.dropped(torch.cat([greatest, mean], 1)))
+        return kinds, self.heads[f"labels {task}"](self.dropped(held)), here
+
+    def learned(self) -> Network:
+        """The network as it is by now."""
+        found = {"rows.words": self.words.weight, "rows.pieces": self.pieces.weight}
+        for layer in range(LAYERS):
+            for way, end in zip(WAYS, ("", "_reverse"), strict=True):
+                own = {key: getattr(self.rnn, f"{key}_l{layer}{end}") for key in ("weight_ih", "weight_hh")}
+                biases = (getattr(self.rnn, f"{key}_l{layer}{end}") for key in ("bias_ih", "bias_hh"))
+                name = f"rnn.{layer}.{way}"
+                found |= {f"{name}.inputs": own["weight_ih"], f"{name}.hidden": own["weight_hh"]}
+                found[f"{name}.biases"] = sum(biases, torch.zeros(1))
+        for name, head in self.heads.items():
+            assert isinstance(head, nn.Linear)
+            ending = name.replace(" ", ".")
+            found |= {f"{ending}.inputs": head.weight, f"{ending}.biases": head.bias}
+        found |= {f"moves.{task}": moves for task, moves in self.moves.items()}
+        return Network(self.lists, {name: values.detach().float().numpy() for name, values in found.items()})
 
 
-def tagger(known: Sequence[Sentence]) -> Tagger:
-    """What tells the marks of sentences best: a conditional random field with a Gaussian prior."""
-    marked = [sentence for sentence in known if sentence.words]
-    seen = [marks.features(sentence.words) for sentence in marked]
-    names, rows = _numbered([own for sentence in seen for own in sentence])
-    given = _sparse(rows, [1.0 for row in rows for _ in row], len(names))
-    tags = sorted({tag for sentence in marked for tag, _, _ in sentence.spans})
-    labels = [marks.OUTSIDE, *(f"{part}-{tag}" for tag in tags for part in "BI")]
-    counts = torch.tensor([len(sentence.words) for sentence in marked])
-    here = torch.arange(int(counts.max())) < counts[:, None]  # [sentences, words]
-    at = torch.zeros(here.shape, dtype=torch.long).masked_scatter(here, torch.arange(len(rows)))
-    told = [labels.index(label) for s in marked for label in labels_of(len(s.words), s.spans)]
-    wanted = torch.zeros(here.shape, dtype=torch.long).masked_scatter(here, torch.tensor(told))
-    weights = torch.zeros(len(names), len(labels), dtype=torch.float64, requires_grad=True)
-    moves = torch.zeros(len(labels), len(labels), dtype=torch.float64, requires_grad=True)
-
-    def loss() -> torch.Tensor:
-        scores = torch.sparse.mm(given, weights)[at]  # [sentences, words, labels]
-        gold = (scores.gather(2, wanted[..., None])[..., 0] * here).sum()
-        gold = gold + (moves[wanted[:, :-1], wanted[:, 1:]] * here[:, 1:]).sum()
-        sums = scores[:, 0]
-        for word in range(1, here.shape[1]):
-            further = torch.logsumexp(sums[:, :, None] + moves, 1) + scores[:, word]
-            sums = torch.where(here[:, word, None], further, sums)
-        return torch.logsumexp(sums, 1).sum() - gold + PULL * (weights.square().sum() + moves.square().sum())
-
-    _minimized(loss, [weights, moves])
-    return Tagger(labels, names, *(w.detach().numpy().astype(np.float32) for w in (weights, moves)))
+def _chain_loss(scores: torch.Tensor, moves: torch.Tensor, here: torch.Tensor, wanted: torch.Tensor) -> torch.Tensor:
+    """The negative log-likelihood of rows of labels in a conditional random field, summed over sentences."""
+    gold = (scores.gather(2, wanted[..., None])[..., 0] * here).sum()
+    gold = gold + (moves[wanted[:, :-1], wanted[:, 1:]] * here[:, 1:]).sum()
+    sums = scores[:, 0]
+    for word in range(1, here.shape[1]):
+        further = torch.logsumexp(sums[:, :, None] + moves, 1) + scores[:, word]
+        sums = torch.where(here[:, word, None], further, sums)
+    return torch.logsumexp(sums, 1).sum() - gold
 
 
-def _numbered(seen: Sequence[frozenset[str]]) -> tuple[list[str], list[list[int]]]:
-    """The features that are not rare, and those of each row by their numbers."""
-    often = Counter(feature for found in seen for feature in found)
-    names = sorted(feature for feature, n in often.items() if n >= RARE)
-    places = {name: i for i, name in enumerate(names)}
-    return names, [sorted(places[f] for f in found if f in places) for found in seen]
+def network(tasks: Tasks, passes: int = PASSES, seed: int = 0) -> Network:
+    """The network that has learned the sentences of some tasks; the same ones give the same bytes on one machine."""
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)  # several sum in another order each time
+    try:
+        return _learned(tasks, passes, seed)
+    finally:
+        torch.set_num_threads(threads)
 
 
-def _sparse(rows: Sequence[Sequence[int]], values: Sequence[float], width: int) -> torch.Tensor:
-    at = torch.tensor([[i, place] for i, row in enumerate(rows) for place in row]).T
-    filled = torch.tensor(values, dtype=torch.float64)
-    return torch.sparse_coo_tensor(at, filled, (len(rows), width), check_invariants=True).coalesce()
+def _learned(tasks: Tasks, passes: int, seed: int) -> Network:
+    torch.manual_seed(seed)
+    chance = random.Random(seed)
+    learner = Learner(tasks)
+    batches = _batches(tasks, chance)
+    optimizer = torch.optim.AdamW(learner.parameters(), RATE, weight_decay=DECAY)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, RATE, total_steps=passes * len(batches))
+    for _ in range(passes):
+        for task, batch in batches:
+            loss = learner.loss(task, sorted(batch, key=lambda sentence: -len(sentence.words)), chance)
+            optimizer.zero_grad()
+            loss.backward()  # type: ignore[no-untyped-call]
+            nn.utils.clip_grad_norm_(learner.parameters(), CLIP)
+            optimizer.step()
+            schedule.step()
+        batches = _batches(tasks, chance)
+    return learner.learned()
 
 
-def _minimized(loss: Callable[[], torch.Tensor], weights: list[torch.Tensor]) -> None:
-    """Change weights, all zero at first, by L-BFGS: the same sentences give the same weights on one machine."""
-    optimizer = torch.optim.LBFGS(weights, max_iter=STEPS, line_search_fn="strong_wolfe")
-
-    def step() -> torch.Tensor:
-        optimizer.zero_grad()
-        value = loss()
-        value.backward()  # type: ignore[no-untyped-call]
-        return value
-
-    optimizer.step(step)  # type: ignore[no-untyped-call]
+def _batches(tasks: Tasks, chance: random.Random) -> list[tuple[str, Sequence[Sentence]]]:
+    """The sentences of all tasks in a new order, some at a time."""
+    found = list[tuple[str, Sequence[Sentence]]]()
+    for task, known in tasks.items():
+        mixed = [sentence for sentence in known if sentence.words]
+        chance.shuffle(mixed)
+        found += [(task, mixed[at : at + BATCH]) for at in range(0, len(mixed), BATCH)]
+    chance.shuffle(found)
+    return found
 
 
 @dataclass(frozen=True)
 class Told:
-    """How well the sentences of writers are told by models that know those of the others.
+    """How well sentences are told.
 
     Attributes:
         kinds: the share of sentences whose kind is told.
         precision, recall: of marks, with their tag and both ends.
+        whole: the share of sentences of which all marks are told, and no others.
     """
 
     kinds: float
     precision: float
     recall: float
+    whole: float
 
 
-def told_of_unseen(known: Sequence[Sentence], ridge: float = RIDGE) -> Told:
-    """How well the sentences of each writer are told by models that know those of the others."""
-    right, hits, given, wanted = 0, 0, 0, 0
-    for writer in sorted({sentence.writer for sentence in known}):
-        others = [sentence for sentence in known if sentence.writer != writer]
-        kind_of, spans_of = classifier(others, ridge), tagger(others)
-        for sentence in known:
-            if sentence.writer == writer:
-                right += kind_of.kinds_of(sentence.said)[0][0] == sentence.kind
-                found, true = set(spans_of.spans(sentence.words)), set(sentence.spans)
-                hits, given, wanted = hits + len(found & true), given + len(found), wanted + len(true)
-    return Told(right / len(known), hits / given, hits / wanted)
-
-
-def learn(path: Path, folder: Path, ridge: float = RIDGE) -> None:
-    """Learn from the sentences of a file, say how well that goes, and write the models into a folder."""
-    known = sentences(path)
-    told = told_of_unseen(known, ridge)
-    print(
-        f"{len(known)} sentences; of a writer who was left out {told.kinds:.3f} of the kinds are told right, "
-        f"and marks with a precision of {told.precision:.3f} and a recall of {told.recall:.3f}"
+def told_of(model: Network, task: str, known: Sequence[Sentence]) -> Told:
+    """How well a network tells sentences."""
+    told = [(sentence, model.told(task, sentence.words)) for sentence in known if sentence.words]
+    pairs = [(set(found.spans), set(sentence.spans)) for sentence, found in told]
+    hits = sum(len(found & true) for found, true in pairs)
+    return Told(
+        kinds=sum(found.kinds[0][0] == sentence.kind for sentence, found in told) / len(told),
+        precision=hits / max(1, sum(len(found) for found, _ in pairs)),
+        recall=hits / max(1, sum(len(true) for _, true in pairs)),
+        whole=sum(found == true for found, true in pairs) / len(told),
     )
-    classifier(known, ridge).write(folder)
-    tagger(known).write(folder)
+
+
+def without(tasks: Tasks, writers: Mapping[str, Collection[str]]) -> tuple[Tasks, Tasks]:
+    """The sentences of all other writers, and those of some of each task."""
+    left = {task: [s for s in known if s.writer not in writers.get(task, ())] for task, known in tasks.items()}
+    return left, {task: [s for s in known if s.writer in writers.get(task, ())] for task, known in tasks.items()}

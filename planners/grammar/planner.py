@@ -40,7 +40,7 @@ from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
 from .timing.ending import with_end
-from .timing.judging import Judge
+from .timing.judging import PLAINLY, Judge
 from .timing.keeping import held, without_kept
 from .timing.reading import TimeReader, is_misread, may_be_timed
 from .timing.spoken import written
@@ -207,6 +207,8 @@ def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _
     """
     reader = TimeReader(_operations, _thing)
     judge = Judge(reader, scene.moves if scene is not None else None)
+    if judge.contradicts_itself(cleaned):
+        raise Refusal("this asks for two things that cannot both be", cleaned[:200], verdict="impossible")
     try:
         outcome = _timed(reader, cleaned, previous)
     except Refusal as refusal:
@@ -254,7 +256,10 @@ def _wished(cleaned: str, previous: str | None) -> _Outcome:
     except Refusal as refusal:
         if refusal.firm or refusal.verdict in ("unsafe", "impossible"):
             raise
-        if (wished := Judge(TimeReader(_operations, _thing)).wished(cleaned)) is None:
+        judge = Judge(TimeReader(_operations, _thing))
+        if (found := judge.marked(cleaned, PLAINLY)) is not None:
+            return _guessed(found)
+        if (wished := judge.wished(cleaned)) is None:
             raise
         return _guessed(wished)
 

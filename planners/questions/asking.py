@@ -31,7 +31,7 @@ from .reading.time.everyday import everyday
 from .reading.time.frames import UNIT, plain
 from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
-from .reading.time.supposed.plainly import supposed
+from .reading.time.supposed.plainly import SURE, supposed
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
 from .telling import absent, absent_text, evidence
@@ -128,12 +128,14 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     if still is not None and still.answer.answer is not None:
         return still
     refused = moved or still
-    misread = refused is None or refused.answer.text.startswith(_MISREAD)
-    if misread:
-        names = _names(survey)
-        for questions in (loosely(plain(words), names), supposed(text, names)):
-            if (guess := _read_as(questions, survey, timeline)) is not None:
-                return guess
+    names = _names(survey)
+    if refused is None or refused.answer.text.startswith(_MISREAD):
+        guesses = (loosely(plain(words), names), supposed(text, names))
+    else:
+        guesses = ((), supposed(text, names, SURE))
+    for questions in guesses:
+        if (guess := _read_as(questions, survey, timeline)) is not None:
+            return guess
     if refused is not None:
         return refused
     none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")

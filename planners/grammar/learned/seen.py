@@ -23,7 +23,7 @@ def amount_or_color(word: str) -> str:
     """One word for all numbers, one for seconds, one for colours; else the word."""
     if word in _SECONDS:
         return "#s"
-    if word in NUMBERS or word[0].isdigit():
+    if word in NUMBERS or word[:1].isdigit():
         return "#"
     return "#color" if word in hues() else word
 

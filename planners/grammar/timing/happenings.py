@@ -77,8 +77,10 @@ _ONCE = (
     r"(?= (?:the|my|our|it|he|she|they) )|"
     r"the (?:very |exact )?(?:moment|point|instant|second) (?:when|where|that)|"
     r"once(?! (?:on|in|at|around|round|to|from|over|about|every|per|each) )|when|as soon as|the moment|"
-    r"the instant|the second|at the moment when|at the moment|immediately when|right when|from when|from the moment|"
-    r"exactly when|directly when|immediately(?= the )|directly(?= the )|the minute|each time|every time|from the time)"
+    r"the instant|the second|the sec(?= (?:the|my|our|it|he|she|they) )|at the moment when|at the moment|"
+    r"immediately when|right when|from when|from the moment|"
+    r"exactly when|directly when|immediately(?= the )|directly(?= the )|the minute|each time|every time|"
+    r"from the time)"
 )
 _WHILE = (
     r"(?:while|whilst|as long as|so long as|whenever|during the time|for as long as|the whole time|all the time|as|"
@@ -87,7 +89,8 @@ _WHILE = (
 )
 _AFTER = r"(?:(?:right |just |only |directly |immediately |shortly )?(?:after|following))"
 _UNTIL = (
-    r"(?:until|till|til|untill|up until|up to when|before|by the time|right before|just before|right until|only until|"
+    r"(?:until|till|til|untill|up until|up to when|before|by the time|right before|just before|right until|"
+    r"only until|"
     r"prior to)"
 )
 CONJUNCTION = re.compile(
@@ -107,7 +110,8 @@ _DONE = re.compile(
 )
 _UNDER_WAY = re.compile(
     r"(?: (?:is|are)|'s) (?:still |up )*(?:in (?:the air|mid ?air|flight|motion|transit)|airborne|under way|"
-    r"(?:on (?:its|his|her|their|the) way|heading)(?: down| up| back)?(?: (?:to|towards?|for) (?:the|its|my) [a-z ]+)?)"
+    r"(?:on (?:its|his|her|their|the) way|heading)(?: down| up| back)?(?: (?:to|towards?|for) (?:the|its|"
+    r"my) [a-z ]+)?)"
     r"$"
 )
 _USUALLY = re.compile(r" (?:would |will |does )?(?:normally|usually|ordinarily) (?=[a-z])")
@@ -119,14 +123,16 @@ _HALF = re.compile(
     r"(?:open|out|closed|shut|in|up|down|done|through|there)$"
 )
 _DRAWN = re.compile(
-    r"^(?P<who>(?:.+ )?drawer|it) (?:is|'s) (?:going|coming|sliding|moving|pulling|gliding) (?:back )?(?P<way>out|in)$"
+    r"^(?P<who>(?:.+ )?drawer|it) (?:is|'s) (?:going|coming|sliding|moving|pulling|gliding) (?:back )?(?P<way>out|"
+    r"in)$"
 )
 _EVENT_OVER = re.compile(
     r"^(?:the|its|his|her) (?:motion|movement|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|spin)"
     r"(?: of (?P<who>.+?))? (?:is|has) (?:over|done|ended|finished|completed?)$"
 )
 _TURN_DONE = re.compile(
-    r"(?: (?:is|has|are|have|gets)|'s) (?:all )?(?:done|finished|through|over|completed) (?:with )?(?:its|his|her|the) "
+    r"(?: (?:is|has|are|have|gets)|'s) (?:all )?(?:done|finished|through|over|completed) (?:with )?(?:its|his|her|"
+    r"the) "
     r"(?:left |right )?turn(?:ing)?$"
 )
 _IS_SHUT = re.compile(  # which is no closing
@@ -153,6 +159,7 @@ _WHOLLY = re.compile(r"\b(?:totally|completely|entirely|wholly|all(?= (?:open|ou
 _LEG = r"(?:first|second|last|other|next) (?:part|half|leg|bit|stretch|section|stage)"  # of a way
 _A_LEG = re.compile(rf".*\b{_LEG}$|(?:the|its|his|her) {_LEG}\b")
 _FULLY = re.compile(r"\b(?:full|fully|completely|all the way|wide|entirely|totally)\b")
+_IN_THE_FLOOR = re.compile(r"\bin(?= the (?:floor|ground|rug|carpet|mat)\b)")
 _NEXT = ("touching", "in contact with", "resting against")
 
 
@@ -160,7 +167,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     """What a clause behind a conjunction tells of; None if the whole of it is not understood."""
     if _PEOPLE.match(said) or _A_LEG.match(said) or " , then " in said:
         return None
-    said = _WHOLLY.sub("fully", said)
+    said = _WHOLLY.sub("fully", _IN_THE_FLOOR.sub("on", said))
     said = _TURN_DONE.sub(" has turned", said)
     said = _USUALLY.sub(" ", _UNDER_WAY.sub(" is moving", _DONE.sub("has stopped", said)))
     said = _AT_REST.sub(" has stopped", said)

@@ -20,6 +20,8 @@ from ..vocabulary.nouns import is_known, is_opened
 from . import happenings, moments
 from .command import Command, Fields
 from .happenings import IT, Happening
+from .marked.commands import commands
+from .marked.slots import slots
 from .moments import Moment
 from .reading import CLAUSE, TIMELESS, TimeReader
 from .supposed.choosing import Offer, chosen, says_plainly
@@ -55,7 +57,27 @@ _PLACED = re.compile(r" (?:beside|on|near|by|in|at|under|behind|next to|above|wi
 _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
+MARKED = 0.5  # probability of a kind from which what the marks hold is its command
+PLAINLY = 0.9  # the same where no word is of time or motion
 _LONGEST = 45  # words of an instruction with one wish
+_ALWAYS = re.compile(
+    r"\b(?:throughout|always|all the time|(?:the )?(?:whole|entire|full) (?:time|film|clip|video|scene|shot|"
+    r"way through)|at all times|"
+    r"all through|for ever|forever)\b"
+)
+_EDGE = re.compile(r"\b(?:start|beginning|end|finish|first frame|last frame)\b")
+_AS_WELL = re.compile(r"\b(?:and|but|yet) (?:\w+ )?(?:also|meanwhile)\b|\bmeanwhile\b")
+_AT_REST = r"(?:still|shut|closed|motionless|not move|not be moving|stays? put|perfectly still|at rest)"
+_MOVES = r"(?:spin\w*|mov(?:e|es|ing)|roll\w*|walk\w*|turn\w*|open\w*|fall\w*|run\w*|rotat\w*)"
+_BOTH_AT_ONCE = re.compile(
+    rf"\b{_MOVES}\b.{{0,40}}\b(?:and|but|yet|while)\b.{{0,30}}\b{_AT_REST}\b.{{0,20}}\b(?:at the same time|"
+    rf"simultaneously|all at once)\b|"
+    rf"\b{_AT_REST}\b.{{0,30}}\b(?:and|but|yet|while)\b.{{0,30}}\b{_MOVES}\b.{{0,40}}\b(?:at the same time|"
+    rf"simultaneously|all at once)\b"
+)
+_OTHER_EDITS = re.compile(
+    r"\b(?:add|insert|duplicate|copy|replace|exchange|forget|never mind|cancel|undo)\b", re.IGNORECASE
+)
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
 
 
@@ -88,6 +110,8 @@ class Judge:
         kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
         if not kinds:
             return None
+        if (by_marks := self.marked(cleaned, max(least, MARKED))) is not None:
+            return by_marks
         spelled = spelt_right(spelt_out(words), LONG_WORDS)
         said = with_nouns(tidy(spelled))
         whole = (_with_delay(*reading) for reading in self._reader.readings(said) if not _FRAGMENT.match(reading[0]))
@@ -96,8 +120,8 @@ class Judge:
             for rest, moment, happening in islice(whole, 2)
         ]
         wording = with_nouns(spelled).split(" ")
-        if (by_marks := divided(wording, marked(wording), self._reader.thing)) is not None:
-            readings.insert(0, by_marks)
+        if (divided_by := divided(wording, marked(wording), self._reader.thing)) is not None:
+            readings.insert(0, divided_by)
 
         def offered(kinds: Sequence[tuple[str, float]]) -> list[Offer]:
             told = [(kind, p) for kind, p in kinds if kind != "hide" or p >= _HIDDEN or says_plainly(kind, words)]
@@ -110,6 +134,50 @@ class Judge:
             if found is not None:
                 return found  # else it is told that the thing does not move
         return chosen(offers, words, least)
+
+    def marked(self, cleaned: str, least: float) -> tuple[Fields, ...] | None:
+        """The operations that the likeliest kind of wish makes of what the marks of an instruction hold; None if it is
+        not as likely as `least`, or if one of the marks is not understood."""
+        wording = with_nouns(spelt_right(spelt_out(in_words(cleaned)), LONG_WORDS)).split(" ")
+        spans = marked(wording)
+        for still in (False, True):
+            kind, chance = next(iter(likely(cleaned, still)), ("", 0.0))
+            if chance < least:
+                return None
+            if _OTHER_EDITS.search(cleaned):
+                return None
+            held = slots(wording, spans, self._reader.thing, kind)
+            if held is None:
+                return None
+            for wanted in commands(kind, held):
+                with suppress(Refusal, UserError, ValidationError):
+                    if isinstance(wanted.command, Command):
+                        found = self._reader.made(wanted.command, wanted.moment, wanted.happening)
+                    else:
+                        told = wanted.moment.told or wanted.happening is not None
+                        found = self._reader.command(wanted.command, "", wanted.moment, wanted.happening, told)
+                    if found and not self.is_still(found):
+                        return of_one_movement(" ".join(wording), found)
+        return None
+
+    def contradicts_itself(self, cleaned: str) -> bool:
+        """Whether something is to be so all the time, and otherwise at a time or as well: "keep it shut throughout, and
+        have it open at 2 s"."""
+        words = with_nouns(in_words(cleaned)).split(" ")
+        spans = marked(words)
+        told = [(tag, " ".join(words[start:stop]).strip(" ,.")) for tag, start, stop in spans if tag in TIMES]
+        always = [_ALWAYS.search(said) is not None and tag in ("in", "for") for tag, said in told]
+        things = {self._reader.thing(" ".join(words[start:stop])) for tag, start, stop in spans if tag == "x"} - {
+            IT,
+            None,
+        }
+        said = " ".join(words)
+        if len(things) > 1:
+            return False
+        others = any(not own and not _EDGE.search(when) for own, (_, when) in zip(always, told, strict=True))
+        if any(always) and (others or sum(always) > 1 or _AS_WELL.search(said)):
+            return likely(cleaned)[:1] == [] or likely(cleaned)[0][0] not in ("recolor", "hide", "spin")
+        return _BOTH_AT_ONCE.search(said) is not None
 
     def wished(self, cleaned: str) -> tuple[Fields, ...] | None:
         """The operations of a wish that has no words of time: for another look of something, or that it be gone, at

@@ -24,8 +24,10 @@ TAG = "keep"  # the mark of words that say that something stays as it is
 _LEAST = 2  # words beside them that can ask for anything
 _NEAR = 0.05  # seconds by which times of a plan may differ from those that are to stay
 _SAME = re.compile(  # words by which something stays as it is
-    r"\b(?:same|still|un(?:changed|touched|altered|affected|modified)|identical|constant|otherwise|alone|present|usual|"
-    r"normal|hitherto|(?:is|are|was|were|be) fine|no change|nothing (?:else|about)|as (?:is|now|it|they|he|she|before|"
+    r"\b(?:same|still|un(?:changed|touched|altered|affected|modified)|identical|constant|otherwise|alone|present|"
+    r"usual|"
+    r"normal|hitherto|(?:is|are|was|were|be) fine|no change|nothing (?:else|about)|as (?:is|now|it|they|he|she|"
+    r"before|"
     r"specified|planned|ever|in the|at present|usual|today|fast|long|quick|slow)|like (?:now|before|it|they|always)|"
     r"when (?:it|they|he|she) \w+|(?:it|they|he|she) (?:does|do|has|have) now|(?:keep|stay|remain|retain|leav)\w*|"
     r"kept|left|without \w+ing|"
@@ -33,8 +35,10 @@ _SAME = re.compile(  # words by which something stays as it is
 )
 _SUBJECTS = {  # what stays, and the words for it
     "start": r"start\w*|begin\w*|onset|setting off|sets? off|departure|leav(?:es|ing)|kick\w*|set(?:ting)? out|"
-    r"letting go|take ?off|comes? out|falls?|timings?|times|schedule|moment|cue|entrance|slots?",
-    "stop": r"ends?|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|arriv\w*|off|done|"
+    r"letting go|take ?off|(?:tips?|takes?|goes|go|heads?) off|comes? out|falls?|drops?|opens?|timings?|times|"
+    r"schedule|moment|cue|entrance|slots?",
+    "stop": r"ends?|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|arriv\w*|"
+    r"(?<!set )(?<!sets )(?<!tips )(?<!takes )(?<!goes )(?<!kicks )(?<!setting )off|done|"
     r"timings?|times|schedule|slots?",
     "speed": r"speeds?|pace|rate|tempo|velocity|rpm|fast|quick|slow|takes?|taking|duration|long|length|last|lasting|"
     r"cycle time|turns? a second",

@@ -65,7 +65,8 @@ _NUMBER = rf"(?:{_DIGITS}|{_WORD})"
 _DURATION = (
     rf"(?:{_NUMBER} and (?:a )?half {_UNIT}|{_NUMBER} {_UNIT} and a half|(?:{_NUMBER} and )?(?:a "
     rf")?half (?:a |of a )?{_UNIT}|"
-    rf"(?:three )?quarters? (?:of )?a {_UNIT}|a quarter (?:of )?a {_UNIT}|(?:{_NUMBER}) (?:full |whole "
+    rf"(?:three )?quarters? (?:of )?a {_UNIT}|(?:a |one )?(?:third|fifth|tenth) (?:of )?a {_UNIT}|"
+    rf"a quarter (?:of )?a {_UNIT}|(?:{_NUMBER}) (?:full |whole "
     rf")?{_UNIT}|half a {_UNIT})"
 )
 DURATION = rf"(?:{_HEDGE}{_DURATION})"
@@ -120,6 +121,9 @@ def _value(text: str) -> float | None:
         half, text = 0.5, re.sub(r" and (?:a )?half\b(?: (?:a|of a))?", "", text)
     if re.match(r"^(?:a )?half\b", text):
         return 0.5 + half
+    for word, part in (("third", 1 / 3), ("fifth", 0.2), ("tenth", 0.1)):
+        if re.match(rf"^(?:a |one )?{word} (?:of )?a\b", text):
+            return part
     if re.match(r"^three quarters", text):
         return 0.75
     if re.match(r"^a quarter|^quarter", text):
@@ -249,7 +253,8 @@ _PHRASES: tuple[tuple[str, Made], ...] = (
         _start,
     ),
     (
-        r"(?:(?:from|at|in) the (?P<a>first) (?:moment|frame|instant)|immediately|right away|straight away|instantly)",
+        r"(?:(?:from|at|in) the (?P<a>first) (?:moment|frame|instant)|immediately|right away|straight away|"
+        r"instantly)",
         _at_once,
     ),
     (

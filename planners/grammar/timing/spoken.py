@@ -76,9 +76,27 @@ _FROM_ROOM = re.compile(  # which all of it is in
 )
 
 
+_DIGITS = {word: str(digit) for digit, word in enumerate(
+    ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
+)}  # fmt: skip
+_A_DIGIT = "|".join(_DIGITS)
+_POINT = re.compile(rf"\b(?P<whole>{_A_DIGIT}|\d+) point (?P<part>(?:{_A_DIGIT})(?: (?:{_A_DIGIT}))?)\b", re.IGNORECASE)
+_B4 = re.compile(r"\bb4\b", re.IGNORECASE)
+
+
+def in_figures(text: str) -> str:
+    """A text with decimals in figures, and with what is written as a figure in words: "one point five s", "b4"."""
+
+    def figure(found: re.Match[str]) -> str:
+        part = "".join(_DIGITS[word] for word in found["part"].lower().split())
+        return f"{_DIGITS.get(found['whole'].lower(), found['whole'])}.{part}"
+
+    return _POINT.sub(figure, _B4.sub("before", text))
+
+
 def written(spoken: str) -> str:
     """A text with the words in full that people shorten when they speak or write notes."""
-    text = _TITLE.sub("", spoken)
+    text = in_figures(_TITLE.sub("", spoken))
     for pattern, plain in _NOTATION:
         text = pattern.sub(plain, text)
     text = _FROM_ROOM.sub(r"\g<order>\g<end>", _TOO_CLUTTERED.sub(r"\g<order>", text))

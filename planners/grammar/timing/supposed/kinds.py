@@ -1,21 +1,21 @@
 """The kind of wish that an instruction is of, and which of its words name what.
 
-`training/timed_wishes.py` learns both from written sentences.
+`training/timed_words.py` learns both from written sentences.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache, lru_cache
-from pathlib import Path
+from functools import lru_cache
 
-from ...learned.kinds import Classifier
-from ...learned.marks import Span, Tagger
+from ...learned.marks import Span
+from ...learned.network import network
 from ...tagging.spelling import is_common, is_word
+from ...tagging.words import split
 from ...vocabulary.nouns import is_known
 from ..verbs import SENSES, has_form
 
-FOLDER = Path(__file__).parent
+TASK = "wishes"
 NO_WISH = "none"  # the kind of questions, remarks, and wishes that are about neither time nor motion
 COURSES = (  # kinds that are about how what is there moves by itself
     "begin", "speed", "duration", "pause", "halt", "still", "reverse", "stay", "order", "together", "repeat", "return",
@@ -56,7 +56,7 @@ def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
 
 @lru_cache(maxsize=64)  # several checks ask for the same words
 def _kinds_of(said: str) -> tuple[tuple[str, float], ...]:
-    return tuple(classifier().kinds_of(said))
+    return network().told(TASK, [word.text for word in split(said)]).kinds
 
 
 def is_done_by(kind: str, op: str) -> bool:
@@ -78,7 +78,7 @@ def marked(words: Sequence[str]) -> tuple[Span, ...]:
 
 @lru_cache(maxsize=64)  # several checks ask for the same words
 def _marked(words: tuple[str, ...]) -> tuple[Span, ...]:
-    return tagger().spans(words)
+    return network().told(TASK, words).spans
 
 
 def is_any_word(word: str) -> bool:
@@ -87,18 +87,6 @@ def is_any_word(word: str) -> bool:
         is_word(word)
         or is_known(word)
         or is_common(word)
-        or word in classifier().places
+        or word in network().places
         or has_form(word, tuple(SENSES), "plain", "s", "ing", "past")
     )
-
-
-@cache
-def classifier() -> Classifier:
-    """What tells kinds."""
-    return Classifier.of(FOLDER)
-
-
-@cache
-def tagger() -> Tagger:
-    """What tells marks."""
-    return Tagger.of(FOLDER)

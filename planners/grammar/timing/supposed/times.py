@@ -20,16 +20,19 @@ from .plain import loosely, plain
 
 TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
 LEADING = re.compile(
-    r"^(?:(?:,|and|then|but|just|only|right|exactly|about|around|starting|beginning|start|begin|finish(?:ed|ing)?|done|"
+    r"^(?:(?:,|and|then|but|just|only|right|exactly|about|around|starting|beginning|start|begin|finish(?:ed|ing)?|"
+    r"done|"
     r"ending|end|arriving|being|be|there|taking|takes?|lasting|lasts?) (?=\w))*"
 )
 UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
 LASTS = re.compile(r"^(?:and )?(?:tak(?:es?|ing)|last(?:s|ing)?)\b")  # how long it is said to take
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 _BARE = re.compile(
-    r"^(?:(?:by|at|on|from|in|to|till|until|after|before|up|for|over|within|during|the|only|just|about|around|exactly|"
+    r"^(?:(?:by|at|on|from|in|to|till|until|after|before|up|for|over|within|during|the|only|just|about|around|"
+    r"exactly|"
     r"somewhere|roughly|approximately|precisely|"
-    r"say|like|mark|starting|beginning|finished|done|,) )*(?P<value>.+?)(?: (?:mark|on|onwards?|already|sharp|flat|in|"
+    r"say|like|mark|starting|beginning|finished|done|,) )*(?P<value>.+?)(?: (?:mark|on|onwards?|already|sharp|"
+    r"flat|in|"
     r"long|exactly|precisely|or so))*$"
 )
 _AS = re.compile(
@@ -42,18 +45,21 @@ _FROM_EVENT = re.compile(
 _GERUND = re.compile(r"^(?P<word>after|once|when|while|before|until) (?P<doing>[a-z]+ing)(?= |$)")
 _WHERE = re.compile(r"^(?:right |just |exactly )?(?:at )?(?:the (?:point|place|spot|corner) )?(?:where|upon) (?=\w)")
 _BESIDE = re.compile(  # "set off with the robot", "at the same time as the top one"
-    r"^(?:at )?(?:just |right )?(?:the )?(?:same (?:time|moment) as|together with|along with|alongside|with) "
+    r"^(?:at )?(?:just |right |exactly )?(?:the )?(?:(?:very )?same (?:time|moment|second|instant)(?: as)?|"
+    r"together with|along with|alongside|with) "
     r"(?P<who>(?:the|my|our|that) [a-z ]+?)(?: (?:does|moves|starts|sets off|opens|goes))?$"
 )
 _ALL = re.compile(
-    r"\b(?:whole|entire|throughout|all (?:the way )?through|over the length of|all the time|always|"
+    r"\b(?:whole|entire|throughout|all (?:of )?(?:the|this) (?:film|clip|video|scene|movie|sequence|shot)|"
+    r"all (?:the way )?through|over the length of|all the time|always|"
     r"(?:beginning|start) to (?:the )?(?:end|finish))\b"
 )
 _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     (re.compile(r"\b(?:middle|half ?way|half time|mid ?way|mid ?point|half the)\b"), "middle"),
     (
         re.compile(
-            r"^(?:un)?till? the (?:very )?last (?:second|moment)$|\b(?:end|ends|finish|close|last frame|over|finale)\b"
+            r"^(?:un)?till? the (?:very )?last (?:second|moment)$|\b(?:end|ends|finish|close|last frame|over|"
+            r"finale)\b"
         ),
         "end",
     ),

@@ -1,44 +1,29 @@
 """The kind of a question about time, and which of its words name what.
 
-`training/timed_questions.py` learns both from written questions.
+`training/timed_words.py` learns both from written questions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cache
-from pathlib import Path
+from collections.abc import Collection, Sequence
 
-from .....grammar.learned.kinds import Classifier
-from .....grammar.learned.marks import Span, Tagger
+from .....grammar.learned.marks import Span
+from .....grammar.learned.network import network
 
-FOLDER = Path(__file__).parent
+TASK = "questions"
 
 
-def kinds_of(said: str) -> list[tuple[str, float]]:
+def kinds_of(words: Sequence[str]) -> Sequence[tuple[str, float]]:
     """The kinds of question with their probabilities, the likeliest first."""
-    return classifier().kinds_of(said)
+    return network().told(TASK, words).kinds
 
 
 def marked(words: Sequence[str]) -> tuple[Span, ...]:
     """Which words of a question name what it is about (`x`), another thing (`y`), at what time it is asked (`t`), in
     what unit (`u`), and which ask for nothing (`off`)."""
-    return tagger().spans(words)
+    return network().told(TASK, words).spans
 
 
-@cache
-def classifier() -> Classifier:
-    """What tells kinds."""
-    return Classifier.of(FOLDER)
-
-
-@cache
-def vocabulary() -> frozenset[str]:
-    """The words that the classifier knows."""
-    return frozenset(name for name in classifier().names if name.isalpha())
-
-
-@cache
-def tagger() -> Tagger:
-    """What tells marks."""
-    return Tagger.of(FOLDER)
+def vocabulary() -> Collection[str]:
+    """The words that have been seen often."""
+    return network().places.keys()

@@ -8,7 +8,7 @@ A question is put plainly only if none of its words tells more: a negation, a nu
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from ......gaussians import late_re as re
@@ -16,6 +16,7 @@ from ......gaussians.world.spelling import best_slip
 from ......gaussians.world.words import singular
 from .....grammar.tagging.spelling import is_word
 from .....grammar.tagging.words import bag, clean, split
+from .....grammar.timing.spoken import in_figures
 from .....grammar.vocabulary.quantities import NUMBERS
 from ...noun_phrase import is_color_word
 from ..everyday import everyday
@@ -23,7 +24,8 @@ from ..frames import UNIT
 from ..loosely import HARD
 from .kinds import kinds_of, marked, vocabulary
 
-LEAST = 0.38  # probability of a kind that is tried: .8 of these are told right, .9 from .5 on
+LEAST = 0.38  # probability of a kind that is tried
+SURE = 0.8  # probability from which words without a mark are taken for those of the question
 _LONGEST = 40  # words
 _DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|your|his|her|its|their|all|both|any|every)\b")
 _PLURAL = re.compile(r"^(?:all |both )?(?:of )?(?:the |these |those |my |our )?")
@@ -39,6 +41,8 @@ class Said:
         x, y: what it is about, and the other thing; "" if none is named.
         time: the words of its time, "" if there are none.
         unit: that of its answer, "" if none is said.
+        times: the words of each of its times.
+        off: words that ask for nothing.
         rest: all other words.
     """
 
@@ -47,27 +51,94 @@ class Said:
     time: str
     unit: str
     rest: str
+    times: tuple[str, ...] = ()
+    off: str = ""
 
 
 @lru_cache(maxsize=1024)
-def supposed(text: str, names: frozenset[str]) -> tuple[str, ...]:
+def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[str, ...]:
     """Plain questions that a text most likely means, with its time; none if that is not likely enough.
 
     Args:
         names: words of the names of the things of the scene.
+        least: the probability of its kind that is likely enough.
     """
     if not text.strip() or len(text.split()) > _LONGEST:
         return ()
-    told = tuple(word.text for word in split(clean(text)))
+    told = tuple(word.text for word in split(in_figures(clean(text))))
     told = tuple(_spelled(word, names) for word in told)
-    kind, chance = _likeliest(" ".join(told))
-    if chance < LEAST or kind not in _PLAIN:
+    kind, chance = _likeliest(told)
+    if chance < least or kind not in _PLAIN or (_REASONS.search(" ".join(told)) and kind not in _OF_SOMEBODY):
         return ()
     said = _said(told, marked(told), names)
-    if said is None or _says_more(kind, said, names):
+    if said is None or _says_more(kind, chance, said, names):
         return ()
-    time = everyday(_ROUGHLY.sub("", said.time)) if said.time else ""
+    if not said.x and kind not in _OF_ALL:
+        said = replace(said, x="it")
+    time = everyday(_ROUGHLY.sub("", _plain_time(kind, said.time))) if said.time and kind != "gap" else ""
     return tuple(dict.fromkeys(" ".join(f"{plain} {time}".split()) for plain in _PLAIN[kind](said)))
+
+
+_OF_ALL = bag(
+    "what_moves what_still how_many first last order fastest happens film_long gap if_moves if_still if_together"
+)
+_WHOLE_FILM = re.compile(  # a time that is all of the film
+    r"^(?:(?:during|in|over|throughout|within|for|across|through) (?:the|this|these|all(?: of)? the|its|his|her) "
+    r"(?:(?:whole|entire|full|complete) )?(?:(?:five|5) seconds|(?:\w+ )?(?:film|clip|video|scene|time|movie|"
+    r"footage|recording|shot|"
+    r"sequence|interval of motion|motion|movement|run|journey|trip))(?: is to be| long)?|throughout|ever|overall|"
+    r"in total|altogether|in all|"
+    r"at any (?:point|time|moment)|at all|all told|at some (?:point|time|moment)|from (?:start|beginning|"
+    r"first) to (?:finish|end|last)|"
+    r"(?:by|in|at|before) the (?:very )?end|finally|eventually|in the end|at last|when (?:it|all|"
+    r"everything) is (?:all )?(?:over|done)|"
+    r"when all is (?:said and )?done|before the (?:clip|film|video|scene) (?:ends|is over)|at the finish)$"
+)
+_STATES = (
+    "if_open",
+    "if_shut",
+    "if_still",
+    "where_at",
+    "near",
+    "if_on",
+    "what_moves",
+    "what_still",
+    "if_moves",
+    "how_many",
+)
+_THE_END = re.compile(r"\b(?:end|finish|finally|eventually|last|over|done|ends)\b")
+_QUIET = re.compile(
+    r"^(?:once|when|after) (?:everything|all|the room|things?) (?:is|are|has|have) (?:\w+ )?(?:still|quiet|over|"
+    r"calm|settled|stopped|done|finished)(?: again)?$"
+)
+_OUT = re.compile(
+    r"^(?:on|during) (?:the|its|his|her) (?:way|trip|journey|run|stroke|travel) (?P<way>out|open|back|in|home|"
+    r"shut|closed)$|^while (?:going|coming|sliding|moving) (?P<doing>out|back|in)$"
+)
+_FURTHEST = re.compile(
+    r"^at (?:its|his|her|the) (?:very )?(?:furthest|farthest|widest|most|maximum|fullest|utmost|greatest|peak)\b.*$"
+)
+_BEFORE_BACK = re.compile(
+    r"^(?:before|until|till) (?:it |he |she )?(?:\w+ )?(?:goes|going|comes|coming|sliding|slides|moving|moves|"
+    r"gets|is|starts|closing|closes|shuts|shutting)\b"
+)
+
+
+def _plain_time(kind: str, said: str) -> str:
+    """The words for a time in plain words; "" for all of the film, where that says nothing."""
+    if (_FURTHEST.match(said) and kind.startswith("far")) or (kind == "long_open" and _BEFORE_BACK.match(said)):
+        return ""
+    if (way := _OUT.match(said)) is not None:
+        return "while it is opening" if (way["way"] or way["doing"]) in ("out", "open") else "while it is closing"
+    if _QUIET.match(said):
+        said = "at the end"
+    if _WHOLE_FILM.match(said):
+        if kind not in _STATES:
+            return ""
+        if _THE_END.search(said):
+            return "at the end"
+        return said if kind in ("if_open", "if_shut", "if_on") else ""
+    return said
 
 
 _ROUGHLY = re.compile(r"\b(?:like|around|about|roughly|approximately|exactly|just|maybe|say) (?=\d)")
@@ -80,16 +151,27 @@ def _spelled(word: str, names: frozenset[str]) -> str:
     return word if word in vocabulary() else best_slip(word, vocabulary()) or word
 
 
-def _likeliest(said: str) -> tuple[str, float]:
+def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     """The likeliest kind with its probability; an average and a greatest speed are told apart by their words."""
-    found = dict(kinds_of(said))
+    found, said = dict(kinds_of(words)), " ".join(words)
+    if _YES_OR_NO.search(said):
+        found = {kind: chance for kind, chance in found.items() if kind.startswith("if_")}
     kind = max(found, key=found.__getitem__)
     if kind in ("fast", "fast_most"):
         return ("fast_most" if _GREATEST.search(said) else "fast"), found["fast"] + found["fast_most"]
     return kind, found[kind]
 
 
-_GREATEST = re.compile(r"\b(?:top|max|maximum|maximal|peak|highest|greatest|fastest|most|record)\b")
+_YES_OR_NO = re.compile(
+    r"\b(?:yes or no|true or (?:false|not|nah)|right or wrong|is (?:that|this) (?:so|right|true|correct)|confirm)\b"
+)
+_REASONS = re.compile(
+    r"\b(?:why|reason|explain|because of|caus(?:e|es|ed|ing)|blame|on purpose|who(?:m|se)?|somebody|someone)\b"
+)
+_OF_SOMEBODY = bag("first last order fastest what_moves what_still happens does how_many")
+_GREATEST = re.compile(
+    r"\b(?:top(?= (?:speed|pace|rate|velocity)\b)|max|maximum|maximal|peak|highest|greatest|fastest|most|record)\b"
+)
 
 
 def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names: Collection[str]) -> Said | None:
@@ -100,16 +182,29 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
         found[tag].append(" ".join(words[start:stop]).strip(" ,.?"))
         inside |= set(range(start, stop))
     rest = " ".join(word for at, word in enumerate(words) if at not in inside)
+    events = [name for name in found["x"] if _AN_EVENT.match(name)]
+    found["x"] = [
+        name for name in found["x"] if name not in events and name not in ("ones", "the ones", "the one", "one")
+    ]
+    rest = " ".join((rest, *events))
+    if not found["x"]:  # "one of the toys was in a sulk, which was it?"
+        plain = (word for aside in found["off"] for word in aside.split())
+        found["x"] = [f"the {word}" for word in plain if word.endswith("s") and singular(word) in names][:1]
     things = {tag: tuple(dict.fromkeys(_named(name, names) for name in found[tag])) for tag in ("x", "y")}
     if len(things["y"]) > 1 or len(found["t"]) > 2 or any(_TIMED.search(aside) for aside in found["off"]):
         return None
     unit = _IN_UNIT.search(" ".join(found["u"]))
     return Said(
         x=_joined(things["x"]), y=_joined(things["y"]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
-        rest=f" {rest} ",
+        rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]),
     )  # fmt: skip
 
 
+_AN_EVENT = re.compile(
+    r"^(?:the |its |his |her |this |that )?(?:turn|turning|roll|rolling|fall|falling|opening|closing|walk|spin|"
+    r"movement|motion|rotation|drop)"
+    r"(?: manoeuvre| maneuver| movement| motion| phase| part)?$"
+)
 _TIMED = re.compile(
     rf"\b(?:when|while|until|till|once|after|before|during)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b|"
     rf"\b(?:{'|'.join(w for w in NUMBERS if w != 'one')})\b"
@@ -140,9 +235,24 @@ def _joined(names: tuple[str, ...]) -> str:
     return " and ".join(nouns)
 
 
-def _says_more(kind: str, said: Said, names: Collection[str]) -> bool:
+def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
     rest = said.rest.split()
+    if chance >= SURE:
+        told = [word for word in rest if word not in _ALLOWED.get(kind, ())]
+        denies = kind not in _NEGATED and not _DENIED.isdisjoint(told[1:])
+        ranked = not _RANKS.isdisjoint(told) or "than" in told
+        number = any((word in NUMBERS and word != "one") or word[0].isdigit() or is_color_word(word) for word in told)
+        return (
+            denies
+            or ranked
+            or number
+            or any(
+                singular(w) in names
+                for w in told
+                if w not in _VERBS and not (kind in _TO_THE_FLOOR and w in ("floor", "ground"))
+            )
+        )
     if not kind.startswith("if_") and rest and rest[0] in _AUXILIARIES:
         return True  # "is the ball at its top speed then?" wants no number
     if kind.startswith("if_") and _ASKS.intersection(rest):
@@ -159,6 +269,9 @@ def _says_more(kind: str, said: Said, names: Collection[str]) -> bool:
     return any(singular(word) in names for word in rest if word not in _VERBS)
 
 
+_DENIED = bag("not no never without nothing nobody")
+_RANKS = bag("second third first last other another twice again")
+_TO_THE_FLOOR = ("when_lands", "when_falls", "if_falls", "long_falls", "how_many")
 _ASKS = bag("which what how when where who whose")
 _AUXILIARIES = bag("is are was were does do did has have had")
 _NEGATED = bag("if_still what_still")
@@ -212,6 +325,15 @@ def _one_of(x: str) -> str:
     return " ".join((*words[:-1], singular(words[-1]))) if words else "thing"
 
 
+def _is_kind(x: str) -> bool:
+    """Whether what is asked about is a kind of things: "the drawers", and not "the room"."""
+    return x.endswith("s") and " and " not in x and _several(x) not in ("things", "objects", "items", "ones", "others")
+
+
+def _several(x: str) -> str:
+    return _PLURAL.sub("", x)
+
+
 Plain = Callable[[Said], Iterator[str]]
 
 
@@ -219,6 +341,10 @@ def _about(text: str, unit: bool = False) -> Plain:
     """A plain question with the things in it; none if it needs one that is not named."""
 
     def made(said: Said) -> Iterator[str]:
+        if "{y}" in text and not said.y and said.x.count(" and ") == 1:
+            one, other = said.x.split(" and ")  # which is on which is told by the scene
+            yield from (text.format(x=one, y=other), text.format(x=other, y=one))
+            return
         if ("{y}" in text and not said.y) or ("{x}" in text and not said.x):
             return
         asked = text.format(x=said.x, y=said.y)
@@ -251,12 +377,21 @@ def _ordered(said: Said, rank: str) -> Iterator[str]:
 
 
 def _in_order(said: Said) -> Iterator[str]:
+    if said.x and " and " not in said.x and said.x not in _PRONOUNS and not said.x.endswith("s"):
+        yield f"what does {said.x} do"
+        return
     deed = _deed(said.rest, "move")
     yield f"in what order do {said.x if said.x and said.x not in _PRONOUNS else 'things'} {deed}"
 
 
 def _counted(said: Said) -> Iterator[str]:
     deed = _deed(said.rest, "move")
+    if (
+        deed == "fall"
+        and re.match(r"^(?:at|by|after) \d", said.time)
+        and re.search(r"\b(?:down|fallen|dropped|landed)\b", said.rest)
+    ):
+        deed = "have fallen"
     noun = _PLURAL.sub("", said.x) if said.x and said.x not in _PRONOUNS else "things"
     yield f"how many {noun} {deed}"
 
@@ -287,6 +422,30 @@ def _fast(said: Said) -> Iterator[str]:
         yield f"how fast does {said.x} move in {said.unit}" if said.unit else f"what is the average speed of {said.x}"
 
 
+def _long(said: Said) -> Iterator[str]:
+    if said.x:
+        deed = _deed(said.rest, "move")
+        yield f"how long does {said.x} {deed if deed in ('turn', 'fall') else 'move'}"
+
+
+_FULLY = re.compile(r"\b(?:fully|full|completely|wholly|all the way|entirely|maximum|widest|furthest)\b")
+
+
+def _long_open(said: Said) -> Iterator[str]:
+    if said.x:
+        yield f"how long does {said.x} stay {'fully ' if _FULLY.search(said.rest) else ''}open"
+
+
+_SUMMED = re.compile(
+    r"\b(?:total|altogether|cumulative|sum|summed|added|add|combined|both ways|there and back|out and back|overall)\b"
+)
+
+
+def _in_total(said: Said) -> Iterator[str]:
+    if said.x and _SUMMED.search(f"{said.rest} {said.off}"):
+        yield f"how far does {said.x} move in total" + (f" in {said.unit}" if said.unit else "")
+
+
 def _which(said: Said) -> Iterator[str]:
     if said.x:
         yield (
@@ -301,6 +460,8 @@ def _over(said: Said) -> Iterator[str]:
 
 
 def _gap(said: Said) -> Iterator[str]:
+    if len(said.times) == 2:
+        yield f"how much time is there between {said.times[0]} and {said.times[1]}"
     deed = {"fall": "falling", "land": "landing", "stop": "stopping", "open": "opening", "close": "closing"}.get(
         _deed(said.rest, ""), "starting"
     )
@@ -321,18 +482,18 @@ _PLAIN: Mapping[str, Plain] = {
     "when_reaches": _about("when does {x} reach {y}"),
     "when_leaves": _either(_about("when does {x} leave {y}"), _about("when does {x} start to move")),
     "when_closest": _about("when is {x} closest to {y}"),
-    "long_moves": _about("how long does {x} move"),
+    "long_moves": _long,
     "long_opens": _about("how long does {x} take to open"),
     "long_closes": _about("how long does {x} take to close"),
-    "long_open": _about("how long does {x} stay open"),
+    "long_open": _long_open,
     "long_still": _about("how long does {x} stand still"),
     "long_on": _about("how long is {x} on {y}"),
     "long_falls": _about("how long does {x} fall"),
     "long_reach": _about("how long does {x} take to reach {y}"),
     "gap": _gap,
     "film_long": lambda said: iter(("how long is the film",)),
-    "far": _about("how far does {x} move", unit=True),
-    "far_opens": _about("how far does {x} open", unit=True),
+    "far": _either(_in_total, _about("how far does {x} move", unit=True)),
+    "far_opens": _either(_in_total, _about("how far does {x} open", unit=True)),
     "far_turns": _about("by how many degrees does {x} turn"),
     "fast": _fast,
     "fast_most": _about("what is the maximum speed of {x}", unit=True),
@@ -360,8 +521,10 @@ _PLAIN: Mapping[str, Plain] = {
     "if_before": lambda said: _compared(said, "before"),
     "if_after": lambda said: _compared(said, "after"),
     "if_together": lambda said: _compared(said, "at the same time as"),
-    "what_moves": lambda said: iter(("what moves",)),
-    "what_still": lambda said: iter(("what does not move",)),
+    "what_moves": lambda said: iter((f"which {_several(said.x)} move" if _is_kind(said.x) else "what moves",)),
+    "what_still": lambda said: iter(
+        (f"which {_several(said.x)} do not move" if _is_kind(said.x) else "what does not move",)
+    ),
     "how_many": _counted,
     "first": lambda said: _ordered(said, "first"),
     "last": lambda said: _ordered(said, "last"),

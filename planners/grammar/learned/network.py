@@ -1,0 +1,143 @@
+"""Tells the kind of a sentence and which of its words name what: a small recurrent network.
+
+Words, and the runs of letters in them, are embedded; two layers of long short-term memory (Hochreiter, Schmidhuber
+1997) read them forwards and backwards. The kind is told from the greatest and the mean of what they hold, the marks
+from what they hold at each word, as a chain of labels (Lample et al. 2016, "Neural Architectures for Named Entity
+Recognition"). Several tasks share all but their last layers.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .files import store, stored
+from .marks import Span, likeliest, spans_of
+from .seen import amount_or_color, classed
+
+F32 = NDArray[np.float32]
+
+FILE = Path(__file__).with_name("network.npz")
+ROWS = 8192  # of the table of pieces
+LAYERS = 2
+WAYS = ("forwards", "backwards")
+UNKNOWN = 0  # row of a word that was seen too rarely
+_RUNS = (3, 4, 5)  # letters of a piece
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is told of a sentence.
+
+    Attributes:
+        kinds: with their probabilities, the likeliest first.
+        spans: the marks in its words.
+    """
+
+    kinds: tuple[tuple[str, float], ...]
+    spans: tuple[Span, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """The network with its weights.
+
+    Attributes:
+        lists: `words`, the first of which is empty and stands for all others; of each task `kinds.TASK` and
+            `labels.TASK`.
+        weights: float32 arrays: `rows.words` `[words, width]`, `rows.pieces` `[ROWS, width]`; of each layer and way
+            `rnn.LAYER.WAY.inputs` `[4 hidden, inputs]`, `.hidden` `[4 hidden, hidden]` and `.biases`, whose rows are
+            the gates of input, forgetting, candidates and output; of each task `kinds.TASK.inputs` and
+            `labels.TASK.inputs` `[outputs, inputs]`, their `.biases`, and `moves.TASK` `[labels, labels]` from one
+            label to the next.
+    """
+
+    lists: Mapping[str, Sequence[str]]
+    weights: Mapping[str, F32]
+
+    @classmethod
+    def of(cls, path: Path = FILE) -> Network:
+        """The one that a file holds."""
+        return cls(*stored(path))
+
+    def write(self, path: Path = FILE) -> None:
+        """Store it in a file."""
+        store(path, self.lists, self.weights)
+
+    @cached_property
+    def places(self) -> dict[str, int]:
+        """The row of each word."""
+        return {word: row for row, word in enumerate(self.lists["words"])}
+
+    def told(self, task: str, words: Sequence[str]) -> Told:
+        """The kind of a sentence and its marks.
+
+        Args:
+            task: one of those that it has learned.
+            words: lower-case words and marks of punctuation.
+        """
+        labels = self.lists[f"labels.{task}"]
+        if not words:
+            return Told((), ())
+        held = self._held(words)
+        pooled = np.concatenate([held.max(axis=0), held.mean(axis=0)])
+        scores = self._linear(f"kinds.{task}", pooled)
+        chances = np.exp(scores - scores.max())
+        chances /= chances.sum()
+        names = self.lists[f"kinds.{task}"]
+        kinds = tuple((names[i], float(chances[i])) for i in np.argsort(-chances, kind="stable"))
+        row = likeliest(self._linear(f"labels.{task}", held), self.weights[f"moves.{task}"], labels)
+        return Told(kinds, tuple(spans_of(row)))
+
+    def _held(self, words: Sequence[str]) -> F32:
+        """What the last layer holds at each word, `[words, 2 hidden]`."""
+        known = self.weights["rows.words"][[self.places.get(word, UNKNOWN) for word in words]]
+        built = np.stack([self.weights["rows.pieces"][list(pieces(word))].mean(axis=0) for word in words])
+        held = np.concatenate([known, built], axis=1)
+        for layer in range(LAYERS):
+            forwards, backwards = (f"rnn.{layer}.{way}" for way in WAYS)
+            held = np.concatenate([self._read(forwards, held), self._read(backwards, held[::-1])[::-1]], axis=1)
+        return held
+
+    def _read(self, name: str, inputs: F32) -> F32:
+        """What one layer holds after each word, one way."""
+        given = inputs @ self.weights[f"{name}.inputs"].T + self.weights[f"{name}.biases"]
+        again = self.weights[f"{name}.hidden"]
+        hidden, cell = (np.zeros(again.shape[1], np.float32) for _ in range(2))
+        found = np.empty((len(inputs), again.shape[1]), np.float32)
+        for at, row in enumerate(given):
+            gates = row + again @ hidden
+            enter, keep, candidate, leave = np.split(gates, 4)
+            cell = _sigmoid(keep) * cell + _sigmoid(enter) * np.tanh(candidate)
+            hidden = _sigmoid(leave) * np.tanh(cell)
+            found[at] = hidden
+        return found
+
+    def _linear(self, name: str, values: F32) -> F32:
+        return values @ self.weights[f"{name}.inputs"].T + self.weights[f"{name}.biases"]
+
+
+def _sigmoid(values: F32) -> F32:
+    return 0.5 * (1 + np.tanh(0.5 * values))
+
+
+@cache
+def pieces(word: str) -> tuple[int, ...]:
+    """The rows of a word's pieces: its two classes first, then the runs of letters of what is no number."""
+    runs = [f"={classed(word)}", f"~{amount_or_color(word)}"]
+    if not word[:1].isdigit():
+        marked = f"<{word}>"
+        runs += [marked[at : at + count] for count in _RUNS for at in range(len(marked) - count + 1)]
+    return tuple(zlib.crc32(run.encode()) % ROWS for run in runs)
+
+
+@cache
+def network() -> Network:
+    """The network that comes with the package."""
+    return Network.of()

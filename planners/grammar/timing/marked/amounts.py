@@ -1,0 +1,105 @@
+"""Amounts that words with a mark name: "by half a metre", "one and a half turns per second", "twice"."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from .....gaussians import late_re as re
+from ...vocabulary.quantities import NUMBERS
+from ..moments import DURATION, seconds_of
+
+Unit = Literal["s", "m", "deg", "turns", "turns/s", "times", "%"]
+
+_WORD = "|".join(sorted((word for word in NUMBERS if word.isalpha()), key=len, reverse=True))
+_N = (
+    r"(?:\d+(?:\.\d+)?|three quarters(?: of an?)?|(?:an? )?quarter(?: of an?)?|(?:an? |one )?half(?: an?)?|"
+    rf"(?:an? |one )?third(?: of an?)?|(?:{_WORD})(?: (?:{_WORD}))?(?: and a half)?|an?)"
+)
+_FULL = r"(?: (?:full|whole|complete|entire|quick|slow|single|proper|more|further))*"
+_ROUNDS = r"(?:turns?|revolutions?|revs?|rotations?|rounds?|spins?|circles?|twirls?|pirouettes?|laps?|times|cycles?)"
+_EACH = r"(?: (?:around|round|about|over))?(?: ?/ ?| (?:per|a|an|each|every|by|in a|in one|to the) )"
+_SECOND = r"(?:s|secs?|seconds?)"
+_OFTEN = {"once": 1.0, "twice": 2.0, "thrice": 3.0}
+_TABLE: tuple[tuple[Unit, str], ...] = (  # tried in their order
+    ("turns/s", rf"(?P<n>{_N}){_FULL} {_ROUNDS}{_EACH}(?:(?P<per>{_N}) )?{_SECOND}"),
+    ("turns/s", rf"(?P<often>once|twice|thrice){_EACH}(?:(?P<per>{_N}) )?{_SECOND}"),
+    ("turns/s", rf"(?P<rpm>{_N}) ?(?:rpm|{_ROUNDS} (?:per|a) minute)"),
+    ("turns/s", rf"(?P<deg>{_N}) ?(?:degrees?|deg|°){_EACH}{_SECOND}"),
+    ("deg", rf"(?P<n>{_N})(?: (?:full|whole|more))? ?(?:degrees?|deg|°)"),
+    ("deg", r"(?P<right>right angle)"),
+    ("m", rf"(?P<n>{_N}){_FULL} ?(?P<unit>mm|cm|m|(?:milli|centi)?met(?:re|er)s?)"),
+    ("s", rf"(?P<s>{DURATION})"),
+    ("turns", rf"(?P<n>{_N}){_FULL} (?!times){_ROUNDS}(?: (?:around|round))?"),
+    ("turns", rf"(?P<often>once|twice|thrice|{_N} times)(?: (?:around|round|about)|(?= its| itself| on its))"),
+    ("%", rf"(?P<n>{_N}) ?(?:%|percent|per cent)"),
+    ("times", rf"(?P<n>{_N}) ?(?:x|times|fold)"),
+    (
+        "times",
+        r"(?P<factor>twice|double[ds]?|two fold|twofold|triple[ds]?|thrice|quadruple|halve[ds]?|half|quarter|third)",
+    ),
+    ("times", rf"factor (?:of )?(?P<n>{_N})"),
+)
+_PATTERNS = tuple((unit, re.compile(rf"(?<![\w.]){pattern}(?![\w.]*\d|\w)")) for unit, pattern in _TABLE)
+_FACTORS = {  # by how the word begins
+    "twice": 2.0, "doub": 2.0, "twof": 2.0, "two": 2.0, "trip": 3.0, "thri": 3.0, "quad": 4.0, "hal": 0.5,
+    "quar": 0.25, "third": 1 / 3,
+}  # fmt: skip
+_METRES = {"mm": 0.001, "cm": 0.01, "milli": 0.001, "centi": 0.01}
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A number with its unit; "times" is a factor."""
+
+    value: float
+    unit: Unit
+    said: str
+
+
+def amount(phrase: str) -> Amount | None:
+    """The amount that a phrase names; None if it names none, or none that is understood."""
+    for unit, pattern in _PATTERNS:
+        if (found := pattern.search(phrase)) is not None and (value := _value(unit, found)) is not None:
+            return Amount(value, unit, found[0])
+    return None
+
+
+def _value(unit: Unit, found: re.Match[str]) -> float | None:
+    told = {key: said for key, said in found.groupdict().items() if said}
+    if "s" in told:
+        return seconds_of(told["s"])
+    if "right" in told:
+        return 90.0
+    if "factor" in told:
+        return next(value for start, value in _FACTORS.items() if told["factor"].startswith(start))
+    if "often" in told:
+        value = _OFTEN.get(told["often"]) or number(told["often"].removesuffix(" times"))
+    else:
+        value = number(told.get("n") or told.get("rpm") or told["deg"])
+    if value is None:
+        return None
+    if unit == "m":
+        return value * next((scale for start, scale in _METRES.items() if told["unit"].startswith(start)), 1.0)
+    per = number(told["per"]) if "per" in told else 1.0
+    if "rpm" in told or "deg" in told:
+        return value / (60 if "rpm" in told else 360)
+    return value / per if per else None
+
+
+def number(said: str) -> float | None:
+    """The number that words name: "two", "a half", "one and a half", "a quarter of a"."""
+    said = re.sub(r" of an?$|(?<=half) an?$|(?<=third) an?$", "", said.strip())
+    if re.fullmatch(r"\d+(?:\.\d+)?", said):
+        return float(said)
+    if said.endswith(" and a half"):
+        whole = number(said.removesuffix(" and a half"))
+        return None if whole is None else whole + 0.5
+    if said in ("a", "an"):
+        return 1.0
+    said = re.sub(r"^(?:an?|one) (?=half|quarter|third)", "", said)
+    parts = {"half": 0.5, "quarter": 0.25, "third": 1 / 3, "three quarters": 0.75}
+    if said in parts:
+        return parts[said]
+    words = said.split()
+    return float(sum(NUMBERS[word] for word in words)) if words and all(word in NUMBERS for word in words) else None

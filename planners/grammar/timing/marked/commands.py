@@ -1,0 +1,540 @@
+"""The commands that each kind of wish makes of what the marks of an instruction hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from .....gaussians import late_re as re
+from .....gaussians.language.query.query import Query
+from ...learned.seen import hues
+from ...vocabulary.nouns import is_opened
+from ..clauses import ALL_OF_IT
+from ..command import Command, pace
+from ..happenings import Happening
+from ..moments import Moment
+from .slots import Slots
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A command, in words or as it is, and its time."""
+
+    command: str | Command
+    moment: Moment
+    happening: Happening | None
+
+
+_SLOWER = re.compile(
+    r"\b(?:slow\w*|calm\w*|gentl\w+|lazy|lazily|leisurely|brake|reduce\w*|less|lower|lessen|decelerat\w+|snail\w*|"
+    r"drag\w*|"
+    r"sluggish\w*|crawl\w*|slo|longer|long)\b"
+)
+_FASTER = re.compile(
+    r"\b(?:fast\w*|quick\w*|speed\w*|hurr\w+|rush\w*|snapp\w+|brisk\w*|zip\w*|accelerat\w+|rapid\w*|swift\w*|pace|"
+    r"rate|"
+    r"velocity|tempo|increase\w*|raise|more)\b"
+)
+_TOO_SLOW = re.compile(r"\b(?:too|so|painfully|awfully|rather)(?: \w+)? (?:slow\w*|sluggish\w*|lazy|lazily)\b")
+_TOO_FAST = re.compile(
+    r"\b(?:too|so|awfully|rather)(?: \w+)? (?:fast|quick\w*|rapid\w*|hast\w+|rushed)\b|\b(?:not|less) (?:so |as |"
+    r"that )?(?:fast|quick\w*|rapid\w*)\b"
+)
+_LONG = re.compile(r"\b(?:time|long|length|duration)\b")
+_LESS = re.compile(r"\b(?:less|lower|reduc\w+|cut|drop|decreas\w+|slower|slow)\b")
+_MORE = re.compile(r"\b(?:faster|quicker|increas\w+|rais\w+|more|up)\b")
+_LATER = re.compile(
+    r"\b(?:plus|later|delay\w*|late|postpon\w+|hold\w*|held|waits?|waiting|longer|behind|lag\w*|defer\w*|push\w*|"
+    r"hang\w*|"
+    r"back|pause\w*|linger\w*|stay\w*)\b"
+)
+_EARLIER = re.compile(r"\b(?:minus|earlier|sooner|early|ahead|forward|advanc\w+|shorter|less)\b")
+_STRICTLY_LATER = re.compile(r"\b(?:later|delay\w*|postpon\w+|longer)\b")
+_TOO = re.compile(r"\btoo (?:\w+ )?(?P<what>late|early|soon)\b")
+_UP = re.compile(
+    r"\b(?:up|upwards?|lift\w*|rais\w+|ris\w+|levitat\w+|float\w*|hover\w*|hoist\w*|higher|ascend\w*|into the air|"
+    r"off the ground|soar\w*|elevat\w+|jack|climb\w*)\b"
+)
+_DOWN = re.compile(r"\b(?:down|downwards?|lower\w*|sink\w*|sank|descend\w*)\b")
+_LEFT, _RIGHT = (
+    re.compile(r"\bleft(?:wards?)?\b"),
+    re.compile(r"\bright(?:wards?)?\b(?! (?:away|after|when|at|then|now|up|next|beside|before|as|on|in|from)\b)"),
+)
+_FOLLOWS = re.compile(
+    r"\b(?:follow\w*|chas\w+|tail\w*|trail\w*|pursu\w+|(?:run|go|drive|roll|walk|come|trot|"
+    r"rac\w+)\w* (?:right )?(?:after|behind)|tag along)\b"
+)
+_ROUND = re.compile(r"\b(?:circl\w+|orbit\w*|round|around|laps?|loops?)\b")
+_OTHERWISE = re.compile(  # moves that marks do not tell apart
+    r"\b(?:hop\w*|jump\w*|bounc\w+|bob\w*|wobbl\w+|sway\w*|shak\w+|swing\w*|tip\w*|toppl\w+|fall\w*|knock\w*|"
+    r"nod\w*|leap\w*|"
+    r"rock\w*|danc\w+|drop\w*|swap\w*|exchang\w+|trad\w+|places|throw\w*|kick\w*|sits?|tumbl\w+|crash\w*)\b"
+)
+_SEEN = re.compile(
+    r"\b(?:appears?|appear(?:ed|ing)|shows?|showing|shown|visible|into view|in view|pops? (?:up|in)|comes? in(?:to)?|"
+    r"reveals?|revealed|spawns?|turns? up|materiali[sz]es?|to be seen|see|seen|in (?:the )?(?:picture|shot|frame)|"
+    r"there)\b"
+)
+_GONE = re.compile(
+    r"\b(?:hid\w*|invisible|vanish\w*|disappear\w*|gone|gon|out|lose|lost|remov\w+|away|off|blank\w*|conceal\w*|poof|"
+    r"cut|drop|delet\w+|eras\w+|without|absent|unseen|unrender\w*|mask\w*|take|despawn\w*|bye|missing|suppress\w*|"
+    r"make \w+self scarce|blink\w*|transparent|ghost|rid|exit\w*|leave\w*|kill|cloak\w*)\b"
+)
+_NOT = re.compile(r"\b(?:not|no|never|without|nobody|nothing|neither|nor|stop|hardly)\b")
+_NO_WISH = re.compile(r"\b(?:unless|except|instead|if (?:the|it|he|she|they)|or)\b")
+_OTHER_WAY = re.compile(
+    r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction|side|sense)|way (?:round|around)|direction|"
+    r"sense|clockwise|anti ?clockwise|counter ?clockwise|counter|turns? (?:left|right))\b"
+)
+_BACKWARDS = re.compile(r"\b(?:backwards?|in reverse|rewind|rewound|from (?:the )?(?:end|back) to|end to start)\b")
+_TRAVELS = re.compile(
+    r"\b(?:travel|roll|walk|driv|slid|march|fall|run|ris)(?:e?s|e|ing|ling)?\b|\bsetting (?:off|out)\b"
+)
+_HALF = re.compile(
+    r"\b(?:half ?way|half(?: of)? (?:the|its|his|her|that|this)(?: \w+)? (?:way|fall|drop|walk|swing)|midway|half)\b"
+)
+_LESS_FAR = re.compile(r"\b(?:less|more|further|farther|wider|extra|additional|another|shorter|longer)\b")
+_SHUTS = re.compile(r"\b(?:clos\w+|shut\w*|(?:go|going|goes|slid\w+|mov\w+|com\w+) back|return\w*|back in)\b")
+
+
+def commands(kind: str, slots: Slots) -> Iterator[Wanted]:
+    """The commands of a kind that hold all that the marks do, the likeliest first."""
+    made = _KINDS.get(kind)
+    if made is None or not slots.names or _NO_WISH.search(slots.rest):
+        return
+    if kind not in _NEGATIVE and _NOT.search(slots.rest):
+        return
+    for wanted in made(slots):
+        if not slots.unused():
+            yield wanted
+        slots.used.clear()
+
+
+_NEGATIVE = ("hide", "remove", "still", "stay", "halt", "longer", "amount", "begin", "pause", "duration")
+
+
+def _now(slots: Slots, command: str | Command, **moment: Any) -> Wanted:
+    """A command at the time that marks tell, with parts of that changed."""
+    told = replace(slots.moment, slowly=False, quickly=False, **moment)
+    return Wanted(command, told, slots.happening)
+
+
+def _paced(slots: Slots, change: str, moment: Moment | None = None, **more: Any) -> Wanted:
+    command = pace(_whose(slots), change, **more)
+    return Wanted(command, _plainly(slots.moment) if moment is None else moment, slots.happening)
+
+
+def _plainly(moment: Moment) -> Moment:
+    return replace(moment, slowly=False, quickly=False)
+
+
+def _whose(slots: Slots) -> Query:
+    """What is changed, as one query."""
+    first, *others = slots.queries
+    also = tuple(other for query in others for other in (query.model_copy(update={"also": ()}), *query.also))
+    return first.model_copy(update={"also": (*first.also, *also)}) if also else first
+
+
+# -- looks and places --------------------------------------------------------------------------------------------------
+
+
+def _recolor(slots: Slots) -> Iterator[Wanted]:
+    if slots.color and any(word in hues() for word in slots.color.split()):
+        for goal in slots.goals:
+            slots.used.add(goal.name)
+        yield Wanted(Command(kind="look", text=f"make {slots.whom} {slots.color}"), slots.moment, slots.happening)
+
+
+def _hide(slots: Slots) -> Iterator[Wanted]:
+    if not slots.told:
+        yield from _remove(slots)
+        return
+    seen = _SEEN.search(slots.rest) is not None and _GONE.search(slots.rest) is None
+    seen = seen and _NOT.search(slots.rest) is None
+    slots.used |= {goal.name for goal in slots.goals}
+    yield Wanted(f"{'show' if seen else 'hide'} {slots.whom}", slots.moment, slots.happening)
+
+
+def _remove(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    if slots.told:
+        yield Wanted(f"hide {slots.whom}", slots.moment, slots.happening)
+    else:
+        yield Wanted(Command(kind="look", text=f"remove {slots.whom}"), slots.moment, None)
+
+
+def _move(slots: Slots) -> Iterator[Wanted]:
+    if slots.tell(_OTHERWISE):
+        return
+    goal, length = slots.goal(), slots.one("m")
+    if goal is not None and _FOLLOWS.search(slots.rest):
+        yield _now(slots, f"let {slots.whom} follow {goal.name}")
+        return
+    if goal is not None and goal.way not in ("on", "to") and _ROUND.search(slots.rest):
+        yield _now(slots, f"let {slots.whom} drive around {goal.name}")
+        return
+    ways = [way for way, words in _WAYS.items() if words.search(slots.said)]
+    if goal is not None and not (len(ways) == 1 and length is not None and goal.way == ""):
+        how = f" by {length.value:g} m" if length is not None else ""
+        place = f"towards {goal.name}" if length is not None else f"{'onto' if goal.way == 'on' else 'to'} {goal.name}"
+        yield Wanted(f"move {slots.whom}{how} {place}", slots.moment, slots.happening)
+    elif len(ways) == 1 and (length is not None or ways == ["up"]):
+        how = f" by {length.value:g} m" if length is not None else ""
+        yield Wanted(f"move {slots.whom} {ways[0]}{how}", slots.moment, slots.happening)
+
+
+_WAYS = {"up": _UP, "down": _DOWN, "to the left": _LEFT, "to the right": _RIGHT}
+
+
+# -- turns and repeats -------------------------------------------------------------------------------------------------
+
+
+def _spin(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    whom = slots.whom
+    if (rate := slots.one("turns/s")) is not None:
+        yield _now(slots, f"spin {whom} {rate.value:g} turns per second")
+        return
+    whole = {"stop": "end"} if slots.moment.always or _is_last(slots.moment) else {}
+    if (angle := slots.one("deg")) is not None:
+        yield _now(slots, f"spin {whom} by {angle.value:g} degrees", **whole)
+    elif (turns := slots.one("turns", "times")) is not None:
+        how = {0.5: "half a turn", 0.25: "a quarter turn", 1.0: "once"}.get(turns.value, f"{turns.value:g} turns")
+        yield _now(slots, f"spin {whom} {how}", **whole)
+    else:
+        yield _now(slots, f"let {whom} spin" if slots.told else f"spin {whom}")
+
+
+def _is_last(moment: Moment) -> bool:
+    """Whether a time is the last seconds of the scene."""
+    return isinstance(moment.start, float) and moment.start < 0 and moment.stop is None
+
+
+def _reverse(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    if slots.told:
+        return
+    if not slots.tell(_TRAVELS) and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
+        yield _now(slots, f"let {slots.whom} turn the other way round")
+    else:
+        whose = slots.queries[0]
+        yield Wanted(pace(ALL_OF_IT if whose.text == "everything" else _whose(slots), "reverse"), Moment(), None)
+
+
+def _repeat(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    again = slots.one("times", "turns")
+    if slots.told:
+        yield _paced(slots, "repeat", times=1)
+    elif again is not None and again.value >= 2:
+        yield _paced(slots, "repeat", times=round(again.value) - 1)
+    else:
+        yield _now(slots, f"repeat the movement of {slots.whom}")
+
+
+def _return(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    yield _paced(slots, "return")
+
+
+# -- when and how fast -------------------------------------------------------------------------------------------------
+
+
+def _begin(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals if slots.happening is None}
+    moment, by = _plainly(slots.moment), slots.one("s")
+    if by is not None:
+        if (sign := _sign(slots)) is not None and slots.happening is None:
+            yield Wanted(pace(_whose(slots), "later", seconds=sign * by.value), Moment(), None)
+        elif slots.happening is not None and moment.empty and slots.happening.during.part != "until":
+            yield _paced(slots, "begin", replace(moment, start=by.value))
+        return
+    if not slots.told:
+        return
+    if is_opened(_noun(slots)) and _SHUTS.search(slots.rest) and moment.start is not None:
+        yield _now(slots, f"close {slots.whom}")
+        return
+    if moment.stop is not None and moment.start is None and slots.happening is None and moment.lasting is None:
+        moment = replace(moment, start=moment.stop, stop=None)  # "it waits until 2 s"
+    if moment.lasting is not None:
+        moment = replace(moment, taken=True)
+    yield _paced(slots, "begin", moment)
+
+
+def _noun(slots: Slots) -> str:
+    return slots.queries[0].text
+
+
+def _sign(slots: Slots) -> float | None:
+    """1 if something is to be later, -1 if earlier; None if neither is said, or both."""
+    whole = " ".join(slots.words)
+    if (too := _TOO.search(whole)) is not None and not re.search(r"\b(?:earlier|sooner|later)\b", slots.said):
+        return -1.0 if too["what"] == "late" else 1.0
+    for later in (_STRICTLY_LATER, _LATER):
+        late, early = (slots.tell(words) for words in (later, _EARLIER))
+        if late != early:
+            return 1.0 if late else -1.0
+    return None
+
+
+def _speed(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    if (rate := slots.one("turns/s")) is not None:
+        yield _now(slots, f"spin {slots.whom} {rate.value:g} turns per second")
+        return
+    if (seconds := slots.one("s")) is not None and not slots.told:
+        yield _paced(slots, "begin", Moment(lasting=seconds.value, taken=True))
+        return
+    if slots.moment.lasting is not None and slots.moment.start is None and slots.happening is None:
+        slots.used |= {own.said for own in slots.amounts}
+        yield from _duration(slots)
+        return
+    if (factor := _factor(slots)) is not None:
+        yield _paced(slots, "speed", factor=round(factor, 4))
+
+
+def _factor(slots: Slots) -> float | None:
+    """How many times as fast; None if that is not told."""
+    said = _TOO_SLOW.sub(" faster ", _TOO_FAST.sub(" slower ", " ".join(slots.said.split())))
+    slow, fast = _SLOWER.search(said) is not None, _FASTER.search(said) is not None
+    told = slots.one("times", "%", "turns")
+    if told is None:
+        strictly = re.search(r"\b(?:faster|quicker|speed (?:\S+ )*up|hurry|accelerat\w+)\b", said) is not None
+        if slow and not strictly:
+            return 0.5
+        return 2.0 if fast and not slow else None
+    value = told.value / 100 if told.unit == "%" else told.value
+    if value <= 0:
+        return None
+    if told.unit == "%" or (value < 1 and re.search(rf"\bby (?:a )?{re.escape(told.said)}", said)):
+        if re.search(r"\b(?:to|at|of|with) (?:only |just |about )?" + re.escape(told.said), said):
+            return value
+        if _LESS.search(said):
+            return 1 - value if value < 1 else None
+        if _MORE.search(said):
+            return 1 + value
+        return value
+    if _LONG.search(said) and not fast:
+        return 1 / value
+    if value > 1 and slow and not re.search(r"\bas (?:fast|quick)\b", said):
+        return 1 / value
+    return value
+
+
+def _duration(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    moment = _plainly(slots.moment)
+    if moment.lasting is None and moment.stop is None and (seconds := slots.one("s")) is not None:
+        if slots.tell(re.compile(r"\b(?:longer|shorter|more|less|another|extra|additional|sooner|earlier|later)\b")):
+            return
+        moment = replace(moment, lasting=seconds.value)
+    if moment.lasting is not None:
+        yield _paced(slots, "begin", replace(moment, taken=True))
+    elif moment.stop not in (None, "end") or (moment.stop == "end" and moment.start is not None):
+        yield _paced(slots, "begin", moment)
+    elif (factor := slots.one("times", "%")) is not None:
+        value = factor.value / 100 if factor.unit == "%" else factor.value
+        if value > 0:
+            yield _paced(slots, "speed", moment, factor=round(1 / value, 4))
+
+
+# -- rests -------------------------------------------------------------------------------------------------------------
+
+_HALFWAY = {"state": "halfway", "part": "from"}
+
+
+def _pause(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    moment = replace(_plainly(slots.moment), taken=False)
+    if moment.lasting is None and (seconds := slots.one("s")) is not None:
+        moment = replace(moment, lasting=seconds.value)
+    if moment.lasting is not None and moment.start is None and slots.happening is None and moment.stop is None:
+        if slots.tell(_HALF):
+            slots.used |= {own.said for own in slots.amounts}
+            rest = replace(pace(_whose(slots), "stop"), during=_HALFWAY)
+            yield Wanted(rest, moment, None)
+        return
+    both = moment.stop is not None and (moment.start is not None or slots.happening is not None)
+    if moment.lasting is not None or both or _has_ends(slots.happening):
+        yield _paced(slots, "stop", moment)
+
+
+def _has_ends(happening: Happening | None) -> bool:
+    """Whether a time told by what happens begins and ends."""
+    return happening is not None and (happening.until is not None or happening.during.part in ("while", "unless"))
+
+
+def _halt(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    moment = _plainly(slots.moment)
+    if (length := slots.one("m")) is not None and not slots.told:
+        yield _paced(slots, "part", Moment(), distance={"value": length.value})
+        return
+    if moment.lasting is not None:
+        return
+    ended = moment.start is None and isinstance(moment.stop, float) and slots.happening is None
+    if ended:  # "it only runs until 2 s"
+        moment = replace(moment, start=moment.stop, stop=None)
+    if slots.told and (moment.start is not None or slots.happening is not None):
+        yield _paced(slots, "stop", replace(moment, stop=None) if moment.stop == "end" else moment)
+    elif slots.tell(_HALF):
+        slots.used |= {own.said for own in slots.amounts}
+        yield Wanted(replace(pace(_whose(slots), "stop"), during=_HALFWAY), Moment(), None)
+
+
+def _still(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    if not slots.told or slots.moment.always:
+        yield Wanted(pace(_whose(slots), "stop"), Moment(), None)
+    elif slots.happening is None:
+        yield _paced(slots, "stop")
+
+
+def _stay(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    if is_opened(_noun(slots)):
+        yield Wanted(f"keep {slots.whom} open", Moment(), None)
+    else:
+        yield from _halt(slots)
+
+
+def _longer(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    if slots.moment.lasting is None and slots.happening is None and not slots.amounts:
+        stop = slots.moment.stop if isinstance(slots.moment.stop, float) else None
+        yield Wanted(pace(_whose(slots), "go_on"), Moment(stop=stop), None)
+
+
+# -- how far -----------------------------------------------------------------------------------------------------------
+
+
+def _amount(slots: Slots) -> Iterator[Wanted]:
+    slots.used |= {goal.name for goal in slots.goals}
+    if _LESS_FAR.search(slots.said) and not _NOT.search(slots.rest):
+        return  # "5 cm more": from how far it goes now
+    if (how := _how_far(slots)) is None:
+        return
+    if is_opened(_noun(slots)):
+        yield _now(slots, f"open {slots.whom} {how}")
+    elif how.startswith("by") and how.endswith(" m"):
+        yield _now(slots, f"let {slots.whom} only move {how.removeprefix('by ')}")
+    elif how == "halfway":
+        yield _now(slots, f"let {slots.whom} go half the way")
+
+
+def _how_far(slots: Slots) -> str | None:
+    """How far something opens or goes, in words."""
+    if (angle := slots.one("deg")) is not None:
+        return f"by {angle.value:g} degrees"
+    if (length := slots.one("m")) is not None:
+        return f"by {length.value:g} m"
+    share = slots.one("times", "%")
+    if (share is not None and share.value in (0.5, 50.0)) or (share is None and slots.tell(_HALF)):
+        return "halfway"
+    return None
+
+
+def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
+    if slots.goals:
+        return  # as another one does
+    by = slots.one("s")
+    if by is not None and not isinstance(slots.moment.start, float):
+        sign = _sign(slots)
+        if sign is not None and not slots.told:
+            yield Wanted(pace(_whose(slots), "later", seconds=sign * by.value), Moment(), None)
+        elif slots.happening is not None and slots.moment.empty:
+            yield _now(slots, f"{verb} {slots.whom}", start=by.value)
+        return
+    how = _how_far(slots) if slots.amounts else None
+    moment = slots.moment if slots.moment.lasting is None else replace(slots.moment, taken=True)
+    command = f"{verb} {slots.whom}" if how is None or verb == "close" else f"open {slots.whom} {how}"
+    yield Wanted(command, _plainly(moment), slots.happening)
+
+
+# -- one after the other -----------------------------------------------------------------------------------------------
+
+_REVERSED = re.compile(
+    r"\b(?:revers\w+|invert\w*|opposite|backwards?|other way (?:round|around)|flip\w*|contrary|inverse|"
+    r"turned (?:round|around)|swap\w*)\b"
+)
+_RANK = re.compile(
+    r"\b(?:(?P<first>first|firstly|begins?|starts?|leads?|leading|earliest|opens)|"
+    r"(?P<last>last|lastly|finally|latest|at the end|ends?|final|closing)|(?P<after>after|following|behind)|"
+    r"(?P<before>before|ahead of))\b"
+)
+
+
+def _order(slots: Slots) -> Iterator[Wanted]:
+    listed = _listed(slots)
+    slots.used |= {goal.name for goal in slots.goals}
+    if slots.told:
+        if slots.happening is not None and len(slots.names) == 1 and slots.moment.empty:
+            yield _paced(slots, "begin")
+        return
+    if len(listed) > 1:
+        query = Query(text="", moving=True, pick="all")
+        yield Wanted(Command(({"op": "order", "target": query, "order": "listed", "first": listed},)), Moment(), None)
+    elif slots.tell(_REVERSED):
+        yield Wanted(f"let {slots.names[0]} move in reverse order", Moment(), None)
+    elif listed:
+        rank = next((found.lastgroup for found in _RANK.finditer(slots.rest)), None)
+        if rank in ("first", "last"):
+            yield Wanted(f"let {slots.names[0]} start {rank}", Moment(), None)
+
+
+def _listed(slots: Slots) -> tuple[Query, ...]:
+    """The things in the order in which they are to begin; none if that is not told."""
+    found = list[tuple[int, Query]]()
+    for name, query in zip(slots.names, slots.queries, strict=True):
+        found.append((_place_of(name, slots), query))
+    found += [(_place_of(goal.name, slots), goal.query) for goal in slots.goals]
+    found = [(at, query) for at, query in found if query.pick not in ("all", "rest")]
+    ordered = [query for _, query in sorted(found, key=lambda own: own[0])]
+    places = sorted(at for at, _ in found)
+    if len(ordered) == 1:
+        return tuple(ordered)
+    ranks = dict[int, str]()
+    for i, at in enumerate(places):
+        until = places[i + 1] if i + 1 < len(places) else len(slots.words)
+        behind = _RANK.search(" ".join(slots.words[at:until]))
+        since = places[i - 1] if i else 0
+        before = [*_RANK.finditer(" ".join(slots.words[since:at]))]
+        own = (
+            before[-1].lastgroup
+            if before and (i == 0 or i in ranks or before[-1].lastgroup in ("after", "before"))
+            else None
+        )
+        own = own or (behind.lastgroup if behind is not None else None)
+        if own is not None:
+            ranks[i] = own
+    if len(ordered) == 2 and ranks.get(1) == "after":
+        return (ordered[1], ordered[0])
+    firsts = [ordered[i] for i in range(len(ordered)) if ranks.get(i) == "first"]
+    lasts = [ordered[i] for i in range(len(ordered)) if ranks.get(i) == "last"]
+    if len(firsts) > 1 or len(lasts) > 1:
+        return tuple(ordered)
+    return tuple([*firsts, *(query for query in ordered if query not in firsts and query not in lasts), *lasts])
+
+
+def _place_of(name: str, slots: Slots) -> int:
+    """Where a name stands among the words."""
+    own = name.removeprefix("the ").removesuffix(" one").split()[0]
+    return next((at for at, word in enumerate(slots.words) if word == own), 0)
+
+
+def _together(slots: Slots) -> Iterator[Wanted]:
+    who = [*slots.names, *(goal.name for goal in slots.goals)]
+    slots.used |= {goal.name for goal in slots.goals}
+    whose = slots.queries[0]
+    if slots.happening is None and (len(who) > 1 or whose.pick == "all" or slots.names[0].endswith("s")):
+        yield Wanted(f"let {' and '.join(who)} start at the same time", _plainly(slots.moment), None)
+
+
+_KINDS: dict[str, Callable[[Slots], Iterator[Wanted]]] = {
+    "recolor": _recolor, "hide": _hide, "remove": _remove, "move": _move, "spin": _spin, "begin": _begin,
+    "speed": _speed, "duration": _duration, "pause": _pause, "halt": _halt, "still": _still, "reverse": _reverse,
+    "stay": _stay, "amount": _amount, "open": partial(_opening, verb="open"), "close": partial(_opening, verb="close"),
+    "order": _order, "together": _together, "repeat": _repeat, "return": _return, "longer": _longer,
+}  # fmt: skip

@@ -1,0 +1,314 @@
+"""What the marks of an instruction hold: things, goals, a time, an amount, a colour; and the words between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+from .....gaussians import late_re as re
+from .....gaussians.language.query.query import Query
+from ...learned.marks import Span
+from ...learned.seen import hues
+from ...vocabulary.nouns import is_known
+from ...vocabulary.quantities import NUMBERS
+from ..happenings import IT, Happening
+from ..manner import Thing
+from ..moments import Moment
+from ..supposed.kinds import COURSES
+from ..supposed.names import MOVING
+from ..supposed.names import named as names_in
+from ..supposed.times import LASTS, LEADING, TIMES, UNTIL, delayed, joined, told_by
+from .amounts import Amount, amount
+
+_EVENTS = (
+    r"(?:falls?|falling|drops?|movements?|motions?|rolls?|rolling|walks?|walking|turns?|turning|rotations?|spins?|"
+    r"spinning|swings?|swinging|slides?|sliding|openings?|closings?|opening|closing|return|run|way|path|trip|journey|"
+    r"route|ride|speed|pace|rate|start|stop|descent|animation|sequence|order|action|travel|stroke|course)"
+)
+_OF_EVENT = re.compile(rf"^(?:the |its |his |her |a )?(?:\w+ )?{_EVENTS} (?:of|by|for) ")
+_ITS_EVENT = re.compile(rf"(?: 's?)?(?: (?:whole|entire|full|complete|outward|return|own|\w+ward))? {_EVENTS}$")
+_JUST_EVENT = re.compile(rf"^(?:the |its |his |her |their |this |that |whole |entire |\w+ing )*{_EVENTS}$")
+_TRIM = " ,.;:!?'\""
+_PLACES = re.compile(
+    r"(?P<source>(?:off|from|out of|away from)(?: of)?)$|(?P<on>(?:on ?to|on top of|on|upon))$|"
+    r"(?P<to>(?:to|towards?|next to|beside|by|near|close to|alongside|against|at|until|up to|into|in|under|behind|"
+    r"in front of|meets?|reach(?:es)?|hits?|joins?|visits?|for|of|before|over to|across to))$"
+)
+_RANKS = re.compile(
+    r"(?: (?:next|first|last|then|second|third|afterwards|finally|in turn|on|off|one by one|itself|himself|"
+    r"herself|too|as well|again|instead|there|here))+$"
+)
+_KEEPING = re.compile(
+    r"^(?:while|whilst|all the while) (?:still )?(?:preserving|keeping|maintaining|retaining|leaving|holding|"
+    r"conserving)\b"
+)
+_PLAINER = (  # times in plainer words
+    (re.compile(r"^(?:for |during |in )?(?:just |exactly |precisely |only )*(?=(?:as|so) long as\b)"), ""),
+    (re.compile(r"\b(?:a|one) second (?=has|is|have)"), "1 seconds "),
+    (
+        re.compile(
+            r"\b(?:has|have|is|are|'s) (?:\w+ly )?(?:swung|slid|come|gone|been pulled|opened|swinging|pulled|rolled)"
+            r"(?: (?:fully|wide|right|all the way|completely|wholly))? (?=(?:open|out)\b)"
+        ),
+        "is fully ",
+    ),
+    (re.compile(r"\bthe rest of (?:the|this) \w+$"), "the rest of the film"),
+    (
+        re.compile(r"^(?P<lead>(?:by|until|till|before|at) the )(?P<rank>first|second|third|fourth|fifth)$"),
+        r"\g<lead>\g<rank> second",
+    ),
+    (
+        re.compile(
+            r"^(?P<lead>(?:for|in|of|over|within|taking|lasting) )?(?:an?|the|just|only|like|about) (?=(?:\d|one|"
+            r"two|three|four|five|half a|third of|quarter of)\b)"
+        ),
+        r"\g<lead>",
+    ),
+)
+_LOOKS = ("recolor", "hide", "remove")  # kinds that other things only tell the place of
+_ARRIVES = re.compile(
+    r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?|home|parks?|"
+    r"complet\w+|back|again|return\w*|re ?\w+s)\b"
+)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Where something goes, or beside what: the name, what it means, and whether that is on, to or away from it."""
+
+    name: str
+    query: Query
+    way: str
+
+
+@dataclass
+class Slots:
+    """What the marks of an instruction hold.
+
+    Attributes:
+        names: those of the things that are changed, each once and as said, with an article.
+        goals: other things.
+        moment, happening: the time in numbers, and by what happens.
+        amounts: how much.
+        color: as which colour; "" if none is told.
+        rest: the words without a mark, with a bar for each mark that names a thing.
+        said: all words that ask for something: those without a mark, and of things, goals and amounts.
+        spans: the marks.
+        used: what of this a command holds.
+    """
+
+    names: tuple[str, ...]
+    queries: tuple[Query, ...]
+    goals: tuple[Goal, ...]
+    moment: Moment
+    happening: Happening | None
+    amounts: tuple[Amount, ...]
+    color: str
+    rest: str
+    said: str
+    words: Sequence[str]
+    spans: Sequence[Span]
+    used: set[str] = field(default_factory=set)
+
+    @property
+    def told(self) -> bool:
+        """Whether any time is told."""
+        return self.happening is not None or self.moment.told
+
+    @property
+    def whom(self) -> str:
+        """The names of all things that are changed."""
+        return " and ".join(self.names)
+
+    def one(self, *units: str) -> Amount | None:
+        """The amount with one of some units, which a command then holds; None if there is none, or several."""
+        fits = [own for own in self.amounts if own.unit in units]
+        if len(fits) != 1:
+            return None
+        self.used.add(fits[0].said)
+        return fits[0]
+
+    def goal(self) -> Goal | None:
+        """The one goal that is no source, which a command then holds."""
+        fits = [goal for goal in self.goals if goal.way != "from"]
+        if len(fits) != 1:
+            return None
+        self.used |= {goal.name for goal in self.goals}
+        return fits[0]
+
+    def tell(self, pattern: re.Pattern[str]) -> bool:
+        """Whether words that ask for something are among some."""
+        return pattern.search(self.said) is not None
+
+    def unused(self) -> bool:
+        """Whether an amount, or a goal, stands in no command."""
+        return any(own.said not in self.used for own in self.amounts) or any(
+            goal.name not in self.used for goal in self.goals if goal.way != "from"
+        )
+
+
+def slots(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str) -> Slots | None:
+    """What the marks in words hold; None if one of them is not understood, or a number stands in none.
+
+    Args:
+        thing: reads a name.
+        kind: that of the wish.
+    """
+
+    def text(span: Span) -> str:
+        return " ".join(words[span[1] : span[2]]).strip(_TRIM)
+
+    spans = sorted(spans, key=lambda span: span[1])
+    ends = kind in ("hide", "recolor")  # "gone at 1 s, and back at 3 s"
+    time = _time(words, spans, text, thing, ends)
+    if time is None:
+        return None
+    amounts = list[Amount]()
+    for span in spans:
+        if span[0] == "by":
+            if (found := amount(text(span))) is None:
+                return None
+            amounts += [] if any(found.value == own.value and found.unit == own.unit for own in amounts) else [found]
+    names, queries = _things(map(text, (s for s in spans if s[0] == "x")), thing)
+    goals = tuple(_goals(words, spans, text, thing))
+    if kind not in _LOOKS and any(goal.query.last for goal in goals):
+        return None
+    if not names and kind in COURSES:
+        names, queries = (MOVING,), (Query(text="", moving=True, pick="all"),)
+    if not names and len(goals) == 1:  # "a coat of paint on the bed"
+        names, queries = (goals[0].name,), (goals[0].query,)
+    goals = tuple(goal for goal in goals if not goal.query.last and goal.query not in queries)
+    colors = dict.fromkeys(_color(text(span)) for span in spans if span[0] == "as")
+    marked = {at for _, start, stop in spans for at in range(start, stop)}
+    left = [word for at, word in enumerate(words) if at not in marked]
+    if len(colors) > 1 or any(_is_number(word, then) for word, then in pairwise([*left, ""])):
+        return None
+    asking = {at for tag, start, stop in spans if tag in ("x", "y", "by") for at in range(start, stop)}
+    said = " ".join(word for at, word in enumerate(words) if at not in marked or at in asking)
+    return Slots(
+        names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said, words, spans
+    )
+
+
+def _rest(words: Sequence[str], spans: Sequence[Span]) -> str:
+    found, at = list[str](), 0
+    for tag, start, stop in spans:
+        found += [*words[at:start], *(["|"] if tag in ("x", "y") else [])]
+        at = stop
+    return " ".join([*found, *words[at:]])
+
+
+def _is_number(word: str, then: str) -> bool:
+    if word[0].isdigit():
+        return True
+    return word in NUMBERS and word not in ("one", "a", "an", "half") and not is_known(then)
+
+
+def _color(said: str) -> str:
+    """A colour without the words around it."""
+    said = re.sub(
+        r"^(?:(?:as|in|to|into|a|an|the|of|nice|bright|lovely|painted|coloured|colored|turned|it) )*(?=\w)", "", said
+    )
+    return re.sub(r"(?: (?:colou?r|one|ones|instead|again|paint|shade|coat|all over|please|hue))+$", "", said)
+
+
+def _things(said: Iterator[str], thing: Thing) -> tuple[tuple[str, ...], tuple[Query, ...]]:
+    """Names of things and what they mean, each once, without pronouns and what they do: "the ball 's roll"."""
+    found = dict[str, Query]()
+    for name in said:
+        if _JUST_EVENT.match(name):
+            continue
+        bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
+        bare = re.sub(r" 's?$", "", bare)
+        query = thing(bare)
+        if query is None and (shorter := _RANKS.sub("", bare)) != bare:
+            bare = shorter
+            query = thing(bare)
+        if query is None and bare.removeprefix("the ") in hues():
+            bare = f"the {bare.removeprefix('the ')} one"
+            query = thing(bare)
+        if query is None:
+            inner = names_in(bare, thing)
+            bare = inner[0] if inner else bare
+            query = thing(bare) if inner else None
+        if query is None or query.last or query in found.values():
+            continue
+        found[re.sub(r"^(?:this|that|a|an|our|my|your) ", "the ", bare)] = query
+    return tuple(found), tuple(found.values())
+
+
+def _goals(words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], str], thing: Thing) -> Iterator[Goal]:
+    seen = list[Query]()
+    for span in spans:
+        name = text(span)
+        if span[0] != "y" or _JUST_EVENT.match(name):
+            continue
+        inside = re.match(
+            r"^(?:(?:over|all the way|right|straight) )?(?:to|next to|towards?|beside|by|near|on ?to|on|against|"
+            r"off|from) (?=the |its |my |our )",
+            name,
+        )
+        before = " ".join(words[max(0, span[1] - 3) : span[1]]) if inside is None else inside[0].strip()
+        name = name if inside is None else name[inside.end() :]
+        query = thing(name) or IT
+        if query in seen:
+            continue
+        seen.append(query)
+        way = _PLACES.search(before)
+        yield Goal(
+            re.sub(r"^(?:this|that|a|an|our|my|your) ", "the ", name), query,
+            "" if way is None else "from" if way["source"] else "on" if way["on"] else "to",
+        )  # fmt: skip
+
+
+def _time(
+    words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], str], thing: Thing, ends: bool
+) -> tuple[Moment, Happening | None] | None:
+    """The time that marks tell; None if one of them is not understood, or if they contradict each other."""
+    moment, happening = Moment(), None
+    for span in spans:
+        tag, phrase = span[0], text(span)
+        if tag not in TIMES or not phrase or _KEEPING.match(phrase):
+            continue
+        for pattern, plain in _PLAINER:
+            phrase = pattern.sub(plain, phrase)
+        begun = moment.start is not None or (
+            happening is not None and happening.during.part not in ("until", "until_end")
+        )
+        if tag == "from" and begun and (ends or _ARRIVES.search(" ".join(words[max(0, span[1] - 4) : span[1]]))):
+            tag = "to"
+        if tag == "from" and UNTIL.match(phrase):
+            tag = "to"
+        if tag in ("from", "to") and LASTS.match(phrase):
+            tag = "for"
+        phrase, delay = delayed(LEADING.sub("", phrase))
+        told = told_by(tag, phrase, thing)
+        if (
+            told is None
+            and (
+                bare := re.sub(
+                    r"^(?:right|only|just|exactly|precisely|immediately|directly|shortly|already|not) ", "", phrase
+                )
+            )
+            != phrase
+        ):
+            told = told_by(tag, bare, thing)
+        if told is None:
+            return None
+        found, event = told
+        if delay is not None:
+            found = replace(found or Moment(), start=delay)
+        if found is not None:
+            if (both := joined(moment, found)) is None:
+                return None
+            moment = both
+        if event is not None and happening is not None:
+            event = happening.ended(event) or event.ended(happening)
+            if event is None:
+                return None
+        happening = event or happening
+    return moment, happening
+
+
+__all__ = ["IT", "Goal", "Slots", "slots"]
