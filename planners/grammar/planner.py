@@ -40,7 +40,7 @@ from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
 from .timing.ending import with_end
-from .timing.judging import PLAINLY, Judge
+from .timing.judging import Judge
 from .timing.keeping import held, without_kept
 from .timing.reading import TimeReader, is_misread, may_be_timed
 from .timing.spoken import written
@@ -214,11 +214,11 @@ def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _
     except Refusal as refusal:
         if refusal.verdict == "unsafe" or (refusal.firm and refusal.verdict != "impossible"):
             raise
-        if (supposed := judge.supposed(cleaned, SURE if refusal.verdict == "impossible" else 0.0)) is None:
+        if (supposed := judge.likeliest(cleaned, SURE if refusal.verdict == "impossible" else 0.0)) is None:
             raise
         return _guessed(supposed)
     if judge.contradicts(cleaned, outcome.ops):
-        if (supposed := judge.supposed(cleaned)) is None:
+        if (supposed := judge.likeliest(cleaned)) is None:
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
         return _guessed(supposed)
     if (supposed := judge.timed(cleaned, outcome.ops)) is not None:
@@ -256,10 +256,7 @@ def _wished(cleaned: str, previous: str | None) -> _Outcome:
     except Refusal as refusal:
         if refusal.firm or refusal.verdict in ("unsafe", "impossible"):
             raise
-        judge = Judge(TimeReader(_operations, _thing))
-        if (found := judge.marked(cleaned, PLAINLY)) is not None:
-            return _guessed(found)
-        if (wished := judge.wished(cleaned)) is None:
+        if (wished := Judge(TimeReader(_operations, _thing)).wished(cleaned)) is None:
             raise
         return _guessed(wished)
 

@@ -21,7 +21,7 @@ from . import happenings, moments
 from .command import Command, Fields
 from .happenings import IT, Happening
 from .marked.commands import commands
-from .marked.slots import slots
+from .marked.slots import asks_more, slots
 from .moments import Moment
 from .reading import CLAUSE, TIMELESS, TimeReader
 from .supposed.choosing import Offer, chosen, says_plainly
@@ -32,7 +32,7 @@ from .supposed.parts import divided
 from .supposed.said import Said, said_of
 from .supposed.times import TIMES
 from .supposed.wished import is_wished
-from .supposed.wishes import SURE, wishes
+from .supposed.wishes import SURE, is_ruled_out, says_no_more, wishes
 from .whens import of_one_movement
 from .wording import LONG_WORDS, in_words, spelt_out, spelt_right, tidy
 
@@ -58,7 +58,6 @@ _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IG
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 MARKED = 0.5  # probability of a kind from which what the marks hold is its command
-PLAINLY = 0.9  # the same where no word is of time or motion
 _LONGEST = 45  # words of an instruction with one wish
 _ALWAYS = re.compile(
     r"\b(?:throughout|always|all the time|(?:the )?(?:whole|entire|full) (?:time|film|clip|video|scene|shot|"
@@ -74,9 +73,6 @@ _BOTH_AT_ONCE = re.compile(
     rf"simultaneously|all at once)\b|"
     rf"\b{_AT_REST}\b.{{0,30}}\b(?:and|but|yet|while)\b.{{0,30}}\b{_MOVES}\b.{{0,40}}\b(?:at the same time|"
     rf"simultaneously|all at once)\b"
-)
-_OTHER_EDITS = re.compile(
-    r"\b(?:add|insert|duplicate|copy|replace|exchange|forget|never mind|cancel|undo)\b", re.IGNORECASE
 )
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
 
@@ -110,8 +106,6 @@ class Judge:
         kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
         if not kinds:
             return None
-        if (by_marks := self.marked(cleaned, max(least, MARKED))) is not None:
-            return by_marks
         spelled = spelt_right(spelt_out(words), LONG_WORDS)
         said = with_nouns(tidy(spelled))
         whole = (_with_delay(*reading) for reading in self._reader.readings(said) if not _FRAGMENT.match(reading[0]))
@@ -135,19 +129,25 @@ class Judge:
                 return found  # else it is told that the thing does not move
         return chosen(offers, words, least)
 
+    def likeliest(self, cleaned: str, least: float = 0.0) -> tuple[Fields, ...] | None:
+        """The operations that an instruction most likely asks for, by its marks alone, or else as `supposed`."""
+        return self.marked(cleaned, max(least, MARKED)) or self.supposed(cleaned, least)
+
     def marked(self, cleaned: str, least: float) -> tuple[Fields, ...] | None:
         """The operations that the likeliest kind of wish makes of what the marks of an instruction hold; None if it is
         not as likely as `least`, or if one of the marks is not understood."""
         wording = with_nouns(spelt_right(spelt_out(in_words(cleaned)), LONG_WORDS)).split(" ")
         spans = marked(wording)
+        moves = self._moves is not None and self._moves(Query(text="", moving=True, pick="all")) is True
         for still in (False, True):
             kind, chance = next(iter(likely(cleaned, still)), ("", 0.0))
             if chance < least:
                 return None
-            if _OTHER_EDITS.search(cleaned):
+            held = slots(wording, spans, self._reader.thing, kind, moves)
+            if held is None or any(asks_more(wording[start:stop], tag) for tag, start, stop in spans):
                 return None
-            held = slots(wording, spans, self._reader.thing, kind)
-            if held is None:
+            said = held.as_said()
+            if is_ruled_out(kind, said, chance) or not says_no_more(kind, said, said.unmarked):
                 return None
             for wanted in commands(kind, held):
                 with suppress(Refusal, UserError, ValidationError):
@@ -156,7 +156,7 @@ class Judge:
                     else:
                         told = wanted.moment.told or wanted.happening is not None
                         found = self._reader.command(wanted.command, "", wanted.moment, wanted.happening, told)
-                    if found and not self.is_still(found):
+                    if found and not self.is_still(found) and not leaves_out(wording, found):
                         return of_one_movement(" ".join(wording), found)
         return None
 
@@ -182,7 +182,7 @@ class Judge:
     def wished(self, cleaned: str) -> tuple[Fields, ...] | None:
         """The operations of a wish that has no words of time: for another look of something, or that it be gone, at
         all times or at a time in bare numbers; None if that is not most likely asked for."""
-        found = self.supposed(cleaned, SURE)
+        found = self.likeliest(cleaned, SURE)
         if found is None or all(op.get("when") is not None for op in found):
             return found
         once = all(op["op"] in _WISHED and op.get("when") is None for op in found)

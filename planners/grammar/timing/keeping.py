@@ -33,6 +33,10 @@ _SAME = re.compile(  # words by which something stays as it is
     r"kept|left|without \w+ing|"
     r"not (?:(?:to|being|is|are|be) )*(?:chang|alter|touch|affect|mov|modif|retim|delay)\w*)\b"
 )
+_A_COMMAND = re.compile(  # "keep the sofa and remove everything else", "leave the hole open"
+    r"\b(?:holes?|fill\w*|infill|rest)\b|^(?:(?:and|but|just|only) )*(?:keep|leave|hold) (?:the|a|my|our|that|this) "
+    r"(?!.*\b(?:as|same|still|unchanged|untouched|alone|otherwise|identical|like|usual|now)\b)"
+)
 _SUBJECTS = {  # what stays, and the words for it
     "start": r"start\w*|begin\w*|onset|setting off|sets? off|departure|leav(?:es|ing)|kick\w*|set(?:ting)? out|"
     r"letting go|take ?off|(?:tips?|takes?|goes|go|heads?) off|comes? out|falls?|drops?|opens?|timings?|times|"
@@ -79,7 +83,8 @@ def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
     'make the door open half as fast'
     """
     words = in_words(cleaned).split(" ")
-    spans = [(a, b) for tag, a, b in marked(words) if tag == TAG and _SAME.search(" ".join(words[a:b]))]
+    told = ((a, b, " ".join(words[a:b]).strip(" ,.;:")) for tag, a, b in marked(words) if tag == TAG)
+    spans = [(a, b) for a, b, said in told if _SAME.search(said) and not _A_COMMAND.search(said)]
     if not spans and (found := _STILL.search(said := " ".join(words))) is not None:
         spans = [(said[: found.start()].count(" ") + 1, len(words))]
     cut = {at for a, b in spans for at in range(a, b)}

@@ -41,7 +41,7 @@ def test_it_tells_what_the_learner_tells(learner: Learner, task: str, monkeypatc
     chances = dict(zip(learner.lists[f"kinds.{task}"], kinds[0].softmax(0).tolist(), strict=True))
     told = model.told(task, words)
     assert dict(told.kinds) == pytest.approx(chances, abs=1e-5)
-    assert [chance for _, chance in told.kinds] == sorted(chances.values(), reverse=True)
+    assert [kind for kind, _ in told.kinds] == sorted(chances, key=chances.__getitem__, reverse=True)
     held = model._held(words)
     assert model._linear(f"labels.{task}", held) == pytest.approx(marks[0].numpy(), abs=1e-5)
 

@@ -15,6 +15,7 @@ from ..clauses import ALL_OF_IT
 from ..command import Command, pace
 from ..happenings import Happening
 from ..moments import Moment
+from ..supposed.orders import in_order, listed
 from .slots import Slots
 
 
@@ -37,6 +38,7 @@ _FASTER = re.compile(
     r"rate|"
     r"velocity|tempo|increase\w*|raise|more)\b"
 )
+_HASTE = re.compile(r"\b(?:fast\w*|quick\w*|rapid\w*|swift\w*)\b")
 _TOO_SLOW = re.compile(r"\b(?:too|so|painfully|awfully|rather)(?: \w+)? (?:slow\w*|sluggish\w*|lazy|lazily)\b")
 _TOO_FAST = re.compile(
     r"\b(?:too|so|awfully|rather)(?: \w+)? (?:fast|quick\w*|rapid\w*|hast\w+|rushed)\b|\b(?:not|less) (?:so |as |"
@@ -166,7 +168,7 @@ def _remove(slots: Slots) -> Iterator[Wanted]:
 
 
 def _move(slots: Slots) -> Iterator[Wanted]:
-    if slots.tell(_OTHERWISE):
+    if slots.tell(_OTHERWISE) or _TO_A_HEIGHT.search(slots.said):
         return
     goal, length = slots.goal(), slots.one("m")
     if goal is not None and _FOLLOWS.search(slots.rest):
@@ -185,6 +187,7 @@ def _move(slots: Slots) -> Iterator[Wanted]:
         yield Wanted(f"move {slots.whom} {ways[0]}{how}", slots.moment, slots.happening)
 
 
+_TO_A_HEIGHT = re.compile(r"\bto (?:\d[\d.]*|half a|one|two|three) ?(?:m|cm|met\w+|centimet\w+)\b")
 _WAYS = {"up": _UP, "down": _DOWN, "to the left": _LEFT, "to the right": _RIGHT}
 
 
@@ -235,6 +238,8 @@ def _repeat(slots: Slots) -> Iterator[Wanted]:
 
 
 def _return(slots: Slots) -> Iterator[Wanted]:
+    if slots.goals and not slots.told:
+        return  # "roll to the wall and come back"
     slots.used |= {goal.name for goal in slots.goals}
     yield _paced(slots, "return")
 
@@ -326,6 +331,8 @@ def _factor(slots: Slots) -> float | None:
 def _duration(slots: Slots) -> Iterator[Wanted]:
     slots.used |= {goal.name for goal in slots.goals}
     moment = _plainly(slots.moment)
+    if moment.lasting is not None and not moment.taken and any(said.startswith("for ") for said in moment.said):
+        return  # how long it goes on, or how long it takes
     if moment.lasting is None and moment.stop is None and (seconds := slots.one("s")) is not None:
         if slots.tell(re.compile(r"\b(?:longer|shorter|more|less|another|extra|additional|sooner|earlier|later)\b")):
             return
@@ -394,7 +401,7 @@ def _still(slots: Slots) -> Iterator[Wanted]:
 
 def _stay(slots: Slots) -> Iterator[Wanted]:
     slots.used |= {goal.name for goal in slots.goals}
-    if is_opened(_noun(slots)):
+    if is_opened(_noun(slots)) and slots.moment.start != "end":
         yield Wanted(f"keep {slots.whom} open", Moment(), None)
     else:
         yield from _halt(slots)
@@ -437,8 +444,10 @@ def _how_far(slots: Slots) -> str | None:
 
 
 def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
-    if slots.goals:
-        return  # as another one does
+    if slots.goals or slots.moment.start == "end":
+        return  # as another one does, or how it is at the end
+    if _TOO.search(" ".join(slots.words)) and not slots.told:
+        return  # by how much is not told
     by = slots.one("s")
     if by is not None and not isinstance(slots.moment.start, float):
         sign = _sign(slots)
@@ -459,63 +468,37 @@ _REVERSED = re.compile(
     r"\b(?:revers\w+|invert\w*|opposite|backwards?|other way (?:round|around)|flip\w*|contrary|inverse|"
     r"turned (?:round|around)|swap\w*)\b"
 )
-_RANK = re.compile(
-    r"\b(?:(?P<first>first|firstly|begins?|starts?|leads?|leading|earliest|opens)|"
-    r"(?P<last>last|lastly|finally|latest|at the end|ends?|final|closing)|(?P<after>after|following|behind)|"
-    r"(?P<before>before|ahead of))\b"
+_FIRST = re.compile(r"\b(?:first|firstly|begins?|starts?|leads?|leading|earliest)\b")
+_LAST = re.compile(r"\b(?:last|lastly|finally|latest|final)\b")
+_NO_ORDER = re.compile(
+    r"\b(?:instead|rather|not|between|both|notice[sd]?|saw|see|sees|think|thought|said|says?|know|watched|heard|fell)\b"
 )
 
 
 def _order(slots: Slots) -> Iterator[Wanted]:
-    listed = _listed(slots)
+    order = listed(slots.words, slots.spans, slots.thing) or _listed(slots)
     slots.used |= {goal.name for goal in slots.goals}
     if slots.told:
-        if slots.happening is not None and len(slots.names) == 1 and slots.moment.empty:
-            yield _paced(slots, "begin")
         return
-    if len(listed) > 1:
-        query = Query(text="", moving=True, pick="all")
-        yield Wanted(Command(({"op": "order", "target": query, "order": "listed", "first": listed},)), Moment(), None)
-    elif slots.tell(_REVERSED):
+    if order:
+        yield Wanted(in_order(order), Moment(), None)
+    elif slots.tell(_REVERSED) and len(slots.names) == 1 and not slots.goals:
         yield Wanted(f"let {slots.names[0]} move in reverse order", Moment(), None)
-    elif listed:
-        rank = next((found.lastgroup for found in _RANK.finditer(slots.rest)), None)
-        if rank in ("first", "last"):
-            yield Wanted(f"let {slots.names[0]} start {rank}", Moment(), None)
 
 
 def _listed(slots: Slots) -> tuple[Query, ...]:
-    """The things in the order in which they are to begin; none if that is not told."""
-    found = list[tuple[int, Query]]()
-    for name, query in zip(slots.names, slots.queries, strict=True):
-        found.append((_place_of(name, slots), query))
-    found += [(_place_of(goal.name, slots), goal.query) for goal in slots.goals]
-    found = [(at, query) for at, query in found if query.pick not in ("all", "rest")]
-    ordered = [query for _, query in sorted(found, key=lambda own: own[0])]
-    places = sorted(at for at, _ in found)
-    if len(ordered) == 1:
-        return tuple(ordered)
-    ranks = dict[int, str]()
-    for i, at in enumerate(places):
-        until = places[i + 1] if i + 1 < len(places) else len(slots.words)
-        behind = _RANK.search(" ".join(slots.words[at:until]))
-        since = places[i - 1] if i else 0
-        before = [*_RANK.finditer(" ".join(slots.words[since:at]))]
-        own = (
-            before[-1].lastgroup
-            if before and (i == 0 or i in ranks or before[-1].lastgroup in ("after", "before"))
-            else None
-        )
-        own = own or (behind.lastgroup if behind is not None else None)
-        if own is not None:
-            ranks[i] = own
-    if len(ordered) == 2 and ranks.get(1) == "after":
-        return (ordered[1], ordered[0])
-    firsts = [ordered[i] for i in range(len(ordered)) if ranks.get(i) == "first"]
-    lasts = [ordered[i] for i in range(len(ordered)) if ranks.get(i) == "last"]
-    if len(firsts) > 1 or len(lasts) > 1:
-        return tuple(ordered)
-    return tuple([*firsts, *(query for query in ordered if query not in firsts and query not in lasts), *lasts])
+    """Three things or more in the order in which they are named, if the words before the second tell that the first is
+    first, or those behind the last but one that the last is last; none in others."""
+    named = [*zip(slots.names, slots.queries, strict=True), *((goal.name, goal.query) for goal in slots.goals)]
+    placed = sorted((_place_of(name, slots), query) for name, query in named if query.pick not in ("all", "rest"))
+    if len(placed) < _SEVERAL or _NO_ORDER.search(" ".join(slots.words)):
+        return ()
+    (second, _), (_, _), (before, _) = placed[1], placed[-1], placed[-2]
+    early, late = " ".join(slots.words[:second]), " ".join(slots.words[before + 1 :])
+    return tuple(query for _, query in placed) if _FIRST.search(early) and _LAST.search(late) else ()
+
+
+_SEVERAL = 3  # things from which an order is told by where they are named
 
 
 def _place_of(name: str, slots: Slots) -> int:
@@ -528,7 +511,8 @@ def _together(slots: Slots) -> Iterator[Wanted]:
     who = [*slots.names, *(goal.name for goal in slots.goals)]
     slots.used |= {goal.name for goal in slots.goals}
     whose = slots.queries[0]
-    if slots.happening is None and (len(who) > 1 or whose.pick == "all" or slots.names[0].endswith("s")):
+    paced = slots.moment.slowly or slots.moment.quickly or slots.tell(_SLOWER) or slots.tell(_HASTE)
+    if slots.happening is None and not paced and (len(who) > 1 or whose.pick == "all" or slots.names[0].endswith("s")):
         yield Wanted(f"let {' and '.join(who)} start at the same time", _plainly(slots.moment), None)
 
 

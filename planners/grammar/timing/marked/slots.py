@@ -18,6 +18,7 @@ from ..moments import Moment
 from ..supposed.kinds import COURSES
 from ..supposed.names import MOVING
 from ..supposed.names import named as names_in
+from ..supposed.said import Said
 from ..supposed.times import LASTS, LEADING, TIMES, UNTIL, delayed, joined, told_by
 from .amounts import Amount, amount
 
@@ -95,6 +96,7 @@ class Slots:
         rest: the words without a mark, with a bar for each mark that names a thing.
         said: all words that ask for something: those without a mark, and of things, goals and amounts.
         spans: the marks.
+        thing: reads a name.
         used: what of this a command holds.
     """
 
@@ -109,6 +111,7 @@ class Slots:
     said: str
     words: Sequence[str]
     spans: Sequence[Span]
+    thing: Thing
     used: set[str] = field(default_factory=set)
 
     @property
@@ -141,6 +144,17 @@ class Slots:
         """Whether words that ask for something are among some."""
         return pattern.search(self.said) is not None
 
+    def as_said(self) -> Said:
+        """The same as the older readers of wishes have it."""
+        idle = " ".join(" ".join(self.words[a:b]) for tag, a, b in self.spans if tag in ("not", "off", "keep"))
+        left_out = {at for tag, a, b in self.spans if tag in (*TIMES, "not", "off", "keep") for at in range(a, b)}
+        text = " ".join(word for at, word in enumerate(self.words) if at not in left_out).strip(_TRIM)
+        things = (*self.names, *(goal.name for goal in self.goals))
+        return Said(
+            text, things, self.moment, self.happening is not None, self.thing, tuple(goal.name for goal in self.goals), idle,
+            unmarked=self.rest,
+        )  # fmt: skip
+
     def unused(self) -> bool:
         """Whether an amount, or a goal, stands in no command."""
         return any(own.said not in self.used for own in self.amounts) or any(
@@ -148,12 +162,29 @@ class Slots:
         )
 
 
-def slots(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str) -> Slots | None:
+_ASKED_OF = re.compile(
+    r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b|"
+    r"\b(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b"
+)
+_UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
+_NOT_UNTIL = re.compile(r"\bnot (?:before|until|till) (?:the|my|a) \w+ \w+")
+
+
+def asks_more(words: Sequence[str], tag: str) -> bool:
+    """Whether words that seem to ask for nothing ask for more: "and the lamp should sing", "except in the mirror"."""
+    said = " ".join(words)
+    if tag == "not":
+        return _UNLESS.search(said) is not None or _NOT_UNTIL.search(said) is not None
+    return tag == "off" and (_ASKED_OF.search(said) is not None or _UNLESS.search(said) is not None)
+
+
+def slots(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str, moves: bool) -> Slots | None:
     """What the marks in words hold; None if one of them is not understood, or a number stands in none.
 
     Args:
         thing: reads a name.
         kind: that of the wish.
+        moves: whether anything moves in the scene: what is to move otherwise is then that, where nothing is named.
     """
 
     def text(span: Span) -> str:
@@ -174,7 +205,7 @@ def slots(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str) 
     goals = tuple(_goals(words, spans, text, thing))
     if kind not in _LOOKS and any(goal.query.last for goal in goals):
         return None
-    if not names and kind in COURSES:
+    if not names and kind in COURSES and moves:
         names, queries = (MOVING,), (Query(text="", moving=True, pick="all"),)
     if not names and len(goals) == 1:  # "a coat of paint on the bed"
         names, queries = (goals[0].name,), (goals[0].query,)
@@ -187,8 +218,8 @@ def slots(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str) 
     asking = {at for tag, start, stop in spans if tag in ("x", "y", "by") for at in range(start, stop)}
     said = " ".join(word for at, word in enumerate(words) if at not in marked or at in asking)
     return Slots(
-        names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said, words, spans
-    )
+        names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said, words, spans, thing,
+    )  # fmt: skip
 
 
 def _rest(words: Sequence[str], spans: Sequence[Span]) -> str:
@@ -273,7 +304,7 @@ def _time(
             continue
         for pattern, plain in _PLAINER:
             phrase = pattern.sub(plain, phrase)
-        begun = moment.start is not None or (
+        begun = isinstance(moment.start, float) or (
             happening is not None and happening.during.part not in ("until", "until_end")
         )
         if tag == "from" and begun and (ends or _ARRIVES.search(" ".join(words[max(0, span[1] - 4) : span[1]]))):

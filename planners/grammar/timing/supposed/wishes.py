@@ -95,26 +95,8 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
         chance: the probability of the kind.
     """
     made = _KINDS.get(kind)
-    if made is None or not said.things or said.things[0].split(" ")[-1] in EVERYWHERE:
+    if made is None or is_ruled_out(kind, said, chance):
         return
-    first, then = (*_GREETING.sub("", said.text).split(" "), "")[:2]
-    if not is_any_word(first) and _DETERMINED.match(then):
-        return  # a verb that is no word may ask for anything
-    timeless = not said.told and not said.moment.always
-    if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
-        return
-    if _LIT.search(said.text) and _A_LIGHT.search(said.things[0]):
-        return  # "turn the lamp off" stops no motion
-    if _EXCEPT.search(f"{said.text} {said.idle}") or _IN_PIECES.search(f"{said.text} {said.idle}"):
-        return  # "everything but the fan", "take it apart"
-    if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text):
-        return
-    if _UNWANTED.search(f"{said.idle} {said.text}"):
-        return
-    if _OTHER_EDITS.search(said.text) and not (kind == "order" and said.listed):
-        return
-    if kind in _STATIC and MOVING in said.things:
-        return  # all, or what of it moves
     if says(kind, said.idle) and not says(kind, said.text):
         return  # "the door closes too late"
     if kind not in ("order", "together"):
@@ -125,8 +107,33 @@ def wishes(kind: str, said: Said, chance: float) -> Iterator[Wish]:
         said = said.until_then()
     for wish in made(said):
         left = _left(wish, said)
-        if _is_whole(kind, chance, wish, said, left) and _says_no_more(kind, said, left):
+        if _is_whole(kind, chance, wish, said, left) and says_no_more(kind, said, left):
             yield wish
+
+
+def is_ruled_out(kind: str, said: Said, chance: float) -> bool:
+    """Whether an instruction names nothing, or has words by which it is no wish of a kind, or more than one."""
+    if not said.things or said.things[0].split(" ")[-1] in EVERYWHERE:
+        return True
+    first, then = (*_GREETING.sub("", said.text).split(" "), "")[:2]
+    if not is_any_word(first) and _DETERMINED.match(then):
+        return True  # a verb that is no word may ask for anything
+    timeless = not said.told and not said.moment.always
+    if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
+        return True
+    if _LIT.search(said.text) and _A_LIGHT.search(said.things[0]):
+        return True  # "turn the lamp off" stops no motion
+    if _EXCEPT.search(f"{said.text} {said.idle}") or _IN_PIECES.search(f"{said.text} {said.idle}"):
+        return True  # "everything but the fan", "take it apart"
+    if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text):
+        return True
+    if _UNWANTED.search(f"{said.idle} {said.text}"):
+        return True
+    if _OTHER_EDITS.search(said.text) and not (kind == "order" and said.listed):
+        return True
+    if kind in ("speed", "duration", "begin") and _A_STRETCH.search(said.text):
+        return True  # "faster in the second half"
+    return kind in _STATIC and MOVING in said.things  # all, or what of it moves
 
 
 def _is_whole(kind: str, chance: float, wish: Wish, said: Said, left: str) -> bool:
@@ -222,7 +229,7 @@ def _without(text: str, *patterns: re.Pattern[str]) -> str:
     return text
 
 
-def _says_no_more(kind: str, said: Said, left: str) -> bool:
+def says_no_more(kind: str, said: Said, left: str) -> bool:
     """Whether no word that is `left` tells of another wish: "one second earlier, and slower"."""
     if kind not in ("recolor", "hide") and "then" in said.idle and hues() & set(said.idle.split()):
         return False  # "stop at 2 s, then roll it red again"

@@ -27,6 +27,7 @@ from .kinds import kinds_of, marked, vocabulary
 LEAST = 0.38  # probability of a kind that is tried
 SURE = 0.8  # probability from which words without a mark are taken for those of the question
 _LONGEST = 40  # words
+_SHORTEST = 2
 _DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|your|his|her|its|their|all|both|any|every)\b")
 _PLURAL = re.compile(r"^(?:all |both )?(?:of )?(?:the |these |those |my |our )?")
 _IN_UNIT = re.compile(rf"\b(?:{UNIT}|rpm|revs? (?:a|per) minute)\b")
@@ -67,6 +68,8 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
         return ()
     told = tuple(word.text for word in split(in_figures(clean(text))))
     told = tuple(_spelled(word, names) for word in told)
+    if sum(word.isalpha() for word in told) < _SHORTEST:
+        return ()
     kind, chance = _likeliest(told)
     if chance < least or kind not in _PLAIN or (_REASONS.search(" ".join(told)) and kind not in _OF_SOMEBODY):
         return ()
@@ -243,6 +246,8 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
         denies = kind not in _NEGATED and not _DENIED.isdisjoint(told[1:])
         ranked = not _RANKS.isdisjoint(told) or "than" in told
         number = any((word in NUMBERS and word != "one") or word[0].isdigit() or is_color_word(word) for word in told)
+        if _TWO_DEEDS.search(f" {' '.join(rest)} ") or (said.y and kind in ("what_still", "what_moves")):
+            return True
         return (
             denies
             or ranked
@@ -269,6 +274,7 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
     return any(singular(word) in names for word in rest if word not in _VERBS)
 
 
+_TWO_DEEDS = re.compile(r" and (?:\w+ )?(?:stop|fall|open|clos|shut|turn|roll|walk|land|start|go|com|mov|reach)\w* ")
 _DENIED = bag("not no never without nothing nobody")
 _RANKS = bag("second third first last other another twice again")
 _TO_THE_FLOOR = ("when_lands", "when_falls", "if_falls", "long_falls", "how_many")
