@@ -32,7 +32,7 @@ from .supposed.parts import divided
 from .supposed.said import Said, said_of
 from .supposed.times import TIMES
 from .supposed.wished import is_wished
-from .supposed.wishes import SURE, is_ruled_out, says_no_more, wishes
+from .supposed.wishes import STATIC, SURE, is_ruled_out, says_no_more, wishes
 from .whens import of_one_movement
 from .wording import LONG_WORDS, in_words, spelt_out, spelt_right, tidy
 
@@ -58,7 +58,9 @@ _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IG
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 MARKED = 0.5  # probability of a kind from which what the marks hold is its command
+CLEARLY = 0.9  # the same without a word that says it
 _LONGEST = 45  # words of an instruction with one wish
+_ALL_ELSE = re.compile(r"\b(?:everything|all) (?:else|but)\b|\b(?:remove|delete|hide) the rest\b")
 _ALWAYS = re.compile(
     r"\b(?:throughout|always|all the time|(?:the )?(?:whole|entire|full) (?:time|film|clip|video|scene|shot|"
     r"way through)|at all times|"
@@ -104,7 +106,7 @@ class Judge:
         """As `supposed`, which several checks of a plan ask for."""
         words = in_words(cleaned)
         kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
-        if not kinds:
+        if not kinds or _ALL_ELSE.search(words):
             return None
         spelled = spelt_right(spelt_out(words), LONG_WORDS)
         said = with_nouns(tidy(spelled))
@@ -146,7 +148,11 @@ class Judge:
             held = slots(wording, spans, self._reader.thing, kind, moves)
             if held is None or any(asks_more(wording[start:stop], tag) for tag, start, stop in spans):
                 return None
+            if not held.told and not (is_wished(wording, spans, chance) if kind in STATIC else moves):
+                return None
             said = held.as_said()
+            if chance < CLEARLY and not says_plainly(kind, said.text):
+                return None
             if is_ruled_out(kind, said, chance) or not says_no_more(kind, said, said.unmarked):
                 return None
             for wanted in commands(kind, held):

@@ -79,6 +79,10 @@ _SEEN = re.compile(
     r"reveals?|revealed|spawns?|turns? up|materiali[sz]es?|to be seen|see|seen|in (?:the )?(?:picture|shot|frame)|"
     r"there)\b"
 )
+_ENTERS = re.compile(
+    r"\b(?:appears?|spawns?|pops? (?:up|in)|shows? up|enters?|comes? in|reveals?|"
+    r"materiali[sz]es?)\b"
+)
 _GONE = re.compile(
     r"\b(?:hid\w*|invisible|vanish\w*|disappear\w*|gone|gon|out|lose|lost|remov\w+|away|off|blank\w*|conceal\w*|poof|"
     r"cut|drop|delet\w+|eras\w+|without|absent|unseen|unrender\w*|mask\w*|take|despawn\w*|bye|missing|suppress\w*|"
@@ -86,6 +90,7 @@ _GONE = re.compile(
 )
 _NOT = re.compile(r"\b(?:not|no|never|without|nobody|nothing|neither|nor|stop|hardly)\b")
 _NO_WISH = re.compile(r"\b(?:unless|except|instead|if (?:the|it|he|she|they)|or)\b")
+_WHICH_ONE = re.compile(r"\| (?:that|which|who|whose)\b")  # "the book that falls first"
 _OTHER_WAY = re.compile(
     r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction|side|sense)|way (?:round|around)|direction|"
     r"sense|clockwise|anti ?clockwise|counter ?clockwise|counter|turns? (?:left|right))\b"
@@ -104,7 +109,7 @@ _SHUTS = re.compile(r"\b(?:clos\w+|shut\w*|(?:go|going|goes|slid\w+|mov\w+|com\w
 def commands(kind: str, slots: Slots) -> Iterator[Wanted]:
     """The commands of a kind that hold all that the marks do, the likeliest first."""
     made = _KINDS.get(kind)
-    if made is None or not slots.names or _NO_WISH.search(slots.rest):
+    if made is None or not slots.names or _NO_WISH.search(slots.rest) or _WHICH_ONE.search(slots.rest):
         return
     if kind not in _NEGATIVE and _NOT.search(slots.rest):
         return
@@ -154,7 +159,8 @@ def _hide(slots: Slots) -> Iterator[Wanted]:
         yield from _remove(slots)
         return
     seen = _SEEN.search(slots.rest) is not None and _GONE.search(slots.rest) is None
-    seen = seen and _NOT.search(slots.rest) is None
+    enters = slots.moment.start is not None and slots.moment.stop is None and _ENTERS.search(slots.rest) is not None
+    seen = seen and (enters or _NOT.search(slots.rest) is None)
     slots.used |= {goal.name for goal in slots.goals}
     yield Wanted(f"{'show' if seen else 'hide'} {slots.whom}", slots.moment, slots.happening)
 
@@ -471,7 +477,8 @@ _REVERSED = re.compile(
 _FIRST = re.compile(r"\b(?:first|firstly|begins?|starts?|leads?|leading|earliest)\b")
 _LAST = re.compile(r"\b(?:last|lastly|finally|latest|final)\b")
 _NO_ORDER = re.compile(
-    r"\b(?:instead|rather|not|between|both|notice[sd]?|saw|see|sees|think|thought|said|says?|know|watched|heard|fell)\b"
+    r"\b(?:instead|rather|not|between|both|notice[sd]?|saw|see|sees|think|thought|said|says?|know|watched|heard|"
+    r"fell)\b"
 )
 
 

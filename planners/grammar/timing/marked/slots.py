@@ -10,6 +10,7 @@ from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
 from ...learned.marks import Span
 from ...learned.seen import hues
+from ...tagging.words import bag
 from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS
 from ..happenings import IT, Happening
@@ -149,11 +150,10 @@ class Slots:
         idle = " ".join(" ".join(self.words[a:b]) for tag, a, b in self.spans if tag in ("not", "off", "keep"))
         left_out = {at for tag, a, b in self.spans if tag in (*TIMES, "not", "off", "keep") for at in range(a, b)}
         text = " ".join(word for at, word in enumerate(self.words) if at not in left_out).strip(_TRIM)
-        things = (*self.names, *(goal.name for goal in self.goals))
-        return Said(
-            text, things, self.moment, self.happening is not None, self.thing, tuple(goal.name for goal in self.goals), idle,
-            unmarked=self.rest,
-        )  # fmt: skip
+        goals = tuple(goal.name for goal in self.goals)
+        told = self.happening is not None
+        things = (*self.names, *goals)
+        return Said(text, things, self.moment, told, self.thing, goals, idle, unmarked=self.rest)
 
     def unused(self) -> bool:
         """Whether an amount, or a goal, stands in no command."""
@@ -201,7 +201,10 @@ def slots(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str, 
             if (found := amount(text(span))) is None:
                 return None
             amounts += [] if any(found.value == own.value and found.unit == own.unit for own in amounts) else [found]
-    names, queries = _things(map(text, (s for s in spans if s[0] == "x")), thing)
+    named = [span for span in spans if span[0] == "x"]
+    if any(_EVERYTHING.search(text(span)) for span in named) or _is_divided(words, named, thing, kind):
+        return None
+    names, queries = _things(map(text, named), thing)
     goals = tuple(_goals(words, spans, text, thing))
     if kind not in _LOOKS and any(goal.query.last for goal in goals):
         return None
@@ -213,13 +216,29 @@ def slots(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str, 
     colors = dict.fromkeys(_color(text(span)) for span in spans if span[0] == "as")
     marked = {at for _, start, stop in spans for at in range(start, stop)}
     left = [word for at, word in enumerate(words) if at not in marked]
-    if len(colors) > 1 or any(_is_number(word, then) for word, then in pairwise([*left, ""])):
+    if len(colors) > (kind == "recolor") or any(_is_number(word, then) for word, then in pairwise([*left, ""])):
         return None
     asking = {at for tag, start, stop in spans if tag in ("x", "y", "by") for at in range(start, stop)}
     said = " ".join(word for at, word in enumerate(words) if at not in marked or at in asking)
     return Slots(
-        names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said, words, spans, thing,
+        names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said,
+        words, spans, thing,
     )  # fmt: skip
+
+
+def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind: str) -> bool:
+    """Whether other words stand between the names of several things: "stop the fan, and the lamp should sing"."""
+    if kind in ("order", "together"):
+        return False
+    meant = [(thing(" ".join(words[start:stop]).strip(_TRIM)), start, stop) for _, start, stop in named]
+    told = [(query, start, stop) for query, start, stop in meant if query is not None and not query.last]
+    return any(
+        one != other and not set(words[stop:start]) <= _JOINTS for (one, _, stop), (other, start, _) in pairwise(told)
+    )
+
+
+_JOINTS = bag("and , or nor plus & both the as well with along")
+_EVERYTHING = re.compile(r"^(?:everything|all) (?:else|but)\b|\b(?:the rest|the others?)$")
 
 
 def _rest(words: Sequence[str], spans: Sequence[Span]) -> str:

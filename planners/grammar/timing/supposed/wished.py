@@ -66,7 +66,7 @@ def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float) -> boo
     said = " ".join(words)
     if _CONTRARY.match(said) or _CHOICE.search(said) or _THAT_I_WANT.search(said):
         return False
-    if _RID_OF_IT.search(asked) and _DENIED.search(asked) is None:
+    if _RID_OF_IT.search(f"{asked} . {said}") and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"
     plainly = chance >= SURELY and _DENIED.search(asked) is None and _ASKS.search(asked) is None
     return (plainly or all(word in _BESIDE for word in left)) and _WISHES.search(asked) is not None

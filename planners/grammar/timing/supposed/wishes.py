@@ -29,7 +29,7 @@ from .orders import in_order
 from .said import BEFORE_IT, Said
 
 SURE = 0.85  # probability from which a change without a time is supposed, or an unknown verb is left aside
-_STATIC = ("recolor", "hide", "remove", "move")  # kinds that need no time
+STATIC = ("recolor", "hide", "remove", "move")  # kinds that need no time
 _ON_ITS_WAY = (  # kinds that may name where something goes by itself
     "pause",
     "halt",
@@ -119,13 +119,13 @@ def is_ruled_out(kind: str, said: Said, chance: float) -> bool:
     if not is_any_word(first) and _DETERMINED.match(then):
         return True  # a verb that is no word may ask for anything
     timeless = not said.told and not said.moment.always
-    if kind in _STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
+    if kind in STATIC and timeless and (chance < SURE or _ORDERED.match(said.text)):
         return True
     if _LIT.search(said.text) and _A_LIGHT.search(said.things[0]):
         return True  # "turn the lamp off" stops no motion
     if _EXCEPT.search(f"{said.text} {said.idle}") or _IN_PIECES.search(f"{said.text} {said.idle}"):
         return True  # "everything but the fan", "take it apart"
-    if (_PROHIBITED if kind in _STATIC else _REMOVALS).search(said.text):
+    if (_PROHIBITED if kind in STATIC else _REMOVALS).search(said.text):
         return True
     if _UNWANTED.search(f"{said.idle} {said.text}"):
         return True
@@ -133,7 +133,7 @@ def is_ruled_out(kind: str, said: Said, chance: float) -> bool:
         return True
     if kind in ("speed", "duration", "begin") and _A_STRETCH.search(said.text):
         return True  # "faster in the second half"
-    return kind in _STATIC and MOVING in said.things  # all, or what of it moves
+    return kind in STATIC and MOVING in said.things  # all, or what of it moves
 
 
 def _is_whole(kind: str, chance: float, wish: Wish, said: Said, left: str) -> bool:

@@ -241,8 +241,12 @@ def _joined(names: tuple[str, ...]) -> str:
 def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
     rest = said.rest.split()
+    if not kind.startswith("if_") and rest and rest[0] in _AUXILIARIES:
+        return True  # "is the ball at its top speed then?" wants no number
     if chance >= SURE:
         told = [word for word in rest if word not in _ALLOWED.get(kind, ())]
+        if _NTH.search(said.time):
+            return True
         denies = kind not in _NEGATED and not _DENIED.isdisjoint(told[1:])
         ranked = not _RANKS.isdisjoint(told) or "than" in told
         number = any((word in NUMBERS and word != "one") or word[0].isdigit() or is_color_word(word) for word in told)
@@ -258,8 +262,6 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
                 if w not in _VERBS and not (kind in _TO_THE_FLOOR and w in ("floor", "ground"))
             )
         )
-    if not kind.startswith("if_") and rest and rest[0] in _AUXILIARIES:
-        return True  # "is the ball at its top speed then?" wants no number
     if kind.startswith("if_") and _ASKS.intersection(rest):
         return True  # "which way does it turn" wants no yes or no
     if kind in _NEGATED or (rest and rest[0] in _AUXILIARIES):
@@ -275,6 +277,7 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
 
 
 _TWO_DEEDS = re.compile(r" and (?:\w+ )?(?:stop|fall|open|clos|shut|turn|roll|walk|land|start|go|com|mov|reach)\w* ")
+_NTH = re.compile(r"\b(?:second|third|fourth|last) (?:time|trip|turn|movement|run|fall|way|lap|round)\b")
 _DENIED = bag("not no never without nothing nobody")
 _RANKS = bag("second third first last other another twice again")
 _TO_THE_FLOOR = ("when_lands", "when_falls", "if_falls", "long_falls", "how_many")
