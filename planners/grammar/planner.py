@@ -251,14 +251,19 @@ def _wished(cleaned: str, previous: str | None) -> _Outcome:
     Raises:
         Refusal: as `_timeless`.
     """
+    judge = Judge(TimeReader(_operations, _thing))
     try:
-        return _timeless(cleaned, previous)
+        outcome = _timeless(cleaned, previous)
     except Refusal as refusal:
         if refusal.firm or refusal.verdict in ("unsafe", "impossible"):
             raise
-        if (wished := Judge(TimeReader(_operations, _thing)).wished(cleaned)) is None:
+        if (wished := judge.wished(cleaned)) is None:
             raise
         return _guessed(wished)
+    nameless = previous is None and bool(outcome.ops) and all(q.last for q in _targets(outcome.ops[0]))
+    if nameless and (wished := judge.wished(cleaned)) is not None and _names_things(wished, previous):
+        return _guessed(wished)  # "this plant I do not like at all, take it away"
+    return outcome
 
 
 def _timed(reader: TimeReader, cleaned: str, previous: str | None) -> _Outcome:

@@ -62,9 +62,7 @@ CLEARLY = 0.9  # the same without a word that says it
 _LONGEST = 45  # words of an instruction with one wish
 _ALL_ELSE = re.compile(r"\b(?:everything|all) (?:else|but)\b|\b(?:remove|delete|hide) the rest\b")
 _ALWAYS = re.compile(
-    r"\b(?:throughout|always|all the time|(?:the )?(?:whole|entire|full) (?:time|film|clip|video|scene|shot|"
-    r"way through)|at all times|"
-    r"all through|for ever|forever)\b"
+    r"\b(?:throughout|always|all the time|(?:whole|entire|full) \w+|at all times|all through|for ever|forever)\b"
 )
 _EDGE = re.compile(r"\b(?:start|beginning|end|finish|first frame|last frame)\b")
 _AS_WELL = re.compile(r"\b(?:and|but|yet) (?:\w+ )?(?:also|meanwhile)\b|\bmeanwhile\b")

@@ -51,6 +51,7 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ("from", r"^(?:immediately|directly|right|straight|just|shortly) (?=(?:after|when|once|as)\b)", ""),
     ("from", r"^after (?:its|his|her|the) (?:\d+ (?:degrees? )?|left |right |first )?turn$", "after it has turned"),
     ("from", r"^having been (?=[a-z])", "once it has been "),
+    ("from", r"^having (?:made|done|taken|finished|completed) (?:its|his|her|the) turn$", "after it has turned"),
     (
         "from to",
         r"^(?:when|once|as soon as|after|until|till|before|only when|not until) "

@@ -29,6 +29,8 @@ _RID_OF_IT = re.compile(
     r"(?:remove|delete|bin|ditch|scrap|lose) (?:it|them))\b"
 )
 _DENIED = re.compile(r"\b(?:not|never|no one|nobody|if|unless|or|but)\b")
+CERTAINLY = 0.98  # probability of a wish of its kind that no word has to say
+_IS = re.compile(r"\b(?:is|are|was|were|has|have|had|looks?|seems?|used|should|if)\b|\?")
 SURELY = 0.95  # probability of a wish of its kind from which any other words may stand in it
 _ASKS = re.compile(  # or tells
     r"\b(?:know|knows|whether|wonder|wondering|remember|recall|what|which|who|whose|why|when|where|how|said|says?|told|"
@@ -68,5 +70,7 @@ def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float) -> boo
         return False
     if _RID_OF_IT.search(f"{asked} . {said}") and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"
+    if chance >= CERTAINLY and _DENIED.search(asked) is None and _ASKS.search(said) is None and not _IS.search(asked):
+        return True  # "rug: purple, permanent"
     plainly = chance >= SURELY and _DENIED.search(asked) is None and _ASKS.search(asked) is None
     return (plainly or all(word in _BESIDE for word in left)) and _WISHES.search(asked) is not None

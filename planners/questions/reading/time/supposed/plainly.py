@@ -127,8 +127,21 @@ _BEFORE_BACK = re.compile(
 )
 
 
+_ALL_OF_IT = re.compile(  # of a movement
+    r"^(?:across|over|during|in|for|throughout) (?:its|his|her|their|the) (?:whole|entire|full|complete) \w+$|"
+    r"^(?:between|from) (?:start(?:ing)?|beginning|first \w+|release) (?:and|to|until) (?:stop(?:ping)?|rest|"
+    r"finish(?:ing)?|end|"
+    r"(?:full |final |a )?(?:stop|rest|halt|standstill))$"
+)
+_AT_MOST = re.compile(r"^(?:once|when|after|at|in|by) (?!.*\d)(?!.*\bseconds?\b)")  # as far as it goes then
+
+
 def _plain_time(kind: str, said: str) -> str:
     """The words for a time in plain words; "" for all of the film, where that says nothing."""
+    if _ALL_OF_IT.match(said) or (kind in ("far_opens", "far_turns") and _AT_MOST.match(said)):
+        return ""
+    if kind == "long_on" and said.startswith(("before it ", "until it ")):
+        return ""
     if (_FURTHEST.match(said) and kind.startswith("far")) or (kind == "long_open" and _BEFORE_BACK.match(said)):
         return ""
     if (way := _OUT.match(said)) is not None:
@@ -157,6 +170,8 @@ def _spelled(word: str, names: frozenset[str]) -> str:
 def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     """The likeliest kind with its probability; an average and a greatest speed are told apart by their words."""
     found, said = dict(kinds_of(words)), " ".join(words)
+    if not _FILM.search(said):
+        found.pop("film_long")
     if _YES_OR_NO.search(said):
         found = {kind: chance for kind, chance in found.items() if kind.startswith("if_")}
     kind = max(found, key=found.__getitem__)
@@ -165,11 +180,17 @@ def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     return kind, found[kind]
 
 
+_FILM = re.compile(
+    r"\b(?:film|clip|video|scene|movie|footage|recording|shot|sequence|animation|thing|it all|"
+    r"whole)\b"
+)
 _YES_OR_NO = re.compile(
-    r"\b(?:yes or no|true or (?:false|not|nah)|right or wrong|is (?:that|this) (?:so|right|true|correct)|confirm)\b"
+    r"\b(?:yes or no|true or (?:false|not|nah)|right or wrong|is (?:that|this) (?:so|right|true|correct)|confirm|"
+    r"am i right|that right|is it true)\b"
 )
 _REASONS = re.compile(
-    r"\b(?:why|reason|explain|because of|caus(?:e|es|ed|ing)|blame|on purpose|who(?:m|se)?|somebody|someone)\b"
+    r"\b(?:why|reason|explain|because of|caus(?:e|es|ed|ing)|blame|on purpose|what (?:is it that )?(?:made|makes|"
+    r"shook|shakes|pushed|pushes|drives|set|sets)|who(?:m|se)?|somebody|someone)\b"
 )
 _OF_SOMEBODY = bag("first last order fastest what_moves what_still happens does how_many")
 _GREATEST = re.compile(
@@ -216,6 +237,7 @@ _TIMED = re.compile(
 
 def _named(said: str, names: Collection[str]) -> str:
     """A name with an article, without adjectives of which no thing of the scene has one in its name."""
+    said = re.sub(r"^(?:the )?final (?=\w)", "the last ", said)
     words = said.split()
     if words and singular(words[-1]) in names:
         said = " ".join(w for w in words if w in names or singular(w) in names or w in _TELLING or is_color_word(w))
@@ -440,6 +462,22 @@ def _long(said: Said) -> Iterator[str]:
 _FULLY = re.compile(r"\b(?:fully|full|completely|wholly|all the way|entirely|maximum|widest|furthest)\b")
 
 
+_HALFWAY = re.compile(r"\b(?:half|half ?way|mid ?point|middle)\b")
+
+
+def _when_open(said: Said) -> Iterator[str]:
+    if said.x:
+        yield f"when is {said.x} {'half' if _HALFWAY.search(said.rest) else 'fully'} open"
+
+
+_WHICH = re.compile(r"\b(?:which|name|list|what)\b")
+
+
+def _those_shut(said: Said) -> Iterator[str]:
+    if _is_kind(said.x) and _WHICH.search(f"{said.rest} {said.off}") and not re.search(r"\d", said.time):
+        yield f"which {re.sub(r'^(?:two|three|four) ', '', _several(said.x))} stay closed"
+
+
 def _long_open(said: Said) -> Iterator[str]:
     if said.x:
         yield f"how long does {said.x} stay {'fully ' if _FULLY.search(said.rest) else ''}open"
@@ -482,7 +520,7 @@ _PLAIN: Mapping[str, Plain] = {
     "when_starts": _about("when does {x} start to move"),
     "when_stops": _about("when does {x} stop moving"),
     "when_opens": _about("when does {x} start to open"),
-    "when_open": _about("when is {x} fully open"),
+    "when_open": _when_open,
     "when_closes": _about("when does {x} start to close"),
     "when_shut": _about("when is {x} closed"),
     "when_falls": _about("when does {x} fall"),
@@ -518,7 +556,7 @@ _PLAIN: Mapping[str, Plain] = {
     "if_opens": _about("does {x} open"),
     "if_closes": _about("does {x} close"),
     "if_open": _about("is {x} open"),
-    "if_shut": _about("is {x} closed"),
+    "if_shut": _either(_those_shut, _about("is {x} closed")),
     "if_falls": _about("does {x} fall"),
     "if_reaches": _about("does {x} touch {y}"),
     "if_on": _about("is {x} on {y}"),
