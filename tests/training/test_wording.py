@@ -35,7 +35,7 @@ def test_marks_stand_in_the_words() -> None:
 
 
 def test_what_is_learned_tells_the_kinds_and_marks_of_new_sentences() -> None:
-    model = network(TASKS, passes=60)
+    model = network(TASKS, passes=200)
     words = [
         tuple(word.text for word in split(said))
         for said in ("halt the ferry at 2 s", "hide the old cat once the bell has rung")
@@ -51,7 +51,7 @@ def test_the_same_sentences_give_the_same_weights() -> None:
 
 def test_writers_are_told_by_what_others_wrote() -> None:
     left, held = without(TASKS, {"wishes": ["2"]})
-    told = told_of(network(left, passes=60), "wishes", held["wishes"])
+    told = told_of(network(left, passes=200), "wishes", held["wishes"])
     assert len(left["wishes"]) + len(held["wishes"]) == len(MADE)
     assert told.kinds > 0.9 and min(told.precision, told.recall, told.whole) > 0.7
 

@@ -14,6 +14,7 @@ from ....gaussians.errors import UserError
 from ....gaussians.language.query.query import Query
 from ....tools.registry import OPS
 from ....tools.when import When
+from ..learned.marks import Span
 from ..parsing import Refusal
 from ..tagging.words import bag
 from ..vocabulary.nouns import is_known, is_opened
@@ -24,7 +25,7 @@ from .marked.commands import commands
 from .marked.slots import asks_more, slots
 from .moments import Moment
 from .reading import CLAUSE, TIMELESS, TimeReader
-from .supposed.choosing import Offer, chosen, says_plainly
+from .supposed.choosing import CLEARLY, Offer, chosen, says_plainly
 from .supposed.kinds import COURSES, LEAST, is_changed_by, is_done_by, likely, marked
 from .supposed.lost import leaves_out
 from .supposed.names import with_nouns
@@ -58,7 +59,6 @@ _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IG
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 MARKED = 0.5  # probability of a kind from which what the marks hold is its command
-CLEARLY = 0.9  # the same without a word that says it
 _LONGEST = 45  # words of an instruction with one wish
 _ALL_ELSE = re.compile(r"\b(?:everything|all) (?:else|but)\b|\b(?:remove|delete|hide) the rest\b")
 _ALWAYS = re.compile(
@@ -138,31 +138,54 @@ class Judge:
         not as likely as `least`, or if one of the marks is not understood."""
         wording = with_nouns(spelt_right(spelt_out(in_words(cleaned)), LONG_WORDS)).split(" ")
         spans = marked(wording)
-        moves = self._moves is not None and self._moves(Query(text="", moving=True, pick="all")) is True
+        if any(asks_more(wording[start:stop], tag) for tag, start, stop in spans):
+            return None
         for still in (False, True):
             kind, chance = next(iter(likely(cleaned, still)), ("", 0.0))
             if chance < least:
                 return None
-            held = slots(wording, spans, self._reader.thing, kind, moves)
-            if held is None or any(asks_more(wording[start:stop], tag) for tag, start, stop in spans):
-                return None
-            if not held.told and not (is_wished(wording, spans, chance) if kind in STATIC else moves):
-                return None
-            said = held.as_said()
-            if chance < CLEARLY and not says_plainly(kind, said.text):
-                return None
-            if is_ruled_out(kind, said, chance) or not says_no_more(kind, said, said.unmarked):
-                return None
-            for wanted in commands(kind, held):
-                with suppress(Refusal, UserError, ValidationError):
-                    if isinstance(wanted.command, Command):
-                        found = self._reader.made(wanted.command, wanted.moment, wanted.happening)
-                    else:
-                        told = wanted.moment.told or wanted.happening is not None
-                        found = self._reader.command(wanted.command, "", wanted.moment, wanted.happening, told)
-                    if found and not self.is_still(found) and not leaves_out(wording, found):
-                        return of_one_movement(" ".join(wording), found)
+            found = self._made_of(kind, chance, wording, spans)
+            if found is not None and not self.is_still(found):
+                return found
         return None
+
+    def _made_of(
+        self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]
+    ) -> tuple[Fields, ...] | None:
+        """The first operations that a kind makes of marks and that leave nothing out."""
+        held = slots(wording, spans, self._reader.thing, kind, self._anything_moves)
+        if held is None or not (held.told or self._goes_without_time(kind, chance, wording, spans)):
+            return None
+        said = held.as_said()
+        clear = chance >= CLEARLY or says_plainly(kind, said.text)
+        if not clear or is_ruled_out(kind, said, chance) or not says_no_more(kind, said, said.unmarked):
+            return None
+        for wanted in commands(kind, held):
+            with suppress(Refusal, UserError, ValidationError):
+                told = wanted.moment.told or wanted.happening is not None
+                found = self._ops(wanted.command, wanted.moment, wanted.happening, told)
+                if found and not leaves_out(wording, found):
+                    return of_one_movement(" ".join(wording), found)
+        return None
+
+    def _goes_without_time(self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]) -> bool:
+        """Whether a wish of a kind needs no time: for a look or a removal, or where something moves."""
+        return is_wished(wording, spans, chance) if kind in STATIC else self._anything_moves()
+
+    def _anything_moves(self) -> bool:
+        return self._moves is not None and self._moves(Query(text="", moving=True, pick="all")) is True
+
+    def _ops(
+        self, command: str | Command, moment: Moment, happening: Happening | None, told: bool
+    ) -> tuple[Fields, ...] | None:
+        """The operations of a command, in words or as it is, at a time.
+
+        Args:
+            told: whether any time is told.
+        """
+        if isinstance(command, Command):
+            return self._reader.made(command, moment, happening)
+        return self._reader.command(command, "", moment, happening, told)
 
     def contradicts_itself(self, cleaned: str) -> bool:
         """Whether something is to be so all the time, and otherwise at a time or as well: "keep it shut throughout, and
@@ -202,7 +225,8 @@ class Judge:
             least: probability from which a kind counts.
         """
         alike = len({op["op"] for op in ops}) == 1 and (len(ops) == 1 or ops[0]["op"] in ("recolor", "move"))
-        if not alike or ops[0]["op"] not in _OF_A_KIND or (ops[0].get("when") or When()).gradual:
+        when = (ops[0].get("when") if ops else None) or When()
+        if not alike or ops[0]["op"] not in _OF_A_KIND or when.gradual or when.every is not None:
             return False
         if ops[0]["op"] == "delete" and ops[0].get("when") is not None and _SWITCHED_OFF.search(cleaned):
             return _RIDS.search(cleaned) is None
@@ -275,11 +299,7 @@ class Judge:
             for wish in wishes(kind, text, chance):
                 with suppress(Refusal, UserError, ValidationError):
                     event = None if wish.timeless else happening
-                    if isinstance(wish.command, Command):
-                        found = self._reader.made(wish.command, wish.moment, event)
-                    else:
-                        told = text.told and not wish.timeless
-                        found = self._reader.command(wish.command, "", wish.moment, event, told)
+                    found = self._ops(wish.command, wish.moment, event, text.told and not wish.timeless)
                     if found and not leaves_out(wording, found):
                         yield of_one_movement(" ".join(wording), found)
 

@@ -34,7 +34,8 @@ _SAME = re.compile(  # words by which something stays as it is
     r"not (?:(?:to|being|is|are|be) )*(?:chang|alter|touch|affect|mov|modif|retim|delay)\w*)\b"
 )
 _A_COMMAND = re.compile(  # "keep the sofa and remove everything else", "leave the hole open"
-    r"\b(?:holes?|fill\w*|infill|rest)\b|^(?:(?:and|but|just|only) )*(?:keep|leave|hold) (?:the|a|my|our|that|this) "
+    r"\b(?:holes?|fill\w*|infill|rest)\b|\b(?:but|yet) (?:\w+ )?(?:twice|double|half|faster|slower|later|earlier)\b|"
+    r"^(?:(?:and|but|just|only) )*(?:keep|leave|hold) (?:the|a|my|our|that|this) "
     r"(?!.*\b(?:as|same|still|unchanged|untouched|alone|otherwise|identical|like|usual|now)\b)"
 )
 _SUBJECTS = {  # what stays, and the words for it

@@ -79,6 +79,7 @@ _SEEN = re.compile(
     r"reveals?|revealed|spawns?|turns? up|materiali[sz]es?|to be seen|see|seen|in (?:the )?(?:picture|shot|frame)|"
     r"there)\b"
 )
+_BACK = re.compile(r"\b(?:back|again)\b")
 _ENTERS = re.compile(
     r"\b(?:appears?|spawns?|pops? (?:up|in)|shows? up|enters?|comes? in|reveals?|"
     r"materiali[sz]es?)\b"
@@ -161,6 +162,8 @@ def _hide(slots: Slots) -> Iterator[Wanted]:
     seen = _SEEN.search(slots.rest) is not None and _GONE.search(slots.rest) is None
     enters = slots.moment.start is not None and slots.moment.stop is None and _ENTERS.search(slots.rest) is not None
     seen = seen and (enters or _NOT.search(slots.rest) is None)
+    if seen and _BACK.search(" ".join(slots.words)):
+        return  # "show it for a second, then bring it back" contradicts itself
     slots.used |= {goal.name for goal in slots.goals}
     yield Wanted(f"{'show' if seen else 'hide'} {slots.whom}", slots.moment, slots.happening)
 

@@ -178,13 +178,15 @@ def asks_more(words: Sequence[str], tag: str) -> bool:
     return tag == "off" and (_ASKED_OF.search(said) is not None or _UNLESS.search(said) is not None)
 
 
-def slots(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str, moves: bool) -> Slots | None:
+def slots(
+    words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str, moves: Callable[[], bool]
+) -> Slots | None:
     """What the marks in words hold; None if one of them is not understood, or a number stands in none.
 
     Args:
         thing: reads a name.
         kind: that of the wish.
-        moves: whether anything moves in the scene: what is to move otherwise is then that, where nothing is named.
+        moves: tells whether anything moves in the scene: what is to move otherwise is that, where nothing is named.
     """
 
     def text(span: Span) -> str:
@@ -208,7 +210,7 @@ def slots(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str, 
     goals = tuple(_goals(words, spans, text, thing))
     if kind not in _LOOKS and any(goal.query.last for goal in goals):
         return None
-    if not names and kind in COURSES and moves:
+    if not names and kind in COURSES and moves():
         names, queries = (MOVING,), (Query(text="", moving=True, pick="all"),)
     if not names and len(goals) == 1:  # "a coat of paint on the bed"
         names, queries = (goals[0].name,), (goals[0].query,)
@@ -230,7 +232,11 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
     """Whether other words stand between the names of several things: "stop the fan, and the lamp should sing"."""
     if kind in ("order", "together"):
         return False
-    meant = [(thing(" ".join(words[start:stop]).strip(_TRIM)), start, stop) for _, start, stop in named]
+    names = [(" ".join(words[start:stop]).strip(_TRIM), start, stop) for _, start, stop in named]
+    meant = [
+        (thing(name) or (Query(text="", colors=(name,)) if name in hues() else None), start, stop)
+        for name, start, stop in names
+    ]
     told = [(query, start, stop) for query, start, stop in meant if query is not None and not query.last]
     return any(
         one != other and not set(words[stop:start]) <= _JOINTS for (one, _, stop), (other, start, _) in pairwise(told)

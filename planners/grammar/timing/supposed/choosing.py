@@ -15,7 +15,7 @@ from ..command import Fields
 from ..moments import TIMED
 from .kinds import NO_WISH
 
-LIKELY = 0.3  # probability from which one of the two likeliest kinds is taken without a word that says it
+CLEARLY = 0.9  # probability from which a kind is taken without a word that says it
 UNTIMED = 0.32  # the least probability of any kind that is taken where no time is told
 SHARE = 0.5  # of the probability of all rivals, which a word says or which are no wish: from it another one is taken
 _FIRST = 2
@@ -73,7 +73,7 @@ def chosen(offers: Sequence[Offer], said: str, least: float) -> tuple[Fields, ..
     for offer in offers[:_FIRST]:
         if offer.kind == NO_WISH:
             break
-        if offer.made and offer.chance >= max(least, LIKELY if _is_timed(offer, said) else UNTIMED):
+        if offer.made and offer.chance >= max(least, CLEARLY):
             return offer.made
     rivals = [offer for offer in offers if offer.kind == NO_WISH or (offer.made and says(offer.kind, said))]
     best = next(iter(rivals), None)

@@ -263,6 +263,8 @@ def _joined(names: tuple[str, ...]) -> str:
 def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
     rest = said.rest.split()
+    if kind in ("what_moves", "what_still") and said.x not in _ANYTHING and not _is_kind(said.x):
+        return True  # "who moves the ball", "what never moves near the desk"
     if not kind.startswith("if_") and rest and rest[0] in _AUXILIARIES:
         return True  # "is the ball at its top speed then?" wants no number
     if chance >= SURE:
@@ -300,6 +302,7 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
 
 _TWO_DEEDS = re.compile(r" and (?:\w+ )?(?:stop|fall|open|clos|shut|turn|roll|walk|land|start|go|com|mov|reach)\w* ")
 _NTH = re.compile(r"\b(?:second|third|fourth|last) (?:time|trip|turn|movement|run|fall|way|lap|round)\b")
+_ANYTHING = ("", "things", "the things", "anything", "everything", "something", "the furniture", "it")
 _DENIED = bag("not no never without nothing nobody")
 _RANKS = bag("second third first last other another twice again")
 _TO_THE_FLOOR = ("when_lands", "when_falls", "if_falls", "long_falls", "how_many")
