@@ -350,7 +350,10 @@ def _read_as(questions: Sequence[str], survey: Survey, timeline: Timeline) -> Re
         found = _of_motion(asked, survey)
         if found is None or found.answer.answer is None:
             found = _of_moments(asked, survey, timeline)
-        if found is not None and found.answer.answer is not None:
+        if found is not None and found.answer.answer not in (
+            None,
+            (),
+        ):  # "nothing does" may be another question's answer
             told.append((plainer, found))
     if not told or _same([f.answer for _, f in told]) is None:
         return None

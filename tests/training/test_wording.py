@@ -13,15 +13,15 @@ from scenewright.training.timed_words import FILES
 from scenewright.training.wording import Sentence, Tasks, network, sentences, told_of, without
 
 MADE = [
-    Sentence(str(at % 3), kind, text)
+    Sentence(str(at % 5), kind, text)
     for at, (kind, text) in enumerate(
         (kind, text.format(x=x, t=t))
         for kind, text in (
             ("stop", "stop [x {x}] [t {t}]"), ("stop", "[t {t}] let [x {x}] halt"), ("hide", "hide [x {x}] [t {t}]"),
-            ("hide", "[x {x}] should not be seen [t {t}]"),
+            ("hide", "[x {x}] should not be seen [t {t}]"), ("stop", "halt [x {x}] [t {t}]"),
         )
-        for x in ("the fan", "the old ferry", "a cat")
-        for t in ("at 2 s", "once the bell has rung", "while it rains")
+        for x in ("the fan", "the old ferry", "a cat", "the small red bus", "my kite")
+        for t in ("at 2 s", "once the bell has rung", "while it rains", "after 3 s", "when the tram stops", "from 1 s")
     )
 ]  # fmt: skip
 TASKS: Tasks = {"wishes": MADE}
@@ -35,7 +35,7 @@ def test_marks_stand_in_the_words() -> None:
 
 
 def test_what_is_learned_tells_the_kinds_and_marks_of_new_sentences() -> None:
-    model = network(TASKS, passes=200)
+    model = network(TASKS, passes=20)
     words = [
         tuple(word.text for word in split(said))
         for said in ("halt the ferry at 2 s", "hide the old cat once the bell has rung")
@@ -51,7 +51,7 @@ def test_the_same_sentences_give_the_same_weights() -> None:
 
 def test_writers_are_told_by_what_others_wrote() -> None:
     left, held = without(TASKS, {"wishes": ["2"]})
-    told = told_of(network(left, passes=200), "wishes", held["wishes"])
+    told = told_of(network(left, passes=20), "wishes", held["wishes"])
     assert len(left["wishes"]) + len(held["wishes"]) == len(MADE)
     assert told.kinds > 0.9 and min(told.precision, told.recall, told.whole) > 0.7
 

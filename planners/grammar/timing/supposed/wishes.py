@@ -42,7 +42,7 @@ _ON_ITS_WAY = (  # kinds that may name where something goes by itself
     "longer",
 )
 _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
-_THERE_AND_BACK = re.compile(r"\b(?:to|against|at|into) \| and\b")
+_THERE_AND_BACK = re.compile(r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and\b")
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
 _PROHIBITED = re.compile(
@@ -132,7 +132,7 @@ def is_ruled_out(kind: str, said: Said, chance: float) -> bool:
         return True
     if _OTHER_EDITS.search(said.text) and not (kind == "order" and said.listed):
         return True
-    if kind in ("reverse", "return") and said.goals and _THERE_AND_BACK.search(said.beside):
+    if kind in ("reverse", "return") and _THERE_AND_BACK.search(said.beside):
         return True  # "roll to the wall and come back"
     if kind in ("speed", "duration", "begin") and _A_STRETCH.search(said.text):
         return True  # "faster in the second half"

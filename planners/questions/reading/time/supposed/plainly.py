@@ -24,7 +24,7 @@ from ..frames import UNIT
 from ..loosely import HARD
 from .kinds import kinds_of, marked, vocabulary
 
-LEAST = 0.38  # probability of a kind that is tried
+LEAST = 0.6  # probability of a kind that is tried
 SURE = 0.8  # probability from which words without a mark are taken for those of the question
 _LONGEST = 40  # words
 _SHORTEST = 2
@@ -71,7 +71,7 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
     if sum(word.isalpha() for word in told) < _SHORTEST:
         return ()
     kind, chance = _likeliest(told)
-    if chance < least or kind not in _PLAIN or (_REASONS.search(" ".join(told)) and kind not in _OF_SOMEBODY):
+    if chance < least or kind not in _PLAIN or _asks_why(kind, " ".join(told)):
         return ()
     said = _said(told, marked(told), names)
     if said is None or _says_more(kind, chance, said, names):
@@ -184,6 +184,33 @@ _FILM = re.compile(
     r"\b(?:film|clip|video|scene|movie|footage|recording|shot|sequence|animation|thing|it all|"
     r"whole)\b"
 )
+
+
+def _asks_why(kind: str, said: str) -> bool:
+    """Whether words ask for a cause, or for what somebody does or feels, or only for one stretch of a way."""
+    if _CAUSES.search(said) or _A_STRETCH.search(said):
+        return True
+    return kind not in _OF_SOMEBODY and _REASONS.search(said) is not None
+
+
+_CAUSES = re.compile(
+    r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|\bcolou?rs?\b"
+)
+_A_STRETCH = re.compile(r"\b(?:first|second|last|final) (?:leg|stretch|part|half|bit|section|stage)\b")
+_YES_OR_NO = re.compile(
+    r"\b(?:yes or no|true or (?:false|not|nah)|right or wrong|is (?:that|this) (?:so|right|true|correct)|confirm|"
+    r"am i right|that right|is it true)\b"
+)
+_REASONS = re.compile(
+    r"\b(?:reason|explain|because of|caus(?:e|es|ed|ing)|blame|on purpose|who(?:m|se)?|somebody|someone)\b"
+)
+_OF_SOMEBODY and _REASONS.search(said) is not None
+
+
+_CAUSES = re.compile(
+    r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|\bcolou?rs?\b"
+)
+_A_STRETCH = re.compile(r"\b(?:first|second|last|final) (?:leg|stretch|part|half|bit|section|stage)\b")
 _YES_OR_NO = re.compile(
     r"\b(?:yes or no|true or (?:false|not|nah)|right or wrong|is (?:that|this) (?:so|right|true|correct)|confirm|"
     r"am i right|that right|is it true)\b"
