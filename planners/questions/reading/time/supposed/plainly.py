@@ -190,7 +190,21 @@ def _asks_why(kind: str, said: str) -> bool:
     """Whether words ask for a cause, or for what somebody does or feels, or only for one stretch of a way."""
     if _CAUSES.search(said) or _A_STRETCH.search(said):
         return True
-    return kind not in _OF_SOMEBODY = bag("first last order fastest what_moves what_still happens does how_many")
+    return kind not in _OF_SOMEBODY and _REASONS.search(said) is not None
+
+
+_CAUSES = re.compile(
+    r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|\bcolou?rs?\b"
+)
+_A_STRETCH = re.compile(r"\b(?:first|second|last|final) (?:leg|stretch|part|half|bit|section|stage)\b")
+_YES_OR_NO = re.compile(
+    r"\b(?:yes or no|true or (?:false|not|nah)|right or wrong|is (?:that|this) (?:so|right|true|correct)|confirm|"
+    r"am i right|that right|is it true)\b"
+)
+_REASONS = re.compile(
+    r"\b(?:reason|explain|because of|caus(?:e|es|ed|ing)|blame|on purpose|who(?:m|se)?|somebody|someone)\b"
+)
+_OF_SOMEBODY = bag("first last order fastest what_moves what_still happens does how_many")
 _GREATEST = re.compile(
     r"\b(?:top(?= (?:speed|pace|rate|velocity)\b)|max|maximum|maximal|peak|highest|greatest|fastest|most|record)\b"
 )
