@@ -11,7 +11,7 @@ from __future__ import annotations
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -140,6 +140,12 @@ def pieces(word: str) -> tuple[int, ...]:
         marked = f"<{word}>"
         runs += [marked[at : at + count] for count in _RUNS for at in range(len(marked) - count + 1)]
     return tuple(zlib.crc32(run.encode()) % ROWS for run in runs)
+
+
+@lru_cache(maxsize=512)  # several checks ask for the same words
+def told(task: str, words: tuple[str, ...]) -> Told:
+    """What the network that comes with the package tells of a sentence."""
+    return network().told(task, words)
 
 
 @cache

@@ -191,6 +191,8 @@ class Judge:
         """Whether something is to be so all the time, and otherwise at a time or as well: "keep it shut throughout, and
         have it open at 2 s"."""
         words = with_nouns(in_words(cleaned)).split(" ")
+        if _ALWAYS.search(" ".join(words)) is None:
+            return _BOTH_AT_ONCE.search(" ".join(words)) is not None
         spans = marked(words)
         told = [(tag, " ".join(words[start:stop]).strip(" ,.")) for tag, start, stop in spans if tag in TIMES]
         always = [_ALWAYS.search(said) is not None and tag in ("in", "for") for tag, said in told]

@@ -84,6 +84,8 @@ def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
     'make the door open half as fast'
     """
     words = in_words(cleaned).split(" ")
+    if _SAME.search(" ".join(words)) is None:
+        return cleaned, ()
     told = ((a, b, " ".join(words[a:b]).strip(" ,.;:")) for tag, a, b in marked(words) if tag == TAG)
     spans = [(a, b) for a, b, said in told if _SAME.search(said) and not _A_COMMAND.search(said)]
     if not spans and (found := _STILL.search(said := " ".join(words))) is not None:

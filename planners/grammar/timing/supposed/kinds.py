@@ -6,10 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 
 from ...learned.marks import Span
-from ...learned.network import network
+from ...learned.network import network, told
 from ...tagging.spelling import is_common, is_word
 from ...tagging.words import split
 from ...vocabulary.nouns import is_known
@@ -46,17 +45,12 @@ def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
     Args:
         still: whether what it is about does not move by itself: it then asks for no other course of a motion.
     """
-    known = list(_kinds_of(said))
+    known = list(told(TASK, tuple(word.text for word in split(said))).kinds)
     if still:
         rest = 1.0 - sum(chance for kind, chance in known if kind in COURSES)
         known = [(kind, chance / rest) for kind, chance in known if kind not in COURSES and chance >= LEAST]
     found = [(kind, chance) for kind, chance in known[:MOST] if chance >= LEAST]
     return [] if found and found[0][0] == NO_WISH else found
-
-
-@lru_cache(maxsize=64)  # several checks ask for the same words
-def _kinds_of(said: str) -> tuple[tuple[str, float], ...]:
-    return network().told(TASK, [word.text for word in split(said)]).kinds
 
 
 def is_done_by(kind: str, op: str) -> bool:
@@ -73,12 +67,7 @@ def marked(words: Sequence[str]) -> tuple[Span, ...]:
     """Which words of an instruction name a thing (`x`), where that goes (`y`), from when, until when, while and for
     how long something is to be (`from`, `to`, `in`, `for`), by how much (`by`), as which colour (`as`), what is not
     wanted (`not`), and what asks for nothing (`off`)."""
-    return _marked(tuple(words))
-
-
-@lru_cache(maxsize=64)  # several checks ask for the same words
-def _marked(words: tuple[str, ...]) -> tuple[Span, ...]:
-    return network().told(TASK, words).spans
+    return told(TASK, tuple(words)).spans
 
 
 def is_any_word(word: str) -> bool:

@@ -8,20 +8,20 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from .....grammar.learned.marks import Span
-from .....grammar.learned.network import network
+from .....grammar.learned.network import network, told
 
 TASK = "questions"
 
 
 def kinds_of(words: Sequence[str]) -> Sequence[tuple[str, float]]:
     """The kinds of question with their probabilities, the likeliest first."""
-    return network().told(TASK, words).kinds
+    return told(TASK, tuple(words)).kinds
 
 
 def marked(words: Sequence[str]) -> tuple[Span, ...]:
     """Which words of a question name what it is about (`x`), another thing (`y`), at what time it is asked (`t`), in
     what unit (`u`), and which ask for nothing (`off`)."""
-    return network().told(TASK, words).spans
+    return told(TASK, tuple(words)).spans
 
 
 def vocabulary() -> Collection[str]:
