@@ -74,6 +74,7 @@ _BOTH_AT_ONCE = re.compile(
     rf"\b{_AT_REST}\b.{{0,30}}\b(?:and|but|yet|while)\b.{{0,30}}\b{_MOVES}\b.{{0,40}}\b(?:at the same time|"
     rf"simultaneously|all at once)\b"
 )
+_EXCHANGES = re.compile(r"\b(?:swap|exchange|trade|switch)\b.*\bcolou?rs?\b", re.IGNORECASE)
 _FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
 
 
@@ -230,6 +231,8 @@ class Judge:
         when = (ops[0].get("when") if ops else None) or When()
         if not alike or ops[0]["op"] not in _OF_A_KIND or when.gradual or when.every is not None:
             return False
+        if when == When() and _EXCHANGES.search(cleaned):
+            return False  # "swap the colours of both"
         if ops[0]["op"] == "delete" and ops[0].get("when") is not None and _SWITCHED_OFF.search(cleaned):
             return _RIDS.search(cleaned) is None
         if ops[0]["op"] == "spin" and is_opened(ops[0]["target"].text):
