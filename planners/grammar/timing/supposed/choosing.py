@@ -21,8 +21,8 @@ SHARE = 0.5  # of the probability of all rivals, which a word says or which are 
 _FIRST = 2
 _BY_WORDS = {  # words of which one at least says that a wish is of a kind
     "recolor": r"colou?r\w*|paint\w*|turn\w*|go(?:es)?|become\w*|be|make|made|in|tint\w*|dye\w*",
-    "hide": r"hid\w*|invisible|gone|vanish\w*|disappear\w*|appear\w*|see|seen|saw|sight|visible|show\w*|lose|there|view|"
-    r"away|eyes",
+    "hide": r"hid\w*|invisible|gone|vanish\w*|disappear\w*|appear\w*|see|seen|saw|sight|visible|show\w*|lose|there|"
+    r"view|away|eyes",
     "remove": r"strike|scrap|ditch|bin|chuck|dump|toss|cut|take|"
     r"remov\w*|delet\w*|rid|away|out|without|gone|lose|drop|absent|no|not",
     "move": r"move\w*|push\w*|slid\w*|lift\w*|rais\w*|put|bring|drive|drives|roll\w*|float\w*|carr\w*|drift\w*|go|goes|"
