@@ -365,6 +365,3 @@ def _time(
                 return None
         happening = event or happening
     return moment, happening
-
-
-__all__ = ["IT", "Goal", "Slots", "slots"]
