@@ -191,9 +191,10 @@ class Judge:
     def contradicts_itself(self, cleaned: str) -> bool:
         """Whether something is to be so all the time, and otherwise at a time or as well: "keep it shut throughout, and
         have it open at 2 s"."""
-        words = with_nouns(in_words(cleaned)).split(" ")
-        if _ALWAYS.search(" ".join(words)) is None:
-            return _BOTH_AT_ONCE.search(" ".join(words)) is not None
+        said = with_nouns(in_words(cleaned))
+        if _ALWAYS.search(said) is None:
+            return _BOTH_AT_ONCE.search(said) is not None
+        words = said.split(" ")
         spans = marked(words)
         told = [(tag, " ".join(words[start:stop]).strip(" ,.")) for tag, start, stop in spans if tag in TIMES]
         always = [_ALWAYS.search(said) is not None and tag in ("in", "for") for tag, said in told]
@@ -201,7 +202,6 @@ class Judge:
             IT,
             None,
         }
-        said = " ".join(words)
         if len(things) > 1:
             return False
         others = any(not own and not _EDGE.search(when) for own, (_, when) in zip(always, told, strict=True))

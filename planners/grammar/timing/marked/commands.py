@@ -125,8 +125,7 @@ _NEGATIVE = ("hide", "remove", "still", "stay", "halt", "longer", "amount", "beg
 
 def _now(slots: Slots, command: str | Command, **moment: Any) -> Wanted:
     """A command at the time that marks tell, with parts of that changed."""
-    told = replace(slots.moment, slowly=False, quickly=False, **moment)
-    return Wanted(command, told, slots.happening)
+    return Wanted(command, replace(_plainly(slots.moment), **moment), slots.happening)
 
 
 def _paced(slots: Slots, change: str, moment: Moment | None = None, **more: Any) -> Wanted:
@@ -150,8 +149,7 @@ def _whose(slots: Slots) -> Query:
 
 def _recolor(slots: Slots) -> Iterator[Wanted]:
     if slots.color and any(word in hues() for word in slots.color.split()):
-        for goal in slots.goals:
-            slots.used.add(goal.name)
+        slots.pass_goals()
         yield Wanted(Command(kind="look", text=f"make {slots.whom} {slots.color}"), slots.moment, slots.happening)
 
 
@@ -164,12 +162,12 @@ def _hide(slots: Slots) -> Iterator[Wanted]:
     seen = seen and (enters or _NOT.search(slots.rest) is None)
     if seen and _BACK.search(" ".join(slots.words)):
         return  # "show it for a second, then bring it back" contradicts itself
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     yield Wanted(f"{'show' if seen else 'hide'} {slots.whom}", slots.moment, slots.happening)
 
 
 def _remove(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     if slots.told:
         yield Wanted(f"hide {slots.whom}", slots.moment, slots.happening)
     else:
@@ -204,7 +202,7 @@ _WAYS = {"up": _UP, "down": _DOWN, "to the left": _LEFT, "to the right": _RIGHT}
 
 
 def _spin(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     whom = slots.whom
     if (rate := slots.one("turns/s")) is not None:
         yield _now(slots, f"spin {whom} {rate.value:g} turns per second")
@@ -225,7 +223,7 @@ def _is_last(moment: Moment) -> bool:
 
 
 def _reverse(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     if slots.told:
         return
     if not slots.tell(_TRAVELS) and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
@@ -236,7 +234,7 @@ def _reverse(slots: Slots) -> Iterator[Wanted]:
 
 
 def _repeat(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     again = slots.one("times", "turns")
     if slots.told:
         yield _paced(slots, "repeat", times=1)
@@ -249,7 +247,7 @@ def _repeat(slots: Slots) -> Iterator[Wanted]:
 def _return(slots: Slots) -> Iterator[Wanted]:
     if slots.goals and not slots.told:
         return  # "roll to the wall and come back"
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     yield _paced(slots, "return")
 
 
@@ -294,7 +292,7 @@ def _sign(slots: Slots) -> float | None:
 
 
 def _speed(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     if (rate := slots.one("turns/s")) is not None:
         yield _now(slots, f"spin {slots.whom} {rate.value:g} turns per second")
         return
@@ -311,7 +309,7 @@ def _speed(slots: Slots) -> Iterator[Wanted]:
 
 def _factor(slots: Slots) -> float | None:
     """How many times as fast; None if that is not told."""
-    said = _TOO_SLOW.sub(" faster ", _TOO_FAST.sub(" slower ", " ".join(slots.said.split())))
+    said = _TOO_SLOW.sub(" faster ", _TOO_FAST.sub(" slower ", slots.said))
     slow, fast = _SLOWER.search(said) is not None, _FASTER.search(said) is not None
     told = slots.one("times", "%", "turns")
     if told is None:
@@ -338,7 +336,7 @@ def _factor(slots: Slots) -> float | None:
 
 
 def _duration(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     moment = _plainly(slots.moment)
     if moment.lasting is not None and not moment.taken and any(said.startswith("for ") for said in moment.said):
         return  # how long it goes on, or how long it takes
@@ -362,7 +360,7 @@ _HALFWAY = {"state": "halfway", "part": "from"}
 
 
 def _pause(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     moment = replace(_plainly(slots.moment), taken=False)
     if moment.lasting is None and (seconds := slots.one("s")) is not None:
         moment = replace(moment, lasting=seconds.value)
@@ -383,7 +381,7 @@ def _has_ends(happening: Happening | None) -> bool:
 
 
 def _halt(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     moment = _plainly(slots.moment)
     if (length := slots.one("m")) is not None and not slots.told:
         yield _paced(slots, "part", Moment(), distance={"value": length.value})
@@ -401,7 +399,7 @@ def _halt(slots: Slots) -> Iterator[Wanted]:
 
 
 def _still(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     if not slots.told or slots.moment.always:
         yield Wanted(pace(_whose(slots), "stop"), Moment(), None)
     elif slots.happening is None:
@@ -409,7 +407,7 @@ def _still(slots: Slots) -> Iterator[Wanted]:
 
 
 def _stay(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     if is_opened(_noun(slots)) and slots.moment.start != "end":
         yield Wanted(f"keep {slots.whom} open", Moment(), None)
     else:
@@ -417,7 +415,7 @@ def _stay(slots: Slots) -> Iterator[Wanted]:
 
 
 def _longer(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     if slots.moment.lasting is None and slots.happening is None and not slots.amounts:
         stop = slots.moment.stop if isinstance(slots.moment.stop, float) else None
         yield Wanted(pace(_whose(slots), "go_on"), Moment(stop=stop), None)
@@ -427,7 +425,7 @@ def _longer(slots: Slots) -> Iterator[Wanted]:
 
 
 def _amount(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     if _LESS_FAR.search(slots.said) and not _NOT.search(slots.rest):
         return  # "5 cm more": from how far it goes now
     if (how := _how_far(slots)) is None:
@@ -487,7 +485,7 @@ _NO_ORDER = re.compile(
 
 def _order(slots: Slots) -> Iterator[Wanted]:
     order = listed(slots.words, slots.spans, slots.thing) or _listed(slots)
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     if slots.told:
         return
     if order:
@@ -500,7 +498,8 @@ def _listed(slots: Slots) -> tuple[Query, ...]:
     """Three things or more in the order in which they are named, if the words before the second tell that the first is
     first, or those behind the last but one that the last is last; none in others."""
     named = [*zip(slots.names, slots.queries, strict=True), *((goal.name, goal.query) for goal in slots.goals)]
-    placed = sorted((_place_of(name, slots), query) for name, query in named if query.pick not in ("all", "rest"))
+    single = ((_place_of(name, slots), query) for name, query in named if query.pick not in ("all", "rest"))
+    placed = sorted(single, key=lambda own: own[0])
     if len(placed) < _SEVERAL or _NO_ORDER.search(" ".join(slots.words)):
         return ()
     (second, _), (_, _), (before, _) = placed[1], placed[-1], placed[-2]
@@ -519,7 +518,7 @@ def _place_of(name: str, slots: Slots) -> int:
 
 def _together(slots: Slots) -> Iterator[Wanted]:
     who = [*slots.names, *(goal.name for goal in slots.goals)]
-    slots.used |= {goal.name for goal in slots.goals}
+    slots.pass_goals()
     whose = slots.queries[0]
     paced = slots.moment.slowly or slots.moment.quickly or slots.tell(_SLOWER) or slots.tell(_HASTE)
     if slots.happening is None and not paced and (len(who) > 1 or whose.pick == "all" or slots.names[0].endswith("s")):

@@ -19,6 +19,7 @@ from ..moments import Moment
 from ..supposed.kinds import COURSES
 from ..supposed.names import MOVING
 from ..supposed.names import named as names_in
+from ..supposed.parts import UNLESS
 from ..supposed.said import Said
 from ..supposed.times import LASTS, LEADING, TIMES, UNTIL, delayed, joined, told_by
 from .amounts import Amount, amount
@@ -138,8 +139,12 @@ class Slots:
         fits = [goal for goal in self.goals if goal.way != "from"]
         if len(fits) != 1:
             return None
-        self.used |= {goal.name for goal in self.goals}
+        self.pass_goals()
         return fits[0]
+
+    def pass_goals(self) -> None:
+        """Let a command hold all other things, also those that only tell where something is."""
+        self.used |= {goal.name for goal in self.goals}
 
     def tell(self, pattern: re.Pattern[str]) -> bool:
         """Whether words that ask for something are among some."""
@@ -166,7 +171,6 @@ _ASKED_OF = re.compile(
     r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b|"
     r"\b(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b"
 )
-_UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
 _NOT_UNTIL = re.compile(r"\bnot (?:before|until|till) (?:the|my|a) \w+ \w+")
 
 
@@ -174,8 +178,8 @@ def asks_more(words: Sequence[str], tag: str) -> bool:
     """Whether words that seem to ask for nothing ask for more: "and the lamp should sing", "except in the mirror"."""
     said = " ".join(words)
     if tag == "not":
-        return _UNLESS.search(said) is not None or _NOT_UNTIL.search(said) is not None
-    return tag == "off" and (_ASKED_OF.search(said) is not None or _UNLESS.search(said) is not None)
+        return UNLESS.search(said) is not None or _NOT_UNTIL.search(said) is not None
+    return tag == "off" and (_ASKED_OF.search(said) is not None or UNLESS.search(said) is not None)
 
 
 def slots(

@@ -30,7 +30,7 @@ _WHERE_IN = re.compile(
     r"(?<!\bto )(?<!\bnear )\bwhere\b(?= (?:it|he|she|they|the) )(?! \w+ (?:is|are|was|were|stands?|sits?|lies?)\b)"
 )
 _BEFORE = re.compile(r"\b(?:not|never) (?:before|until|till|unless|if|when|while) \w+ \w+")  # that waits for something
-_UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
+UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
 _REVERTED = re.compile(  # ", and revert when it slides back"
     r"(?:(?: ,)?(?: (?:and|but|then))+| ,) (?:(?:it|let it|have it|should|to|make it) )*"
     r"(?:reverts?|[a-z]+ again|(?:goes|go|turns?|turning|changes?|turn it|put it|set it|change it|going) back|"
@@ -219,7 +219,7 @@ def _loses(tag: str, words: Sequence[str]) -> bool:
         return True  # "first blue, then green, and red for the finale"
     if _ANOTHER.search(said) and hues() & set(said.split()) and not _AS_IT_WAS.search(said):
         return True  # "then yellow", "blue otherwise"
-    if _BEFORE.search(said) or _UNLESS.search(said):
+    if _BEFORE.search(said) or UNLESS.search(said):
         return True
     if tag == "off" and _ASKED_OF.search(said):
         return True  # "and the lamp should sing"
