@@ -130,7 +130,7 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     refused = moved or still
     names = _names(survey)
     if refused is None or refused.answer.text.startswith(_MISREAD):
-        guesses = (loosely(plain(words), names), supposed(text, names))
+        guesses = (supposed(text, names, SURE), loosely(plain(words), names), supposed(text, names))
     else:
         guesses = ((), supposed(text, names, SURE))
     for questions in guesses:

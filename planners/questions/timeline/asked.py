@@ -295,7 +295,7 @@ def _clause(when: When, told: Told) -> Span:
             failed = failed or error
             continue
         if found:
-            counts = told.frame.asks in ("yesno", "how_many", "how_far", "how_often")
+            counts = told.frame.asks in ("yesno", "how_many", "how_far", "how_often", "which")
             conj = "when" if when.conj == "by" and not counts else when.conj
             if conj == "once" and told.frame.asks == "how_long":
                 conj = "after"

@@ -374,6 +374,17 @@ def _extreme(near: bool, body: Body, others: Sequence[Thing], timeline: Timeline
     return [(time, time)]
 
 
+def first_near(body: Body, others: Sequence[Thing], timeline: Timeline) -> float:
+    """The time at which a body first is at one of the others; where it never gets so near, when it is nearest."""
+    pairs = _encounters(body, others, timeline)
+    if not pairs:
+        return timeline.stop
+    times = body.course.grid()
+    gaps = np.stack([p.gaps(times) for p in pairs]).min(axis=0)
+    near = np.flatnonzero(gaps <= BESIDE * timeline.unit)
+    return float(times[near[0] if len(near) else int(np.argmin(gaps))])
+
+
 def _nearing(closer: bool, body: Body, others: Sequence[Thing], timeline: Timeline) -> list[Span]:
     """The spans in which the gap to the others gets smaller, or larger."""
     found = list[Span]()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
@@ -13,7 +14,7 @@ from ...reading.noun_phrase import is_anything
 from ...reading.time.deeds import STATES, Deed
 from ...reading.time.frames import plain
 from ...reading.time.happenings import TRANSITIVE
-from ...survey import NotResolved, listed
+from ...survey import NotResolved, Thing, listed
 from ...telling import evidence as evidence_of
 from ...timeline.asked import PLACES, Told, Untold, at, cap, kind, names, number, spoken, verb, within
 from ...timeline.bodies import Body
@@ -73,8 +74,10 @@ def _which(told: Told) -> Answer | None:
     )
     if deed is not None and deed.kind in TRANSITIVE and what.object is None:
         return _objects(told) if asks_object and what.subject is not None else None
-    if deed is not None and (deed.kind == "still" or _stays_shut(deed)):
+    if deed is not None and (deed.kind == "still" or (_stays_shut(deed) and what.subject is not None)):
         return _still(told)
+    if deed is not None and (what.denied or deed.kind == "is_closed"):
+        return _others(told)
     transitive = re.match(r"(?:what|which) (?:does|do|did|will|has)\b", said)
     if deed is not None and transitive and what.subject is not None and what.object is None and not told.frame.rank:
         return None  # "what does the ball roll"
@@ -214,6 +217,45 @@ def _still(told: Told) -> Answer:
     )
 
 
+def _others(told: Told) -> Answer | None:
+    """Which things do not do it: of the things of that kind all but those that do; "closed" is "not open"."""
+    what = told.frame.what
+    assert what.deed is not None
+    shut = what.deed.kind == "is_closed"
+    if shut and what.denied:
+        return None
+    deed = replace(what.deed, kind="is_open") if shut else what.deed
+    moved = replace(told, frame=replace(told.frame, what=replace(what, deed=deed, denied=False)))
+    busy = {b.thing.id for b, _ in doing(moved) if b.thing is not None}
+    things = [t for t in _of_kind(told) if t.id not in busy]
+    if not things:
+        return names([], f"There is none of which that is so{_then(told)}.")
+    named = tuple(told.survey.named(t) for t in things)
+    are = f"{cap(listed(named))} {'are' if len(things) > 1 else 'is'} closed{_then(told)}."
+    done = replace(moved.frame.what, deed=replace(deed, phase=""))
+    text = are if shut else f"None of these {verb(moved, done)}{_then(told)}: {listed(named)}."
+    bare = tuple(name.removeprefix("the ") for name in named)
+    return Answer(
+        answer=bare[0] if len(bare) == 1 else bare,
+        answer_type="label" if len(things) == 1 else "list",
+        text=text,
+        confidence=0.85,
+        evidence=evidence_of(things),
+    )
+
+
+def _of_kind(told: Told) -> list[Thing]:
+    """The things that a deed is asked of: those that are named, else those like what ever does it."""
+    what = told.frame.what
+    if what.subject is not None and not is_anything(what.subject):
+        found = told.survey.find(what.subject.model_copy(update={"pick": "all"})).things
+        label = singular(what.subject.text)
+        return [t for t in found if t.label == label] or [t for t in found if t.label.endswith(f" {label}")]
+    always = replace(told, frame=replace(told.frame, when=None, what=replace(what, denied=False)))
+    labels = {b.thing.label for b, _ in doing(always) if b.thing is not None}
+    return [t for t in told.survey.things if t.label in labels]
+
+
 def _many(told: Told) -> Answer | None:
     what = told.frame.what
     if what.deed is None:
@@ -227,8 +269,10 @@ def _many(told: Told) -> Answer | None:
         if error.found.verdict != "ambiguous":
             raise
         return None
-    if what.deed.kind == "still" or _stays_shut(what.deed):
-        given = _still(told)
+    if what.deed.kind in ("still", "is_closed") or what.denied:
+        given = _still(told) if what.deed.kind == "still" or _stays_shut(what.deed) else _others(told)
+        if given is None:
+            return None
         count = len(given.answer) if isinstance(given.answer, tuple) else 1
         return number(float(count), "", given.text, [])
     bodies = [b for b, _ in found]

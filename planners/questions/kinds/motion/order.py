@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
+
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
 from ...answer import Answer
 from ...reading.time.deeds import Deed
+from ...reading.time.happenings import thing as named_thing
 from ...survey import listed
 from ...timeline.asked import PLACES, Told, Untold, at, cap, evidence, kind, names, spoken, verb, within
 from ...timeline.bodies import Body
-from ...timeline.happening import openness, spans_of, turning
+from ...timeline.happening import first_near, openness, spans_of, turning
 from .places import direction
 from .speeds import is_turning
 from .when import moment
@@ -21,6 +24,8 @@ Event = tuple[float, str, Body]
 def _order(told: Told) -> Answer | None:
     if told.frame.other is not None:
         return _of_two(told)
+    if told.frame.options:
+        return _visits(told)
     deed = told.frame.what.deed
     if deed is not None and not deed.verb.startswith(("happen", "occur")):
         return _of_deed(told)
@@ -69,6 +74,26 @@ def _of_two(told: Told) -> Answer | None:
         text=f"{cap('; '.join(f'at {at(t)} {said}' for t, said, _ in found))}.",
         confidence=0.85,
         evidence=evidence([b for _, _, b in found], found[0][0]),
+    )
+
+
+def _visits(told: Told) -> Answer:
+    """ "In what order does the ball pass the rug, the sofa and the wall?"."""
+    body, found = told.one(), []
+    for said in told.frame.options:
+        query = named_thing(said)
+        met = told.survey.find(query) if query is not None else None
+        if query is None or met is None or not met.things:
+            raise Untold(f"It is not known what this is: {said}.")
+        found.append((first_near(body, met.things, told.timeline), said, met.things[0]))
+    found.sort(key=lambda e: e[0])
+    text = "; ".join(f"at {at(t)} {told.survey.named(thing)}" for t, _, thing in found)
+    return Answer(
+        answer=tuple(re.sub(r"^(?:the|a|an) ", "", said) for _, said, _ in found),
+        answer_type="list",
+        text=f"{cap(body.name)} comes by these: {text}.",
+        confidence=0.85,
+        evidence=evidence([body], found[0][0], [thing for _, _, thing in found]),
     )
 
 

@@ -124,6 +124,10 @@ _FIRST_OF = re.compile(
     r"^(?:what|which)(?: one| event)? (?:comes|happens|is|occurs) (?:first|earlier)(?: ,| :)? (?P<a>.+?)(?: ,)? or "
     r"(?P<b>.+)$"
 )
+_VISITS = re.compile(
+    r"^in (?:what|which) (?:order|sequence) (?:does|do|did|will) (?P<x>.+?) "
+    r"(?:pass|reach|visit|meet|come by|come to|touch|cross|get to|go past|go by|go over) (?P<y>.+)$"
+)
 _RANKED_THING = re.compile(r"^(?:(?:name|list|show|tell)(?: me)? )?(?P<x>(?:the )?(?:first|last|fastest|slowest) .+)$")
 _AT_TWO_TIMES = re.compile(
     r"^(?:is|does|was|did) (?P<x>.+?) (?P<r>faster|quicker|slower) (?P<a>(?:at|in|on|before|after|during|when|"
@@ -396,6 +400,11 @@ def _frames(said: str) -> Iterator[Frame]:
         if start.asks == "order" and _BEGINS_WITH_TIME.match(inner):
             inner = f"happens {inner}"
         yield from _filled(replace(start, unit=unit or start.unit), inner)
+    if (found := _VISITS.match(rest)) is not None:
+        stops = tuple(re.split(r"(?: ,)? and | , ", found["y"]))
+        for what in happenings(found["x"]) if len(stops) > 1 else ():
+            if what.deed is None and what.subject is not None:
+                yield Frame("order", replace(what, deed=Deed("pass", verb="pass")), options=stops)
     if (found := _FIRST_OF.match(rest)) is not None:
         for a, b in _pairs(found["a"], found["b"]):
             yield Frame("order", a, b)
@@ -529,6 +538,8 @@ def _by_then(when: When | None, said: str) -> When | None:
         return None
     if when.kind == "at":
         return When("span", 0.0, when.start, conj="by")
+    if when.kind == "clause" and when.conj in ("when", "once", "as"):
+        return replace(when, conj="by")
     return when if when.conj == "by" else None
 
 
@@ -538,7 +549,7 @@ def _is_whole(deed: Deed) -> bool:
 
 def _belongs(what: Happening, asks: Asks, said: str) -> bool:
     """Whether what is asked may be asked of a happening as it is read."""
-    if what.denied and asks != "yesno":
+    if what.denied and asks != "yesno" and (asks not in ("which", "how_many") or what.object is not None):
         return False
     if asks != "which" or what.deed is None or what.subject is None:
         return True

@@ -40,6 +40,7 @@ class Said:
 
     Attributes:
         x, y: what it is about, and the other thing; "" if none is named.
+        places: each other thing, where there are several.
         time: the words of its time, "" if there are none.
         unit: that of its answer, "" if none is said.
         times: the words of each of its times.
@@ -54,6 +55,7 @@ class Said:
     rest: str
     times: tuple[str, ...] = ()
     off: str = ""
+    places: tuple[str, ...] = ()
 
 
 @lru_cache(maxsize=1024)
@@ -83,7 +85,8 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
 
 
 _OF_ALL = bag(
-    "what_moves what_still how_many first last order fastest happens film_long gap if_moves if_still if_together"
+    "what_moves what_still how_many first last order fastest happens film_long gap if_moves if_still if_together "
+    "what_open what_shut what_on what_fell what_up"
 )
 _WHOLE_FILM = re.compile(  # a time that is all of the film
     r"^(?:(?:during|in|over|throughout|within|for|across|through) (?:the|this|these|all(?: of)? the|its|his|her) "
@@ -108,6 +111,10 @@ _STATES = (
     "what_still",
     "if_moves",
     "how_many",
+    "what_open",
+    "what_shut",
+    "what_on",
+    "what_up",
 )
 _THE_END = re.compile(r"\b(?:end|finish|finally|eventually|last|over|done|ends)\b")
 _QUIET = re.compile(
@@ -226,13 +233,17 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
     if not found["x"]:  # "one of the toys was in a sulk, which was it?"
         plain = (word for aside in found["off"] for word in aside.split())
         found["x"] = [f"the {word}" for word in plain if word.endswith("s") and singular(word) in names][:1]
-    things = {tag: tuple(dict.fromkeys(_named(name, names) for name in found[tag])) for tag in ("x", "y")}
-    if len(things["y"]) > 1 or len(found["t"]) > 2 or any(_TIMED.search(aside) for aside in found["off"]):
+    noun = next((singular(w) for w in words if w.endswith("s") and singular(w) in names), "")
+    things = {
+        tag: tuple(dict.fromkeys(_named(_ONE.sub(noun or "one", name), names) for name in found[tag]))
+        for tag in ("x", "y")
+    }
+    if len(found["t"]) > 2 or any(_TIMED.search(aside) for aside in found["off"]):
         return None
     unit = _IN_UNIT.search(" ".join(found["u"]))
     return Said(
-        x=_joined(things["x"]), y=_joined(things["y"]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
-        rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]),
+        x=_joined(things["x"]), y=_joined(things["y"][:1]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
+        rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]), places=things["y"],
     )  # fmt: skip
 
 
@@ -241,10 +252,8 @@ _AN_EVENT = re.compile(
     r"movement|motion|rotation|drop)"
     r"(?: manoeuvre| maneuver| movement| motion| phase| part)?$"
 )
-_TIMED = re.compile(
-    rf"\b(?:when|while|until|till|once|after|before|during)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b|"
-    rf"\b(?:{'|'.join(w for w in NUMBERS if w != 'one')})\b"
-)
+_TIMED = re.compile(r"\b(?:when|while|until|till|once|after|before|during)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b")
+_ONE = re.compile(r"\bone$")
 
 
 def _named(said: str, names: Collection[str]) -> str:
@@ -274,53 +283,58 @@ def _joined(names: tuple[str, ...]) -> str:
 
 def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
-    rest = said.rest.split()
-    if kind in ("what_moves", "what_still") and said.x not in _ANYTHING and not _is_kind(said.x):
+    rest, allowed = said.rest.split(), _ALLOWED.get(kind, frozenset())
+    if kind in ("what_moves", "what_still") and not (said.x in _ANYTHING or _is_kind(said.x) or _APART.search(said.rest)):
         return True  # "who moves the ball", "what never moves near the desk"
-    if not kind.startswith("if_") and rest and rest[0] in _AUXILIARIES:
+    if kind in ("what_moves", "what_still") and said.y:
+        return True
+    if len(said.places) > 1 and kind != "visits":
+        return True
+    if not kind.startswith("if_") and not said.unit and rest and rest[0] in _AUXILIARIES:
         return True  # "is the ball at its top speed then?" wants no number
-    if chance >= SURE:
-        told = [word for word in rest if word not in _ALLOWED.get(kind, ())]
-        if _NTH.search(said.time):
-            return True
-        denies = kind not in _NEGATED and not _DENIED.isdisjoint(told[1:])
-        ranked = not _RANKS.isdisjoint(told) or "than" in told
-        number = any((word in NUMBERS and word != "one") or word[0].isdigit() or is_color_word(word) for word in told)
-        if _TWO_DEEDS.search(f" {' '.join(rest)} ") or (said.y and kind in ("what_still", "what_moves")):
-            return True
-        return (
-            denies
-            or ranked
-            or number
-            or any(
-                singular(w) in names
-                for w in told
-                if w not in _VERBS and not (kind in _TO_THE_FLOOR and w in ("floor", "ground"))
-            )
-        )
-    if kind.startswith("if_") and _ASKS.intersection(rest):
-        return True  # "which way does it turn" wants no yes or no
-    if kind in _NEGATED or (rest and rest[0] in _AUXILIARIES):
-        rest = [word for word in rest if word not in ("not", "no", "never", "nothing")]  # "did it not move?"
-    if "and" in rest or "or" in rest:
-        return True  # two deeds, or things to choose from
-    allowed = _ALLOWED.get(kind, frozenset())
-    if any(word in _HARD and word not in allowed for word in rest):
+    if _NTH.search(said.time):
         return True
-    if any((word in NUMBERS and word != "one") or word[0].isdigit() or is_color_word(word) for word in rest):
+    deeds = _TWO_DEEDS.search(f" {' '.join(rest)} ")
+    if deeds is not None and deeds["deed"] not in _OWN_DEEDS.get(kind, ()):
         return True
-    return any(singular(word) in names for word in rest if word not in _VERBS)
+    told = [word for word in rest if word not in allowed]
+    if kind in _NEGATED or (chance < SURE and rest and rest[0] in _AUXILIARIES):  # "did it not move?"
+        told = [word for word in told if word not in _DENIED]
+    if not _DENIED.isdisjoint(told[1:]) or (kind not in _RANKED and (not _RANKS.isdisjoint(told) or "than" in told)):
+        return True
+    if any((w in NUMBERS and w != "one" and kind not in _COUNTED) or w[0].isdigit() or is_color_word(w) for w in told):
+        return True
+    if chance < SURE:
+        if (kind.startswith("if_") and _ASKS.intersection(rest)) or "and" in rest or "or" in rest:
+            return True  # "which way does it turn" wants no yes or no; two deeds, or things to choose from
+        if any(word in _HARD for word in told):
+            return True
+    return any(
+        singular(w) in names
+        for w in told
+        if w not in _VERBS and not (kind in _TO_THE_FLOOR and w in ("floor", "ground"))
+    )
 
 
-_TWO_DEEDS = re.compile(r" and (?:\w+ )?(?:stop|fall|open|clos|shut|turn|roll|walk|land|start|go|com|mov|reach)\w* ")
+_APART = re.compile(r"\b(?:besides|apart from|except|excepting|other than|aside from|but)\b")
+_RANKED = bag("order visits long_moves long_opens long_closes far apart long_falls")
+_COUNTED = bag("order visits how_many what_still what_shut what_up what_open what_on what_fell what_moves")
+_OWN_DEEDS: Mapping[str, tuple[str, ...]] = {
+    "when_shut": ("clos", "shut"), "if_shut": ("clos", "shut"), "what_shut": ("clos", "shut"),
+    "when_stops": ("stop",), "when_lands": ("land",), "when_falls": ("fall",), "when_starts": ("start", "go", "mov"),
+    "when_opens": ("open",), "when_open": ("open",), "what_fell": ("land", "fall"),
+}  # fmt: skip
+_TWO_DEEDS = re.compile(
+    r" and (?:\w+ )?(?P<deed>stop|fall|open|clos|shut|turn|roll|walk|land|start|go|com|mov|reach)\w* "
+)
 _NTH = re.compile(r"\b(?:second|third|fourth|last) (?:time|trip|turn|movement|run|fall|way|lap|round)\b")
 _ANYTHING = ("", "things", "the things", "anything", "everything", "something", "the furniture", "it")
 _DENIED = bag("not no never without nothing nobody")
 _RANKS = bag("second third first last other another twice again")
-_TO_THE_FLOOR = ("when_lands", "when_falls", "if_falls", "long_falls", "how_many")
+_TO_THE_FLOOR = bag("when_lands when_falls if_falls long_falls how_many what_fell what_up far_falls")
 _ASKS = bag("which what how when where who whose")
 _AUXILIARIES = bag("is are was were does do did has have had")
-_NEGATED = bag("if_still what_still")
+_NEGATED = bag("if_still what_still long_still what_up what_shut if_shut")
 _VERBS = bag("fall falls light turn turns open close drop step steps start stop move swing spin fan walk roll slide")
 _ORDERS = bag("first last second third than before after earlier later sooner next other")
 _ALLOWED: Mapping[str, frozenset[str]] = {
@@ -452,9 +466,7 @@ def _compared(said: Said, word: str) -> Iterator[str]:
 def _often(said: Said) -> Iterator[str]:
     if said.x:
         own = next((text for words, text in _OFTEN if words.search(said.rest)), "")
-        deed = _deed(said.rest, "")
-        if own or deed:
-            yield (own or f"how often does {{x}} {deed}").format(x=said.x)
+        yield (own or f"how often does {{x}} {_deed(said.rest, 'move')}").format(x=said.x)
 
 
 def _turns(said: Said) -> Iterator[str]:
@@ -491,6 +503,36 @@ _WHICH = re.compile(r"\b(?:which|name|list|what)\b")
 def _those_shut(said: Said) -> Iterator[str]:
     if _is_kind(said.x) and _WHICH.search(f"{said.rest} {said.off}") and not re.search(r"\d", said.time):
         yield f"which {re.sub(r'^(?:two|three|four) ', '', _several(said.x))} stay closed"
+
+
+def _of_those(asked: str, always: str) -> Plain:
+    """Which things of a kind do something at a time, or all the time."""
+
+    def made(said: Said) -> Iterator[str]:
+        noun = _several(said.x) if _is_kind(said.x) else ""
+        form = asked if said.time or not always else always
+        yield re.sub(r"^(?:which of )?(?:two|three|four) ", "", f"which {noun} {form}" if noun else f"what {_singular(form)}")
+
+    return made
+
+
+def _singular(form: str) -> str:
+    """A predicate of one thing: "are open" is "is open"."""
+    for many, one in (("are", "is"), ("have", "has"), ("do", "does")):
+        form = re.sub(rf"^{many}\b", one, form)
+    return re.sub(r"^stay\b", "stays", form)
+
+
+def _what_on(said: Said) -> Iterator[str]:
+    if said.y:
+        yield f"which {_several(said.x)} are on {said.y}" if _is_kind(said.x) else f"what is on {said.y}"
+    elif said.x:
+        yield f"what is on {said.x}"
+
+
+def _visits(said: Said) -> Iterator[str]:
+    if said.x and len(said.places) > 1:
+        yield f"in what order does {said.x} pass {' and '.join(said.places)}"
 
 
 def _long_open(said: Said) -> Iterator[str]:
@@ -587,6 +629,14 @@ _PLAIN: Mapping[str, Plain] = {
     "what_still": lambda said: iter(
         (f"which {_several(said.x)} do not move" if _is_kind(said.x) else "what does not move",)
     ),
+    "what_open": _of_those("are open", "are open"),
+    "what_shut": _of_those("are closed", "stay closed"),
+    "what_on": _what_on,
+    "what_fell": _of_those("have fallen", "fall"),
+    "what_up": _of_those("have not fallen", "do not fall"),
+    "visits": _visits,
+    "apart": _about("how far does {x} move as the crow flies", unit=True),
+    "far_falls": _about("how far does {x} fall", unit=True),
     "how_many": _counted,
     "first": lambda said: _ordered(said, "first"),
     "last": lambda said: _ordered(said, "last"),
