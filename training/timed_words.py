@@ -1,9 +1,10 @@
-"""Learn to tell the kinds of wishes and questions about time and motion, and which of their words name what.
+"""Learn to tell the kinds of wishes and questions about time and motion, and of what happens at a time.
 
     python -m scenewright.training.timed_words [--held wishes:74,75 questions:27]
 
-Reads `timed_wishes.tsv` and `timed_questions.tsv` and writes the weights of `planners/grammar/learned/`. With `--held`
-it leaves out the sentences of some writers instead, and tells how well these are told.
+Reads `timed_wishes.tsv`, `timed_questions.tsv` and `timed_events.tsv` and writes the weights of
+`planners/grammar/learned/`. With `--held` it leaves out the sentences of some writers instead, and tells how well these
+are told.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from pathlib import Path
 from ..planners.grammar.learned.network import FILE
 from .wording import network, sentences, told_of, without
 
-FILES = {task: Path(__file__).with_name(f"timed_{task}.tsv") for task in ("wishes", "questions")}
+FILES = {task: Path(__file__).with_name(f"timed_{task}.tsv") for task in ("wishes", "questions", "events")}
 
 
 def main() -> None:

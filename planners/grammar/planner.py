@@ -42,9 +42,9 @@ from .tagging.words import Word, clean, split, without_owners
 from .timing.ending import with_end
 from .timing.judging import Judge
 from .timing.keeping import held, without_kept
+from .timing.marked.kinds import SURE
 from .timing.reading import TimeReader, is_misread, may_be_timed
 from .timing.spoken import written
-from .timing.supposed.wishes import SURE
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
 
@@ -225,22 +225,22 @@ def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _
         return _guessed(supposed)
     if (fuller := judge.fuller(cleaned, outcome.ops)) is not None:
         return _guessed(fuller)
-    if judge.is_still(outcome.ops) and (supposed := judge.supposed(cleaned)) and not judge.is_still(supposed):
+    if judge.is_still(outcome.ops) and (supposed := judge.likeliest(cleaned)) and not judge.is_still(supposed):
         return _guessed(supposed)
     if judge.is_about_another(cleaned, outcome.ops):
-        if supposed := judge.supposed(cleaned):
+        if supposed := judge.likeliest(cleaned):
             return outcome if judge.is_about_another(cleaned, supposed) else _guessed(supposed)
         plainly = outcome.ops[0]["op"] == "delete" and outcome.ops[0]["target"].text != "everything"
         if plainly and judge.is_named_beside(cleaned, outcome.ops[0]["target"]):
             raise Refusal("what is to be removed is not understood", cleaned[:200])
     if judge.is_of_another_kind(cleaned, outcome.ops):
-        if supposed := judge.supposed(cleaned):
+        if supposed := judge.likeliest(cleaned):
             return _guessed(supposed)
         if judge.is_of_another_kind(cleaned, outcome.ops, SURE):
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
-    if scene is not None and _lacks(scene, outcome.ops) and (supposed := judge.supposed(cleaned)):
+    if scene is not None and _lacks(scene, outcome.ops) and (supposed := judge.likeliest(cleaned)):
         return outcome if _lacks(scene, supposed) else _guessed(supposed)
-    if not _names_things(outcome.ops, previous) and (supposed := judge.supposed(cleaned)):
+    if not _names_things(outcome.ops, previous) and (supposed := judge.likeliest(cleaned)):
         return _guessed(supposed) if _names_things(supposed, previous) else outcome
     return outcome
 

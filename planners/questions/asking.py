@@ -129,10 +129,11 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         return still
     refused = moved or still
     names = _names(survey)
+    guesses: tuple[tuple[str, ...], ...]
     if refused is None or refused.answer.text.startswith(_MISREAD):
         guesses = (supposed(text, names, SURE), loosely(plain(words), names), supposed(text, names))
     else:
-        guesses = ((), supposed(text, names, SURE))
+        guesses = (supposed(text, names, SURE),)
     for questions in guesses:
         if (guess := _read_as(questions, survey, timeline)) is not None:
             return guess

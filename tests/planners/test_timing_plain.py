@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from scenewright.gaussians.language.query.query import Query
-from scenewright.planners.grammar.timing.supposed.plain import loosely, plain
-from scenewright.planners.grammar.timing.supposed.times import told_by
+from scenewright.planners.grammar.timing.marked.plain import loosely, plain
+from scenewright.planners.grammar.timing.marked.times import told_by
 
 THINGS = {"the ball", "the dog", "the drawer", "the robot", "it"}
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import replace
-from itertools import islice
 
 from pydantic import ValidationError
 
@@ -22,20 +20,17 @@ from . import happenings, moments
 from .command import Command, Fields
 from .happenings import IT, Happening
 from .marked.commands import commands
+from .marked.guards import is_ruled_out, says_more
+from .marked.kinds import COURSES, LEAST, STATIC, SURE, is_changed_by, is_clear, is_done_by, likely, marked
+from .marked.lost import leaves_out
+from .marked.names import with_nouns
 from .marked.slots import asks_more, slots
+from .marked.times import TIMES
+from .marked.wished import is_wished
 from .moments import Moment
 from .reading import CLAUSE, TIMELESS, TimeReader
-from .supposed.choosing import CLEARLY, Offer, chosen, says_plainly
-from .supposed.kinds import COURSES, LEAST, is_changed_by, is_done_by, likely, marked
-from .supposed.lost import leaves_out
-from .supposed.names import with_nouns
-from .supposed.parts import divided
-from .supposed.said import Said, said_of
-from .supposed.times import TIMES
-from .supposed.wished import is_wished
-from .supposed.wishes import STATIC, SURE, is_ruled_out, says_no_more, wishes
 from .whens import of_one_movement
-from .wording import LONG_WORDS, in_words, spelt_out, spelt_right, tidy
+from .wording import LONG_WORDS, in_words, spelt_out, spelt_right
 
 Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
 
@@ -88,53 +83,16 @@ class Judge:
 
     def __init__(self, reader: TimeReader, moves: Moves | None = None) -> None:
         self._reader, self._moves = reader, moves
-        self._supposed: dict[tuple[str, float], tuple[Fields, ...] | None] = {}
-
-    def supposed(self, cleaned: str, least: float = 0.0) -> tuple[Fields, ...] | None:
-        """The operations that an instruction most likely asks for, by the kind of its wish; None if that is not likely
-        enough, or if they would leave out anything that it names.
-
-        Args:
-            least: probability of a kind that no word has to say.
-        """
-        if (cleaned, least) not in self._supposed:
-            self._supposed[cleaned, least] = self._most_likely(cleaned, least)
-        return self._supposed[cleaned, least]
-
-    def _most_likely(self, cleaned: str, least: float) -> tuple[Fields, ...] | None:
-        """As `supposed`, which several checks of a plan ask for."""
-        words = in_words(cleaned)
-        kinds = likely(cleaned) if words.count(" ") < _LONGEST else []
-        if not kinds or _ALL_ELSE.search(words):
-            return None
-        spelled = spelt_right(spelt_out(words), LONG_WORDS)
-        said = with_nouns(tidy(spelled))
-        whole = (_with_delay(*reading) for reading in self._reader.readings(said) if not _FRAGMENT.match(reading[0]))
-        readings = [
-            (said_of(rest, self._reader.thing, moment, "" if happening is None else happening.said), happening)
-            for rest, moment, happening in islice(whole, 2)
-        ]
-        wording = with_nouns(spelled).split(" ")
-        if (divided_by := divided(wording, marked(wording), self._reader.thing)) is not None:
-            readings.insert(0, divided_by)
-
-        def offered(kinds: Sequence[tuple[str, float]]) -> list[Offer]:
-            told = [(kind, p) for kind, p in kinds if kind != "hide" or p >= _HIDDEN or says_plainly(kind, words)]
-            return [Offer(kind, p, next(self._wished(kind, p, readings, wording), ())) for kind, p in told]
-
-        offers = offered(kinds)
-        if any(self.is_still(offer.made) for offer in offers):
-            said_so = [offer for offer in offered(likely(cleaned, still=True)) if says_plainly(offer.kind, words)]
-            found = chosen(said_so, words, least)
-            if found is not None:
-                return found  # else it is told that the thing does not move
-        return chosen(offers, words, least)
+        self._likeliest: dict[tuple[str, float], tuple[Fields, ...] | None] = {}
 
     def likeliest(self, cleaned: str, least: float = 0.0) -> tuple[Fields, ...] | None:
-        """The operations that an instruction most likely asks for, by its marks alone, or else as `supposed`."""
-        return self.marked(cleaned, max(least, MARKED)) or self.supposed(cleaned, least)
+        """The operations that an instruction most likely asks for; None if its kind is not as likely as `least`, or if
+        they would leave out anything that it names."""
+        if (cleaned, least) not in self._likeliest:
+            self._likeliest[cleaned, least] = self._marked(cleaned, max(least, MARKED))
+        return self._likeliest[cleaned, least]
 
-    def marked(self, cleaned: str, least: float) -> tuple[Fields, ...] | None:
+    def _marked(self, cleaned: str, least: float) -> tuple[Fields, ...] | None:
         """The operations that the likeliest kind of wish makes of what the marks of an instruction hold; None if it is
         not as likely as `least`, or if one of the marks is not understood."""
         wording = with_nouns(spelt_right(spelt_out(in_words(cleaned)), LONG_WORDS)).split(" ")
@@ -157,9 +115,7 @@ class Judge:
         held = slots(wording, spans, self._reader.thing, kind, self._anything_moves)
         if held is None or not (held.told or self._goes_without_time(kind, chance, wording, spans)):
             return None
-        said = held.as_said()
-        clear = chance >= CLEARLY or says_plainly(kind, said.text)
-        if not clear or is_ruled_out(kind, said, chance) or not says_no_more(kind, said, said.unmarked):
+        if not is_clear(kind, chance, held.asked) or is_ruled_out(kind, chance, held) or says_more(kind, held):
             return None
         for wanted in commands(kind, held):
             with suppress(Refusal, UserError, ValidationError):
@@ -296,18 +252,6 @@ class Judge:
                 return False
         return False
 
-    def _wished(
-        self, kind: str, chance: float, readings: Sequence[tuple[Said, Happening | None]], wording: Sequence[str]
-    ) -> Iterator[tuple[Fields, ...]]:
-        """The operations of a kind of wish that leave out nothing that the words of an instruction name."""
-        for text, happening in readings:
-            for wish in wishes(kind, text, chance):
-                with suppress(Refusal, UserError, ValidationError):
-                    event = None if wish.timeless else happening
-                    found = self._ops(wish.command, wish.moment, event, text.told and not wish.timeless)
-                    if found and not leaves_out(wording, found):
-                        yield of_one_movement(" ".join(wording), found)
-
     def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
         """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if
         they leave none out, or if that is not told."""
@@ -320,7 +264,7 @@ class Judge:
         told = any(tag in TIMES for tag, _, _ in marked(words.split(" ")))
         if not told and next(happenings.cut(words, self._reader.thing), None) is None:
             return None
-        found = self.supposed(cleaned)
+        found = self.likeliest(cleaned)
         return found if found and all(op.get("when") is not None for op in found) else None
 
     def fuller(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
@@ -328,7 +272,7 @@ class Judge:
         the moment the door moves, and be back at 4 s"; None for others."""
         if len(ops) != 1 or ops[0].get("when") is None:
             return None
-        found = self.supposed(cleaned)
+        found = self.likeliest(cleaned)
         if found is None or len(found) != 1 or found[0]["op"] != ops[0]["op"] or found[0].get("when") is None:
             return None
         same = found[0].get("target") == ops[0].get("target") and found[0].get("change") == ops[0].get("change")
@@ -360,14 +304,3 @@ class Judge:
 def _ends_told(when: When) -> int:
     """How much a time tells of when it begins and ends."""
     return sum(end not in (None, 0.0) for end in (when.start, when.stop, when.lasting, when.during, when.until))
-
-
-def _with_delay(rest: str, moment: Moment, happening: Happening | None) -> tuple[str, Moment, Happening | None]:
-    """A reading with the seconds before what happens as its delay: "close it a second" after it has opened."""
-    if happening is None or not moment.empty or not happening.said.startswith(("after ", "once ")):
-        return rest, moment, happening
-    words = rest.split(" ")
-    for at in range(max(0, len(words) - 4), len(words)):
-        if (delay := moments.seconds_of(" ".join(words[at:]))) is not None:
-            return " ".join(words[:at]), replace(moment, start=delay), happening
-    return rest, moment, happening

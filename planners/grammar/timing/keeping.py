@@ -17,7 +17,7 @@ from ..tagging.words import bag
 from ..vocabulary.nouns import is_known
 from .command import Fields
 from .ending import MovementOf, between
-from .supposed.kinds import marked
+from .marked.kinds import marked
 from .wording import in_words
 
 TAG = "keep"  # the mark of words that say that something stays as it is

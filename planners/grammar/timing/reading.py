@@ -34,9 +34,9 @@ from .commands import commands, loose_commands
 from .following import followed, goes_back, says_again
 from .happenings import IT, Happening
 from .manner import MOTION
+from .marked.lost import leaves_out
 from .moments import Moment
 from .pieces import without_remarks
-from .supposed.lost import leaves_out
 from .verbs import SENSES, any_of, has_form
 from .whens import closes_later, closes_when_open, inverse, of_one_movement, settled, when_of
 from .wording import in_words, spelt_right, tidy, timely_words

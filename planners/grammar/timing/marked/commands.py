@@ -15,7 +15,7 @@ from ..clauses import ALL_OF_IT
 from ..command import Command, pace
 from ..happenings import Happening
 from ..moments import Moment
-from ..supposed.orders import in_order, listed
+from .orders import in_order, listed
 from .slots import Slots
 
 
@@ -148,9 +148,10 @@ def _whose(slots: Slots) -> Query:
 
 
 def _recolor(slots: Slots) -> Iterator[Wanted]:
-    if slots.color and any(word in hues() for word in slots.color.split()):
+    hue = [word for word in slots.color.split() if word in hues()]
+    for color in dict.fromkeys((slots.color, " ".join(hue))) if hue else ():  # "neon green" is green
         slots.pass_goals()
-        yield Wanted(Command(kind="look", text=f"make {slots.whom} {slots.color}"), slots.moment, slots.happening)
+        yield Wanted(Command(kind="look", text=f"make {slots.whom} {color}"), slots.moment, slots.happening)
 
 
 def _hide(slots: Slots) -> Iterator[Wanted]:
@@ -257,7 +258,7 @@ def _return(slots: Slots) -> Iterator[Wanted]:
 def _begin(slots: Slots) -> Iterator[Wanted]:
     slots.used |= {goal.name for goal in slots.goals if slots.happening is None}
     moment, by = _plainly(slots.moment), slots.one("s")
-    if by is not None:
+    if by is not None and not (isinstance(moment.start, float) and slots.happening is None):
         if (sign := _sign(slots)) is not None and slots.happening is None:
             yield Wanted(pace(_whose(slots), "later", seconds=sign * by.value), Moment(), None)
         elif slots.happening is not None and moment.empty and slots.happening.during.part != "until":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 
 from .....gaussians import late_re as re
@@ -16,13 +17,12 @@ from ...vocabulary.quantities import NUMBERS
 from ..happenings import IT, Happening
 from ..manner import Thing
 from ..moments import Moment
-from ..supposed.kinds import COURSES
-from ..supposed.names import MOVING
-from ..supposed.names import named as names_in
-from ..supposed.parts import UNLESS
-from ..supposed.said import Said
-from ..supposed.times import LASTS, LEADING, TIMES, UNTIL, delayed, joined, told_by
 from .amounts import Amount, amount
+from .events import told_by_event
+from .kinds import COURSES
+from .names import MOVING, with_moving
+from .names import named as names_in
+from .times import LASTS, LEADING, TIMES, UNTIL, delayed, joined, told_by
 
 _EVENTS = (
     r"(?:falls?|falling|drops?|movements?|motions?|rolls?|rolling|walks?|walking|turns?|turning|rotations?|spins?|"
@@ -69,6 +69,7 @@ _PLAINER = (  # times in plainer words
         r"\g<lead>",
     ),
 )
+_IDLE = ("not", "off", "keep")
 _LOOKS = ("recolor", "hide", "remove")  # kinds that other things only tell the place of
 _ARRIVES = re.compile(
     r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?|home|parks?|"
@@ -150,15 +151,21 @@ class Slots:
         """Whether words that ask for something are among some."""
         return pattern.search(self.said) is not None
 
-    def as_said(self) -> Said:
-        """The same as the older readers of wishes have it."""
-        idle = " ".join(" ".join(self.words[a:b]) for tag, a, b in self.spans if tag in ("not", "off", "keep"))
-        left_out = {at for tag, a, b in self.spans if tag in (*TIMES, "not", "off", "keep") for at in range(a, b)}
-        text = " ".join(word for at, word in enumerate(self.words) if at not in left_out).strip(_TRIM)
-        goals = tuple(goal.name for goal in self.goals)
-        told = self.happening is not None
-        things = (*self.names, *goals)
-        return Said(text, things, self.moment, told, self.thing, goals, idle, unmarked=self.rest)
+    @property
+    def things(self) -> tuple[str, ...]:
+        """The names of all things."""
+        return (*self.names, *(goal.name for goal in self.goals))
+
+    @cached_property
+    def asked(self) -> str:
+        """The words that are about no time, and not about what is not wanted, what stays, or nothing."""
+        left_out = {at for tag, a, b in self.spans if tag in (*TIMES, *_IDLE) for at in range(a, b)}
+        return " ".join(word for at, word in enumerate(self.words) if at not in left_out).strip(_TRIM)
+
+    @cached_property
+    def idle(self) -> str:
+        """The words about what is not wanted, what stays, or nothing."""
+        return " ".join(" ".join(self.words[a:b]) for tag, a, b in self.spans if tag in _IDLE)
 
     def unused(self) -> bool:
         """Whether an amount, or a goal, stands in no command."""
@@ -167,6 +174,7 @@ class Slots:
         )
 
 
+_UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
 _ASKED_OF = re.compile(
     r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b|"
     r"\b(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b"
@@ -178,8 +186,8 @@ def asks_more(words: Sequence[str], tag: str) -> bool:
     """Whether words that seem to ask for nothing ask for more: "and the lamp should sing", "except in the mirror"."""
     said = " ".join(words)
     if tag == "not":
-        return UNLESS.search(said) is not None or _NOT_UNTIL.search(said) is not None
-    return tag == "off" and (_ASKED_OF.search(said) is not None or UNLESS.search(said) is not None)
+        return _UNLESS.search(said) is not None or _NOT_UNTIL.search(said) is not None
+    return tag == "off" and (_ASKED_OF.search(said) is not None or _UNLESS.search(said) is not None)
 
 
 def slots(
@@ -197,14 +205,16 @@ def slots(
         return " ".join(words[span[1] : span[2]]).strip(_TRIM)
 
     spans = sorted(spans, key=lambda span: span[1])
-    ends = kind in ("hide", "recolor")  # "gone at 1 s, and back at 3 s"
+    ends = kind in ("hide", "recolor", "pause", "halt")  # "gone at 1 s, and back at 3 s"
     time = _time(words, spans, text, thing, ends)
     if time is None:
         return None
     amounts = list[Amount]()
     for span in spans:
-        if span[0] == "by":
+        if span[0] == "by" and _AT_A_TIME.match(text(span)) is None:
             if (found := amount(text(span))) is None:
+                if kind == "speed" and not any(map(_tells_number, text(span).split())):
+                    continue  # "right down"
                 return None
             amounts += [] if any(found.value == own.value and found.unit == own.unit for own in amounts) else [found]
     named = [span for span in spans if span[0] == "x"]
@@ -265,6 +275,10 @@ def _is_number(word: str, then: str) -> bool:
     return word in NUMBERS and word not in ("one", "a", "an", "half") and not is_known(then)
 
 
+def _tells_number(word: str) -> bool:
+    return word[0].isdigit() or word in NUMBERS
+
+
 def _color(said: str) -> str:
     """A colour without the words around it."""
     said = re.sub(
@@ -281,6 +295,7 @@ def _things(said: Iterator[str], thing: Thing) -> tuple[tuple[str, ...], tuple[Q
             continue
         bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
         bare = re.sub(r" 's?$", "", bare)
+        bare = with_moving(bare)
         query = thing(bare)
         if query is None and (shorter := _RANKS.sub("", bare)) != bare:
             bare = shorter
@@ -322,6 +337,9 @@ def _goals(words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], s
         )  # fmt: skip
 
 
+_AT_A_TIME = re.compile(r"^(?:(?:forward|back|up|out|on) )?(?:to|at|from) (?:t ?= ?)?\d+(?:\.\d+)?$")  # for what begins
+
+
 def _time(
     words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], str], thing: Thing, ends: bool
 ) -> tuple[Moment, Happening | None] | None:
@@ -329,6 +347,8 @@ def _time(
     moment, happening = Moment(), None
     for span in spans:
         tag, phrase = span[0], text(span)
+        if tag == "by" and _AT_A_TIME.match(phrase):
+            tag = "from"
         if tag not in TIMES or not phrase or _KEEPING.match(phrase):
             continue
         for pattern, plain in _PLAINER:
@@ -354,6 +374,7 @@ def _time(
             != phrase
         ):
             told = told_by(tag, bare, thing)
+        told = told or told_by_event(tag, text(span), thing)
         if told is None:
             return None
         found, event = told

@@ -20,6 +20,7 @@ from ...timeline.asked import PLACES, Told, Untold, at, cap, kind, names, number
 from ...timeline.bodies import Body
 from .when import moment
 
+_FIXTURES = ("door frame", "window frame")  # parts of the walls: they are no things that stand somewhere
 _JUST = 0.05  # seconds
 _MOMENTS = ("at", "in", "start", "end", "middle")
 
@@ -203,7 +204,7 @@ def _still(told: Told) -> Answer:
     if named and subject is not None:
         every = told.survey.find(subject.model_copy(update={"pick": "all"})).things
         every = tuple(t for t in every if t.label == singular(subject.text)) or every  # drawers, and no dresser
-    things = [t for t in every if t.id not in moving]
+    things = [t for t in every if t.id not in moving and (named or t.label not in _FIXTURES)]
     text = (
         f"{cap(listed([told.survey.named(t) for t in things]))} {'stands' if len(things) == 1 else 'stand'} "
         f"still{_then(told)}."

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 from .....gaussians.motion import events
 from .....gaussians.motion.holding import Span
+from ....grammar.vocabulary.nouns import is_opened
 from ...answer import Answer
 from ...reading.time.deeds import Deed
 from ...reading.time.happenings import thing as named_thing
@@ -18,6 +20,7 @@ from .speeds import is_turning
 from .when import moment
 
 _ABOUT = 0.1  # seconds: what happens so near to a time happens at it
+_NEAR_END = 0.3  # seconds: what is reached so near to the end of a stretch is where it leads to
 Event = tuple[float, str, Body]
 
 
@@ -167,7 +170,8 @@ def _side(body: Body, span: Span) -> str:
 def _opens(body: Body, told: Told) -> bool:
     """Whether a body opens: a door, a drawer, a lid."""
     kinds = {t.kind for t in body.course.moving.tracks} if body.course.moving is not None else set()
-    return bool(kinds & {"hinge", "slide"}) and openness(body, told.timeline)[2] > 0
+    part = body.thing is None or body.thing.id != body.group.id or is_opened(body.thing.label)
+    return part and bool(kinds & {"hinge", "slide"}) and openness(body, told.timeline)[2] > 0
 
 
 def _does(told: Told) -> Answer | None:
@@ -177,10 +181,17 @@ def _does(told: Told) -> Answer | None:
     if not body.moving:
         return _text(f"{cap(body.name)} stands still all the time.", "stands still", body, None)
     if window is None:
-        found = story(body, told)
-        text = "; ".join(f"at {at(t)} {said}" for t, said, _ in found)
-        return _text(
-            f"{cap(text)}.", ", then ".join(s.removeprefix(f"{body.name} ") for _, s, _ in found), body, found[0][0]
+        found = _stretches(body, told)
+        told_each = "; ".join(f"from {at(a)} to {at(b)} {said}" for (a, b), said in found)
+        if len(found) == 1:
+            return _text(f"{cap(body.name)} {told_each}.", found[0][1], body, found[0][0][0])
+        return Answer(
+            answer=tuple(said for _, said in found),
+            answer_type="list",
+            text=f"{cap(body.name)} {told_each}.",
+            confidence=0.85,
+            frame="viewer",
+            evidence=evidence([body], found[0][0][0]),
         )
     now = within(list(body.moving), window)
     if not now:
@@ -190,6 +201,41 @@ def _does(told: Told) -> Answer | None:
     span = now[0] if now[0] in body.moving else next(s for s in body.moving if s[0] <= now[0][0] <= s[1])
     said = _doing(body, span, window[0], told)
     return _text(f"{cap(body.name)} {said} then; it moves {spoken(body.moving)}.", said, body, window[0])
+
+
+def _stretches(body: Body, told: Told) -> list[tuple[Span, str]]:
+    """What a body does, one movement after the other: "moves to the right", "turns left", "moves to the bed"."""
+    found, opens = list[tuple[Span, str]](), _opens(body, told)
+    turns = [] if opens or is_turning(body) else [s for s in turning(body) if s not in body.moving]
+    for span in body.moving:
+        if found and opens:
+            found.append(((found[-1][0][1], span[0]), f"stays {_HELD.get(found[-1][1].split()[0], 'there')}"))
+        inside = [s for s in turns if span[0] < s[0] < span[1]]
+        ends = [span[0], *(t for s in inside for t in s), span[1]]
+        for k, (a, b) in enumerate(pairwise(ends)):
+            if b - a < _ABOUT:
+                continue
+            if k % 2:
+                found.append(((a, b), f"turns {_side(body, (a, b))}"))
+            else:
+                found.append(((a, b), _moves(body, (a, b), told)))
+    return found
+
+
+_HELD = {"opens": "open", "slides": "out", "closes": "closed"}
+
+
+def _moves(body: Body, span: Span, told: Told) -> str:
+    """What a body does in one stretch of its way, with the thing that it gets to, or else the way that it goes."""
+    begun = next(((t, said) for t, said, _ in story(body, told) if t == span[0]), (span[0], ""))[1]
+    own = begun.removeprefix(f"{body.name} ")
+    if own and not own.startswith("starts"):
+        return own
+    if is_turning(body):
+        return "turns"
+    met = [said for t, said, _ in _crossed(body, told, span) if " reaches " in said and t > span[1] - _NEAR_END]
+    goal = f"to {met[-1].split(' reaches ')[1]}" if met else direction(body, span, told)
+    return f"moves {goal}"
 
 
 def _doing(body: Body, span: Span, time: float, told: Told) -> str:

@@ -381,6 +381,11 @@ def _frames(said: str) -> Iterator[Frame]:
     if _TWO_QUESTIONS.search(said):
         return
     rest, unit = _in_unit(said) if _SPREAD.match(said) is None else (said, "")
+    if (found := _VISITS.match(rest)) is not None:
+        stops = tuple(re.split(r"(?: ,)? and | , ", found["y"]))
+        for what in happenings(found["x"]) if len(stops) > 1 else ():
+            if what.deed is None and what.subject is not None:
+                yield Frame("order", replace(what, deed=Deed("pass", verb="pass")), options=stops)
     yield from _between(rest, unit)
     yield from _named(rest, unit)
     yield from _speed_last(rest, unit)
@@ -400,11 +405,6 @@ def _frames(said: str) -> Iterator[Frame]:
         if start.asks == "order" and _BEGINS_WITH_TIME.match(inner):
             inner = f"happens {inner}"
         yield from _filled(replace(start, unit=unit or start.unit), inner)
-    if (found := _VISITS.match(rest)) is not None:
-        stops = tuple(re.split(r"(?: ,)? and | , ", found["y"]))
-        for what in happenings(found["x"]) if len(stops) > 1 else ():
-            if what.deed is None and what.subject is not None:
-                yield Frame("order", replace(what, deed=Deed("pass", verb="pass")), options=stops)
     if (found := _FIRST_OF.match(rest)) is not None:
         for a, b in _pairs(found["a"], found["b"]):
             yield Frame("order", a, b)

@@ -23,6 +23,7 @@ from ..everyday import everyday
 from ..frames import UNIT
 from ..loosely import HARD
 from .kinds import kinds_of, marked, vocabulary
+from .times import plain_time
 
 LEAST = 0.6  # probability of a kind that is tried
 SURE = 0.8  # probability from which words without a mark are taken for those of the question
@@ -80,8 +81,16 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
         return ()
     if not said.x and kind not in _OF_ALL:
         said = replace(said, x="it")
-    time = everyday(_ROUGHLY.sub("", _plain_time(kind, said.time))) if said.time and kind != "gap" else ""
-    return tuple(dict.fromkeys(" ".join(f"{plain} {time}".split()) for plain in _PLAIN[kind](said)))
+    times = dict.fromkeys(_times(kind, said.time)) if said.time and kind != "gap" else ("",)
+    return tuple(dict.fromkeys(" ".join(f"{plain} {time}".split()) for time in times for plain in _PLAIN[kind](said)))
+
+
+def _times(kind: str, said: str) -> Iterator[str]:
+    """The words for a time, as they are said and by what happens at it; those that both are read agree in it."""
+    plain = _plain_time(kind, said)
+    yield everyday(_ROUGHLY.sub("", plain))
+    if plain and (told := plain_time(plain)):
+        yield told
 
 
 _OF_ALL = bag(
@@ -252,7 +261,9 @@ _AN_EVENT = re.compile(
     r"movement|motion|rotation|drop)"
     r"(?: manoeuvre| maneuver| movement| motion| phase| part)?$"
 )
-_TIMED = re.compile(r"\b(?:when|while|until|till|once|after|before|during)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b")
+_TIMED = re.compile(
+    r"\b(?:when|while|until|till|once|after|before|during)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b"
+)
 _ONE = re.compile(r"\bone$")
 
 
@@ -284,10 +295,10 @@ def _joined(names: tuple[str, ...]) -> str:
 def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
     rest, allowed = said.rest.split(), _ALLOWED.get(kind, frozenset())
-    if kind in ("what_moves", "what_still") and not (said.x in _ANYTHING or _is_kind(said.x) or _APART.search(said.rest)):
-        return True  # "who moves the ball", "what never moves near the desk"
-    if kind in ("what_moves", "what_still") and said.y:
-        return True
+    if kind in ("what_moves", "what_still"):
+        whose = said.x in _ANYTHING or _is_kind(said.x) or _APART.search(said.rest) is not None
+        if not whose or said.y:
+            return True  # "who moves the ball", "what never moves near the desk"
     if len(said.places) > 1 and kind != "visits":
         return True
     if not kind.startswith("if_") and not said.unit and rest and rest[0] in _AUXILIARIES:
@@ -509,9 +520,9 @@ def _of_those(asked: str, always: str) -> Plain:
     """Which things of a kind do something at a time, or all the time."""
 
     def made(said: Said) -> Iterator[str]:
-        noun = _several(said.x) if _is_kind(said.x) else ""
+        noun = re.sub(r"^(?:two|three|four) ", "", _several(said.x)) if _is_kind(said.x) else ""
         form = asked if said.time or not always else always
-        yield re.sub(r"^(?:which of )?(?:two|three|four) ", "", f"which {noun} {form}" if noun else f"what {_singular(form)}")
+        yield f"which {noun} {form}" if noun else f"what {_singular(form)}"
 
     return made
 

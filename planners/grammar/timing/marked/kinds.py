@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from .....gaussians import late_re as re
 from ...learned.marks import Span
 from ...learned.network import network, told
 from ...tagging.spelling import is_common, is_word
@@ -34,8 +35,43 @@ _CHANGED_BY = {  # changes of a motion by which a wish of a kind is done
     "longer": ("go_on", "repeat", "begin", "speed"), "stay": ("stop",), "amount": ("part", "stop"),
     "together": ("begin", "later"), "order": ("begin", "later"),
 }  # fmt: skip
-LEAST = 0.08  # probability of a kind that is tried
-MOST = 4  # kinds that are tried
+STATIC = ("recolor", "hide", "remove", "move")  # kinds that need no time
+LEAST = 0.08  # probability of a kind that is told at all
+MOST = 4  # kinds that are told
+SURE = 0.85  # probability from which a change without a time is supposed, or an unknown verb is left aside
+CLEARLY = 0.9  # probability from which a kind is taken without a word that says it
+_BY_WORDS = {  # words of which one at least says that a wish is of a kind
+    "recolor": r"colou?r\w*|paint\w*|turn\w*|go(?:es)?|become\w*|be|make|made|in|tint\w*|dye\w*",
+    "hide": r"hid\w*|invisible|gone|vanish\w*|disappear\w*|appear\w*|see|seen|saw|sight|visible|show\w*|lose|there|"
+    r"view|away|eyes",
+    "remove": r"strike|scrap|ditch|bin|chuck|dump|toss|cut|take|"
+    r"remov\w*|delet\w*|rid|away|out|without|gone|lose|drop|absent|no|not",
+    "move": r"move\w*|push\w*|slid\w*|lift\w*|rais\w*|put|bring|drive|drives|roll\w*|float\w*|carr\w*|drift\w*|go|goes|"
+    r"travel\w*|glid\w*|shift\w*|to|over",
+    "spin": r"spin\w*|twirl\w*|turn\w*|rotat\w*|whirl\w*|pirouette\w*|revolv\w*|circle\w*",
+    "begin": r"start\w*|begin\w*|earlier|later|sooner|delay\w*|wait\w*|leaves?|sets?|off|immediately|early|late|"
+    r"instead|already",
+    "speed": r"slow\w*|fast\w*|quick\w*|speed\w*|half|double|twice|pace|times|percent|%",
+    "duration": r"tak\w+|last\w*|in|over|seconds?|within|spread|stretch\w*",
+    "pause": r"paus\w*|wait\w*|stop\w*|hold|freez\w*|rest|still|halt\w*|hang\w*|stand\w*|stay\w*",
+    "halt": r"stop\w*|freez\w*|halt\w*|still|end\w*|finish\w*|conclude\w*|motionless|off",
+    "still": r"not|never|still|no|budge|stay\w*|leave|keep|put|unmoving|frozen|without",
+    "reverse": r"back\w*|revers\w*|rewind|rewound|opposite|other|undo|invert\w*|contrary|wrong|clockwise",
+    "stay": r"stay\w*|remain\w*|keep|leave|open|out|not|never",
+    "amount": r"degrees?|deg|°|cm|m|met(?:re|er)s?|centimet(?:re|er)s?|half|halfway|third|quarter|further|wider|far",
+    "open": r"open\w*|out|swing\w*|ajar",
+    "close": r"clos\w*|shut\w*|back|in",
+    "order": r"first|last|then|after|before|order|turn|next|sequence|followed",
+    "together": r"together|same|once|simultaneous\w*|unison|sync\w*|both|all|time",
+    "repeat": r"again|repeat\w*|twice|thrice|times|loop\w*|over|once more|another|second time|keep\w*|non ?stop",
+    "return": r"back|return\w*|again|home",
+    "longer": r"longer|keep\w*|until|till|whole|entire|full|on|continue\w*|all the|end",
+}
+_HIDES = re.compile(
+    r"\b(?:hid\w*|invisible|gone|vanish\w*|disappear\w*|appear\w*|seen?|saw|sight|visible|show\w*|lose|view|"
+    r"(?:leave|keep) (?:it|him|her|the [a-z ]+?) out)\b"
+)
+_EVIDENCE = {kind: re.compile(rf"(?<!\S)(?:{words})(?!\S)") for kind, words in _BY_WORDS.items()}
 
 
 def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
@@ -51,6 +87,13 @@ def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
         known = [(kind, chance / rest) for kind, chance in known if kind not in COURSES and chance >= LEAST]
     found = [(kind, chance) for kind, chance in known[:MOST] if chance >= LEAST]
     return [] if found and found[0][0] == NO_WISH else found
+
+
+def is_clear(kind: str, chance: float, said: str) -> bool:
+    """Whether a kind is likely enough, or one of some words says that a wish is of it; that something is not to be seen
+    only words for seeing say: "keep the bed still" hides nothing."""
+    words = _HIDES if kind == "hide" else _EVIDENCE[kind]
+    return chance >= CLEARLY or words.search(said) is not None
 
 
 def is_done_by(kind: str, op: str) -> bool:

@@ -25,7 +25,8 @@ _WISHES = re.compile(
     r"lovely|well|prettier|best)\b|^please\b"
 )
 _RID_OF_IT = re.compile(
-    r"(?:[,.;:!] |\b(?:please|and|so|just|you) )(?:get rid of (?:it|them)|(?:take|throw) (?:it|them) (?:away|out)|"
+    r"(?:[,.;:!] |\b(?:please|and|so|just|you|we|i|to|rather) )"
+    r"(?:get rid of (?:it|them)|(?:take|throw) (?:it|them) (?:away|out)|"
     r"(?:remove|delete|bin|ditch|scrap|lose) (?:it|them))\b"
 )
 _DENIED = re.compile(r"\b(?:not|never|no one|nobody|if|unless|or|but)\b")

@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 from scenewright.planners.grammar.planner import SUPPOSED, GrammarPlanner
-from scenewright.planners.grammar.timing.supposed.choosing import Offer, chosen
-from scenewright.planners.grammar.timing.supposed.kinds import likely, marked
+from scenewright.planners.grammar.timing.marked.kinds import is_clear, likely, marked
 from scenewright.training.timed_words import FILES
 from scenewright.training.wording import sentences
 
@@ -194,16 +193,10 @@ def test_a_less_likely_kind_is_taken_where_a_word_says_it(text: str, plainly: st
     assert planned(text) == planned(plainly) != []
 
 
-def test_offers_are_chosen_by_chance_and_by_words() -> None:
-    said, likelier = ({"op": "pace", "change": "stop"},), ({"op": "pace", "change": "begin"},)
-    offers = [Offer("begin", 0.2, likelier), Offer("halt", 0.15, said), Offer("none", 0.1)]
-    assert chosen(offers, "freeze it at 2 s", 0.0) == said
-    assert chosen(offers, "begin it at 2 s", 0.0) == likelier
-    assert chosen(offers, "it at 2 s", 0.0) is None
-    assert chosen([Offer("begin", 0.9, likelier), *offers[1:]], "it at 2 s", 0.0) == likelier
-    assert chosen([Offer("begin", 0.9, likelier), *offers[1:]], "it at 2 s", 0.95) is None
-    assert chosen([Offer("begin", 0.8, likelier), *offers[1:]], "it at 2 s", 0.0) is None
-    assert chosen([Offer("none", 0.4), *offers[:2]], "freeze it at 2 s", 0.0) is None
+def test_a_kind_is_clear_by_chance_or_by_words() -> None:
+    assert is_clear("halt", 0.5, "freeze it") and not is_clear("halt", 0.5, "it at 2 s")
+    assert is_clear("halt", 0.95, "it at 2 s")
+    assert not is_clear("hide", 0.5, "keep it away") and is_clear("hide", 0.5, "it vanishes")
 
 
 def test_one_colour_after_another_has_the_time_after_it() -> None:

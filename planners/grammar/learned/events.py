@@ -1,0 +1,45 @@
+"""What happens at a time that is told by it: "once the fan has given up" is when the fan stops.
+
+`training/timed_words.py` learns it from written phrases.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..tagging.words import clean, split
+from .network import told
+
+TASK = "events"
+NO_EVENT = "none"  # the kind of phrases that tell a time in numbers, or none
+LEAST = 0.6  # probability of a kind that is believed
+
+
+@dataclass(frozen=True)
+class Event:
+    """What happens.
+
+    Attributes:
+        kind: what is done: "starts", "open", "lands", ...; or what is so: "moves", "is_open", "on", ...
+        x, y: the words for the thing that does it, and for the other thing; "" if none are said.
+        chance: the probability of the kind.
+    """
+
+    kind: str
+    x: str
+    y: str
+    chance: float
+
+
+def event_of(phrase: str) -> Event | None:
+    """What happens at the time that a phrase tells; None if that is not likely enough, or nothing happens."""
+    words = tuple(word.text for word in split(clean(phrase)))
+    found = told(TASK, words)
+    kind, chance = next(iter(found.kinds), (NO_EVENT, 0.0))
+    if kind == NO_EVENT or chance < LEAST:
+        return None
+    said = {tag: {" ".join(words[a:b]) for own, a, b in found.spans if own == tag} for tag in ("x", "y")}
+    if any(len(names) > 1 for names in said.values()):
+        return None
+    x, y = ("".join(said[tag]) for tag in ("x", "y"))
+    return Event(kind, x, y, chance)

@@ -1,0 +1,112 @@
+"""The time that words with a mark tell by what happens, by its kind: "on fan stop", "having made its turn"."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .....gaussians import late_re as re
+from .....gaussians.language.query.query import Query
+from .....gaussians.world.words import singular
+from .....tools.when import During, Part
+from ...learned.events import Event, event_of
+from ...tagging.words import bag
+from ..happenings import IT, Happening
+from ..manner import Thing
+from ..moments import Moment
+
+_PRONOUNS = bag("it he she they him her them its his their this that")
+_BEFORE = re.compile(r"^(?:right |just |only )*(?:until|till|til|before|by|up to|prior to|no later than)\b")
+_AFTER = re.compile(r"^(?:right |just |only |directly |straight )*(?:after|following|past|post|beyond)\b")
+_FULLY = re.compile(r"\b(?:full|fully|out|extended|wide|all the way|completely)\b")
+
+
+@dataclass(frozen=True)
+class _State:
+    """A state, and which part of the time it tells: from when, while and until when something is to be."""
+
+    state: str
+    since: Part = "from"
+    through: Part = "while"
+    until: Part = "until"
+
+
+def _begins(state: str) -> _State:
+    return _State(state, through="from")
+
+
+def _ends(state: str) -> _State:
+    return _State(state, "after", "after", "until_end")
+
+
+_STATES = {
+    "starts": _begins("moving"), "moves": _State("moving"), "stops": _ends("moving"), "still": _State("still"),
+    "opens": _begins("opening"), "opening": _State("opening"), "open": _State("fully_open"), "is_open": _State("open"),
+    "closes": _begins("closing"), "closing": _State("closing"), "shut": _ends("closing"),
+    "is_shut": _State("open", "after", "unless", "until_end"), "half": _begins("halfway"),
+    "falls": _begins("falling"), "falling": _State("falling"), "lands": _ends("falling"),
+    "turns": _begins("turning"), "turning": _State("turning"), "turned": _ends("turning"),
+    "reaches": _begins("touches"), "leaves": _ends("on"), "on": _State("on"),
+    "first_of": _begins("moving"), "last_of": _ends("moving"),
+}  # fmt: skip
+_ALONE = {"reaches": "stops", "leaves": "starts"}  # where no other thing is named
+_RANKS = {"first_of": "first", "last_of": "last"}
+
+
+def told_by_event(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, Happening | None] | None:
+    """The time that words with a tag of time tell by what happens, as `times.told_by`; None if they tell none,
+    or a thing in them is unknown."""
+    event = event_of(phrase)
+    if event is None:
+        return None
+    ends = tag == "to" or _BEFORE.match(phrase) is not None
+    if event.kind in ("film_start", "film_end"):
+        return _of_film(event.kind == "film_end", ends, phrase), None
+    of = _who(event, thing)
+    if of is None:
+        return None
+    if event.kind in ("first_leg", "last_leg"):
+        return None, _leg(event.kind == "first_leg", ends, of, phrase)
+    found = _STATES[event.kind if event.y else _ALONE.get(event.kind, event.kind)]
+    anchors: tuple[Query, ...] = ()
+    if found.state in ("touches", "on"):
+        if (other := thing(event.y)) is None:
+            return None
+        anchors = (other,)
+    state = "fully_open" if event.kind == "is_open" and _FULLY.search(phrase) else found.state
+    part = found.since if tag == "from" else found.through
+    if ends:
+        part = found.until
+    elif found.through == "while" and _AFTER.match(phrase):
+        part = "after"
+    return None, Happening(During(state=state, anchors=anchors, of=of, part=part), phrase)
+
+
+def _of_film(last: bool, ends: bool, phrase: str) -> Moment:
+    """Its start or its end."""
+    if ends:
+        return Moment(stop=None if last else 0.0, always=last, said=(phrase,))
+    return Moment(start="end" if last else 0.0, said=(phrase,))
+
+
+def _leg(first: bool, ends: bool, of: Query, phrase: str) -> Happening:
+    """The way of something before its turn, or behind it."""
+    turn, way = (During(state=state, of=of) for state in ("turning", "moving"))
+    if first:
+        start, stop = way.model_copy(update={"part": "from"}), turn.model_copy(update={"part": "until"})
+        over = turn.model_copy(update={"part": "from"})
+    else:
+        start, stop = turn.model_copy(update={"part": "after"}), way.model_copy(update={"part": "until_end"})
+        over = way.model_copy(update={"part": "after"})
+    if ends:
+        return Happening(stop, phrase)
+    return Happening(over, phrase) if _AFTER.match(phrase) else Happening(start, phrase, stop)
+
+
+def _who(event: Event, thing: Thing) -> Query | None:
+    """Whose state it is."""
+    if not event.x or event.x in _PRONOUNS:
+        return thing("everything that moves") if event.kind == "last_of" else IT
+    if event.kind in _RANKS:
+        noun = singular(event.x.split()[-1])
+        return thing(f"the {noun} that moves {_RANKS[event.kind]}")
+    return thing(event.x)

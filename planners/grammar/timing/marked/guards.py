@@ -1,0 +1,133 @@
+"""Words by which an instruction is no wish of a kind, or asks for more than what its marks hold."""
+
+from __future__ import annotations
+
+from .....gaussians import late_re as re
+from ...learned.seen import hues
+from ...vocabulary.nouns import EVERYWHERE, is_opened
+from ..clauses import AUXILIARIES
+from ..verbs import SENSES, has_form
+from ..whens import HELD_BACK
+from .kinds import STATIC, SURE, is_any_word
+from .names import MOVING
+from .slots import Slots
+from .wished import CERTAINLY
+
+_GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
+_THERE_AND_BACK = re.compile(r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and\b")
+_ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
+_DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
+_PROHIBITED = re.compile(
+    r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b"
+)
+_UNWANTED = re.compile(r"\b(?:nobody|no one|none of us) (?:wants?|needs?|asked|asks|likes?)\b")
+_OTHER_EDITS = re.compile(
+    r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b"
+)
+_LIT = re.compile(r"\b(?:off|out|on)$")
+_A_LIGHT = re.compile(r"\b(?:lamps?|lights?|lanterns?|candles?|bulbs?)$")
+_EXCEPT = re.compile(r"(?<!\bat )\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
+_IN_PIECES = re.compile(r"\b(?:apart(?! from)|to pieces|in two)\b")
+_REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
+_A_STRETCH = re.compile(r"\b(?:first|second|last|latter|other|final) (?:half|third|quarter|part|stretch|leg|bit)\b")
+
+
+def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
+    """Whether an instruction names nothing, or has words by which it is no wish of a kind, or more than one.
+
+    Args:
+        chance: the probability of the kind.
+    """
+    things, asked, idle = slots.things, slots.asked, slots.idle
+    if not things or things[0].split(" ")[-1] in EVERYWHERE:
+        return True
+    first, then = (*_GREETING.sub("", asked).split(" "), "")[:2]
+    if not is_any_word(first) and _DETERMINED.match(then):
+        return True  # a verb that is no word may ask for anything
+    timeless = not slots.told and not slots.moment.always
+    if kind in STATIC and timeless and (chance < SURE or (chance < CERTAINLY and _ORDERED.match(asked))):
+        return True
+    if _LIT.search(asked) and _A_LIGHT.search(things[0]):
+        return True  # "turn the lamp off" stops no motion
+    if _EXCEPT.search(f"{asked} {idle}") or _IN_PIECES.search(f"{asked} {idle}"):
+        return True  # "everything but the fan", "take it apart"
+    if (_PROHIBITED if kind in STATIC else _REMOVALS).search(asked) or _UNWANTED.search(f"{idle} {asked}"):
+        return True
+    if _OTHER_EDITS.search(asked) and kind != "order":
+        return True
+    if kind in ("reverse", "return") and _THERE_AND_BACK.search(slots.rest):
+        return True  # "roll to the wall and come back"
+    if kind in ("speed", "duration", "begin") and _A_STRETCH.search(asked):
+        return True  # "faster in the second half"
+    return kind in STATIC and MOVING in things  # all, or what of it moves
+
+
+_TELLING = {  # words that say something by themselves, and the kinds of wishes that say it
+    r"slow|slower|fast|faster|quick|quicker|twice|double|half|speed": "speed duration spin repeat amount",
+    r"slowly|quickly": "speed duration spin repeat amount move",
+    r"far(?! (?:too|better|nicer|more|less|from|prettier|cooler))|farther|further|wide|wider": "amount",
+    r"earlier|sooner|later": "begin open order",
+    r"backwards?|reverse|reversed": "reverse return order",
+    r"back": "return reverse close stay still hide order repeat pause",
+    r"again": "repeat return close open stay still halt hide recolor reverse pause",
+    r"invisible|hides?|hidden|disappears?|vanish|vanishes|gone": "hide remove",
+    r"shows?|shown|reveals?|visible": "hide recolor",
+    r"shut|shuts|close|closes": "close stay still open begin order together speed",
+    r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
+    r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
+}
+_SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
+_THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
+_BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")
+_BY_HOW_MUCH = re.compile(r"\b(?:earlier|sooner|later)\b")
+_BACK_IN = re.compile(r"\bback(?: in)?\b")
+_BEFORE_IT = re.compile(  # "it waits until 2 s before it sets off"
+    r"\bbefore (?:it |he |she |they |\| )?(?:to )?(?:sets?|starts?|begins?|commences?|goes|going|go|rolls?|rolling|"
+    r"gets? (?:going|moving|started|rolling|under way)|moves?|moving|leaves?|leaving|walks?|walking|falls?|falling|"
+    r"drops?|dropping|opens?|opening|setting|starting|sliding|slides?)"
+    r"(?: off| moving| rolling| going| walking| falling| to \w+| out)*"
+)
+_NEGATED = ("hide", "remove", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
+_NOT = re.compile(r"\b(?:not|no|never|without|invisible|nobody|nothing)\b")
+_NO_MORE = re.compile(r"\b(?:no|not|nothing) (?:more|further|farther|wider)(?: than (?:that|this))?\b")
+_DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")
+_TOO_FAST = re.compile(r"\b(?:not so|not as|not that) (?:fast|quick|quickly|hasty|wild|rushed|speedy|speed|slow)\b")
+_LATER = re.compile(r"\b(?:plus|later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
+_AS_IT_DOES = re.compile(
+    r"\b(?:\w+ )?as (?:it|he|she|they|now|\|)(?: \w+)? ?(?:does|do|is|was|goes|opens|moves)?(?: now)?\b"
+)
+_WISHED = re.compile(r" , (?:and |but )?(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b")
+_TWO_ORDERS = re.compile(  # "open it, and once it is open paint it red"
+    r"^(?:open|close|shut|push|pull|move|slide|roll|lift|spin|turn|stop|start|freeze|hide|remove|delete) \|.*"
+    r"(?:,|\band\b|\bthen\b) ?(?:paint|make|turn|colou?r|hide|show|spin|move|stop|open|close) (?:it|him|her|them|\|)"
+)
+_MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
+
+
+def says_more(kind: str, slots: Slots) -> bool:
+    """Whether a word without a mark tells of another wish: "one second earlier, and slower"."""
+    idle, left = slots.idle, slots.rest
+    if kind not in ("recolor", "hide") and "then" in idle and hues() & set(idle.split()):
+        return True  # "stop at 2 s, then roll it red again"
+    if (then := _THEN.search(idle)) is not None:
+        left = f"{left} {then['rest']}"  # "let it stand for a second, then shut it"
+    if kind == "move" and len(slots.things) > 1:
+        left = _BACK_TO.sub(" ", left)
+    if kind in ("open", "close") and isinstance(slots.moment.start, float):
+        left = _BY_HOW_MUCH.sub(" ", left)  # "a bit sooner, at 2 s"
+    if kind == "begin":
+        left = _BEFORE_IT.sub(" ", HELD_BACK.sub(" ", left))
+        if is_opened(slots.things[0]):
+            left = _BACK_IN.sub(" ", left)  # the beginning of its closing
+    if kind in ("halt", "stay", "amount"):
+        left = _AS_IT_DOES.sub(" ", _NO_MORE.sub(" ", left))
+    if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY):
+        return True
+    if _WISHED.search(f"{slots.asked} {idle}") or _TWO_ORDERS.search(left):
+        return True
+    if kind not in _NEGATED and _NOT.search(_DISLIKES.sub(" ", _TOO_FAST.sub(" ", _NO_MORE.sub(" ", left)))):
+        waits = _LATER.search(left) is not None or isinstance(slots.moment.stop, float)
+        return kind != "begin" or not waits  # "not at once, it waits", "do not open it till 3 s"
+    manner = _MANNER.search(left)
+    verb = None if manner is None else manner["verb"]
+    return verb is not None and verb not in AUXILIARIES and not has_form(verb, tuple(SENSES), "plain", "s")

@@ -1,0 +1,58 @@
+"""The time of a question in plain words, where it is told by what happens: "having made its turn" is "after it has
+turned"."""
+
+from __future__ import annotations
+
+from ......gaussians import late_re as re
+from .....grammar.learned.events import Event, event_of
+
+_LEADS = (  # how a phrase begins, and the conjunction that says the same
+    (re.compile(r"^(?:right |just |only )*(?:until|till|til|up to)\b"), "until"),
+    (re.compile(r"^(?:right |just |only )*(?:before|prior to)\b"), "before"),
+    (re.compile(r"^by\b"), "by the time"),
+    (re.compile(r"^(?:right |just |only |directly |straight )*(?:after|following|having|past|post|since)\b"), "after"),
+)
+_MOMENTS = {  # what happens, as a predicate
+    "starts": "starts to move", "stops": "stops", "opens": "starts to open", "open": "is fully open",
+    "closes": "starts to close", "shut": "is closed", "half": "is half open", "falls": "falls", "lands": "lands",
+    "turns": "starts to turn", "turned": "has turned", "reaches": "reaches {y}", "leaves": "leaves {y}",
+    "first_of": "falls first", "last_of": "falls last",
+}  # fmt: skip
+_SPANS = {  # what is so for a while
+    "moves": "is moving", "still": "stands still", "opening": "is opening", "is_open": "is open",
+    "closing": "is closing", "is_shut": "is closed", "falling": "is falling", "turning": "is turning",
+    "on": "is on {y}", "first_leg": "", "last_leg": "",
+}  # fmt: skip
+_ALONE = {"reaches": "stops", "leaves": "starts"}  # where no other thing is named
+
+
+def plain_time(phrase: str) -> str:
+    """A time that is told by what happens, as a clause with a plain verb; "" for another time."""
+    event = event_of(phrase)
+    if event is None:
+        return ""
+    lead = next((word for pattern, word in _LEADS if pattern.match(phrase)), "")
+    if event.kind in ("film_start", "film_end"):
+        return "at the start" if event.kind == "film_start" else "at the end"
+    who = event.x if re.fullmatch(r"(?:it|he|she|they)", event.x) or not event.x else _with_article(event.x)
+    who = who or "it"
+    if event.kind == "first_leg":
+        return f"before {who} turns"
+    if event.kind == "last_leg":
+        return f"after {who} has turned"
+    return f"{lead or _conjunction(event)} {who} {_said(event)}"
+
+
+def _with_article(name: str) -> str:
+    return name if re.match(r"^(?:the|a|an|my|our|this|that|all|both)\b", name) else f"the {name}"
+
+
+def _said(event: Event) -> str:
+    kind = event.kind if event.y else _ALONE.get(event.kind, event.kind)
+    return (_MOMENTS | _SPANS)[kind].format(y=_with_article(event.y))
+
+
+def _conjunction(event: Event) -> str:
+    if event.kind == "turned":
+        return "after"
+    return "while" if event.kind in _SPANS else "when"
