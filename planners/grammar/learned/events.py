@@ -12,7 +12,7 @@ from .network import told
 
 TASK = "events"
 NO_EVENT = "none"  # the kind of phrases that tell a time in numbers, or none
-LEAST = 0.6  # probability of a kind that is believed
+LEAST = 0.5  # probability of a kind that is believed
 
 
 @dataclass(frozen=True)

@@ -57,10 +57,14 @@ MARKED = 0.5  # probability of a kind from which what the marks hold is its comm
 _LONGEST = 45  # words of an instruction with one wish
 _ALL_ELSE = re.compile(r"\b(?:everything|all) (?:else|but)\b|\b(?:remove|delete|hide) the rest\b")
 _ALWAYS = re.compile(
-    r"\b(?:throughout|always|all the time|(?:whole|entire|full) \w+|at all times|all through|for ever|forever)\b"
+    r"\b(?:throughout|always|all the time|(?:whole|entire|full) "
+    r"(?!seconds?\b|secs?\b|turns?\b|rounds?\b)\w+|at all times|at any (?:time|point)|all through|for ever|forever|"
+    r"from (?:the )?(?:first|start|beginning) (?:\w+ )?to (?:the )?(?:last|finish|end))\b"
 )
 _EDGE = re.compile(r"\b(?:start|beginning|end|finish|first frame|last frame)\b")
-_AS_WELL = re.compile(r"\b(?:and|but|yet) (?:\w+ )?(?:also|meanwhile)\b|\bmeanwhile\b")
+_AS_WELL = re.compile(
+    r"\b(?:and|but|yet) (?:\w+ )?(?:also|meanwhile)\b|\bmeanwhile\b|, yet \w+ (?:must|should|has to)\b"
+)
 _AT_REST = r"(?:still|shut|closed|motionless|not move|not be moving|stays? put|perfectly still|at rest)"
 _MOVES = r"(?:spin\w*|mov(?:e|es|ing)|roll\w*|walk\w*|turn\w*|open\w*|fall\w*|run\w*|rotat\w*)"
 _BOTH_AT_ONCE = re.compile(
@@ -130,7 +134,7 @@ class Judge:
         return is_wished(wording, spans, chance) if kind in STATIC else self._anything_moves()
 
     def _anything_moves(self) -> bool:
-        return self._moves is not None and self._moves(Query(text="", moving=True, pick="all")) is True
+        return self._moves is None or self._moves(Query(text="", moving=True, pick="all")) is True
 
     def _ops(
         self, command: str | Command, moment: Moment, happening: Happening | None, told: bool

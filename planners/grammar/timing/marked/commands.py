@@ -9,6 +9,7 @@ from typing import Any
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
+from .....tools.when import During
 from ...learned.seen import hues
 from ...vocabulary.nouns import is_opened
 from ..clauses import ALL_OF_IT
@@ -90,8 +91,8 @@ _GONE = re.compile(
     r"make \w+self scarce|blink\w*|transparent|ghost|rid|exit\w*|leave\w*|kill|cloak\w*)\b"
 )
 _NOT = re.compile(r"\b(?:not|no|never|without|nobody|nothing|neither|nor|stop|hardly)\b")
-_NO_WISH = re.compile(r"\b(?:unless|except|instead|if (?:the|it|he|she|they)|or)\b")
-_WHICH_ONE = re.compile(r"\| (?:that|which|who|whose)\b")  # "the book that falls first"
+_NO_WISH = re.compile(r"\b(?:unless|except|instead of|if (?:the|it|he|she|they)|or)\b")
+_WHICH_ONE = re.compile(r"\| (?:that(?! way\b)|which|who|whose)\b")  # "the book that falls first"
 _OTHER_WAY = re.compile(
     r"\b(?:(?:other|opposite|reverse|wrong|contrary) (?:way|direction|side|sense)|way (?:round|around)|direction|"
     r"sense|clockwise|anti ?clockwise|counter ?clockwise|counter|turns? (?:left|right))\b"
@@ -110,7 +111,9 @@ _SHUTS = re.compile(r"\b(?:clos\w+|shut\w*|(?:go|going|goes|slid\w+|mov\w+|com\w
 def commands(kind: str, slots: Slots) -> Iterator[Wanted]:
     """The commands of a kind that hold all that the marks do, the likeliest first."""
     made = _KINDS.get(kind)
-    if made is None or not slots.names or _NO_WISH.search(slots.rest) or _WHICH_ONE.search(slots.rest):
+    if made is None or not slots.names or _NO_WISH.search(slots.rest):
+        return
+    if kind != "order" and _WHICH_ONE.search(slots.rest):
         return
     if kind not in _NEGATIVE and _NOT.search(slots.rest):
         return
@@ -215,7 +218,7 @@ def _spin(slots: Slots) -> Iterator[Wanted]:
         how = {0.5: "half a turn", 0.25: "a quarter turn", 1.0: "once"}.get(turns.value, f"{turns.value:g} turns")
         yield _now(slots, f"spin {whom} {how}", **whole)
     else:
-        yield _now(slots, f"let {whom} spin" if slots.told else f"spin {whom}")
+        yield _now(slots, f"let {whom} spin" if slots.told else f"spin {whom}", **whole)
 
 
 def _is_last(moment: Moment) -> bool:
@@ -224,10 +227,11 @@ def _is_last(moment: Moment) -> bool:
 
 
 def _reverse(slots: Slots) -> Iterator[Wanted]:
+    goals = slots.goals  # "the wrong way round, from the wall to the sofa" is back along its way
     slots.pass_goals()
     if slots.told:
         return
-    if not slots.tell(_TRAVELS) and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
+    if not goals and not slots.tell(_TRAVELS) and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
         yield _now(slots, f"let {slots.whom} turn the other way round")
     else:
         whose = slots.queries[0]
@@ -431,6 +435,7 @@ def _amount(slots: Slots) -> Iterator[Wanted]:
         return  # "5 cm more": from how far it goes now
     if (how := _how_far(slots)) is None:
         return
+    slots.used |= {own.said for own in slots.amounts if own.unit in ("times", "%")}  # "half as far, 15 cm"
     if is_opened(_noun(slots)):
         yield _now(slots, f"open {slots.whom} {how}")
     elif how.startswith("by") and how.endswith(" m"):
@@ -478,6 +483,7 @@ _REVERSED = re.compile(
 )
 _FIRST = re.compile(r"\b(?:first|firstly|begins?|starts?|leads?|leading|earliest)\b")
 _LAST = re.compile(r"\b(?:last|lastly|finally|latest|final)\b")
+_AFTER_IT = re.compile(r"\b(?:after|behind|following) \|")
 _NO_ORDER = re.compile(
     r"\b(?:instead|rather|not|between|both|notice[sd]?|saw|see|sees|think|thought|said|says?|know|watched|heard|"
     r"fell)\b"
@@ -486,11 +492,15 @@ _NO_ORDER = re.compile(
 
 def _order(slots: Slots) -> Iterator[Wanted]:
     order = listed(slots.words, slots.spans, slots.thing) or _listed(slots)
+    goals = slots.goals
     slots.pass_goals()
     if slots.told:
         return
     if order:
         yield Wanted(in_order(order), Moment(), None)
+    elif len(slots.names) == len(goals) == 1 and _AFTER_IT.search(slots.rest):
+        after = During(state="moving", of=goals[0].query, part="after")
+        yield Wanted(pace(_whose(slots), "begin"), Moment(), Happening(after, f"after {goals[0].name}"))
     elif slots.tell(_REVERSED) and len(slots.names) == 1 and not slots.goals:
         yield Wanted(f"let {slots.names[0]} move in reverse order", Moment(), None)
 

@@ -17,6 +17,8 @@ from ..moments import Moment
 _PRONOUNS = bag("it he she they him her them its his their this that")
 _BEFORE = re.compile(r"^(?:right |just |only )*(?:until|till|til|before|by|up to|prior to|no later than)\b")
 _AFTER = re.compile(r"^(?:right |just |only |directly |straight )*(?:after|following|past|post|beyond)\b")
+_OVER = re.compile(r"\b(?:end|finish|close) of\b")  # "at the end of its first walk"
+_NOWHERE = re.compile(r"\b(?:comes?|came|coming) (?:over|by|near|close)$")  # to where is not told
 _FULLY = re.compile(r"\b(?:full|fully|out|extended|wide|all the way|completely)\b")
 
 
@@ -50,13 +52,21 @@ _STATES = {
 }  # fmt: skip
 _ALONE = {"reaches": "stops", "leaves": "starts"}  # where no other thing is named
 _RANKS = {"first_of": "first", "last_of": "last"}
+_ITS_OWN = ("film_start", "film_end", "first_leg", "last_leg")  # kinds that no rule reads, or takes for something else
+_SURELY = 0.7  # probability from which they go before what rules read
+
+
+def is_told_by_event(phrase: str) -> bool:
+    """Whether words tell an edge of the film, or a stretch of a way, which rules take for something else."""
+    event = event_of(phrase)
+    return event is not None and event.kind in _ITS_OWN and event.chance >= _SURELY
 
 
 def told_by_event(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, Happening | None] | None:
     """The time that words with a tag of time tell by what happens, as `times.told_by`; None if they tell none,
     or a thing in them is unknown."""
     event = event_of(phrase)
-    if event is None:
+    if event is None or _NOWHERE.search(phrase) is not None:
         return None
     ends = tag == "to" or _BEFORE.match(phrase) is not None
     if event.kind in ("film_start", "film_end"):
@@ -99,7 +109,7 @@ def _leg(first: bool, ends: bool, of: Query, phrase: str) -> Happening:
         over = way.model_copy(update={"part": "after"})
     if ends:
         return Happening(stop, phrase)
-    return Happening(over, phrase) if _AFTER.match(phrase) else Happening(start, phrase, stop)
+    return Happening(over, phrase) if _AFTER.match(phrase) or _OVER.search(phrase) else Happening(start, phrase, stop)
 
 
 def _who(event: Event, thing: Thing) -> Query | None:

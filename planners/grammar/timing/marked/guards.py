@@ -39,7 +39,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
         chance: the probability of the kind.
     """
     things, asked, idle = slots.things, slots.asked, slots.idle
-    if not things or things[0].split(" ")[-1] in EVERYWHERE:
+    if not things or (slots.queries and slots.queries[0].text.split(" ")[-1] in EVERYWHERE):
         return True
     first, then = (*_GREETING.sub("", asked).split(" "), "")[:2]
     if not is_any_word(first) and _DETERMINED.match(then):
@@ -65,7 +65,8 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
 _TELLING = {  # words that say something by themselves, and the kinds of wishes that say it
     r"slow|slower|fast|faster|quick|quicker|twice|double|half|speed": "speed duration spin repeat amount",
     r"slowly|quickly": "speed duration spin repeat amount move",
-    r"far(?! (?:too|better|nicer|more|less|from|prettier|cooler))|farther|further|wide|wider": "amount",
+    r"far(?! (?:too|better|nicer|more|less|from|prettier|cooler|slower|faster|quicker|longer|shorter|earlier|later))|"
+    r"farther|further|wide|wider": "amount",
     r"earlier|sooner|later": "begin open order",
     r"backwards?|reverse|reversed": "reverse return order",
     r"back": "return reverse close stay still hide order repeat pause",

@@ -39,7 +39,7 @@ STATIC = ("recolor", "hide", "remove", "move")  # kinds that need no time
 LEAST = 0.08  # probability of a kind that is told at all
 MOST = 4  # kinds that are told
 SURE = 0.85  # probability from which a change without a time is supposed, or an unknown verb is left aside
-CLEARLY = 0.9  # probability from which a kind is taken without a word that says it
+CLEARLY = 0.65  # probability from which a kind is taken without a word that says it
 _BY_WORDS = {  # words of which one at least says that a wish is of a kind
     "recolor": r"colou?r\w*|paint\w*|turn\w*|go(?:es)?|become\w*|be|make|made|in|tint\w*|dye\w*",
     "hide": r"hid\w*|invisible|gone|vanish\w*|disappear\w*|appear\w*|see|seen|saw|sight|visible|show\w*|lose|there|"

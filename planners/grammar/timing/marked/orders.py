@@ -9,6 +9,7 @@ from .....gaussians.language.query.query import Query
 from ...learned.marks import Span
 from ...learned.seen import hues
 from ...tagging.words import bag
+from ...vocabulary.nouns import is_known
 from ..command import Command
 from ..manner import Thing
 from ..verbs import SENSES, has_form
@@ -88,6 +89,8 @@ def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterato
     seen = list[Query]()
     for query, start, stop in found:
         bare = [word for word in words[start:stop] if word not in ("the", "one")]
+        if query is not None and not is_known(bare[-1]) and bare[0] in hues():
+            bare = bare[:1]  # "the red concludes"
         if bare and set(bare) <= hues():
             hue = " ".join(bare)
             query = Query(text=nouns[0] if nouns else "", colors=(hue,), moving=None if nouns else True)

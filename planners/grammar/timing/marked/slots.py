@@ -16,9 +16,9 @@ from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS
 from ..happenings import IT, Happening
 from ..manner import Thing
-from ..moments import Moment
+from ..moments import DURATION, Moment
 from .amounts import Amount, amount
-from .events import told_by_event
+from .events import is_told_by_event, told_by_event
 from .kinds import COURSES
 from .names import MOVING, with_moving
 from .names import named as names_in
@@ -187,6 +187,8 @@ def asks_more(words: Sequence[str], tag: str) -> bool:
     said = " ".join(words)
     if tag == "not":
         return _UNLESS.search(said) is not None or _NOT_UNTIL.search(said) is not None
+    if tag == "keep" and " but " in said and amount(said.split(" but ")[1]) is not None:
+        return True  # "same roll but twice as fast"
     return tag == "off" and (_ASKED_OF.search(said) is not None or _UNLESS.search(said) is not None)
 
 
@@ -204,17 +206,17 @@ def slots(
     def text(span: Span) -> str:
         return " ".join(words[span[1] : span[2]]).strip(_TRIM)
 
-    spans = sorted(spans, key=lambda span: span[1])
-    ends = kind in ("hide", "recolor", "pause", "halt")  # "gone at 1 s, and back at 3 s"
-    time = _time(words, spans, text, thing, ends)
+    spans = [_joined(span, words, kind) for span in sorted(spans, key=lambda span: span[1])]
+    time = _time(words, spans, text, thing, kind)
     if time is None:
         return None
     amounts = list[Amount]()
     for span in spans:
         if span[0] == "by" and _AT_A_TIME.match(text(span)) is None:
             if (found := amount(text(span))) is None:
-                if kind == "speed" and not any(map(_tells_number, text(span).split())):
-                    continue  # "right down"
+                vague = kind in ("speed", "return") and not any(map(_tells_number, text(span).split()))
+                if vague or (kind in ("pause", "halt") and _HALFWAY.search(text(span)) is not None):
+                    continue  # "right down"; "halfway" is told by words
                 return None
             amounts += [] if any(found.value == own.value and found.unit == own.unit for own in amounts) else [found]
     named = [span for span in spans if span[0] == "x"]
@@ -222,9 +224,11 @@ def slots(
         return None
     names, queries = _things(map(text, named), thing)
     goals = tuple(_goals(words, spans, text, thing))
-    if kind not in _LOOKS and any(goal.query.last for goal in goals):
+    if kind not in (*_LOOKS, "order") and any(goal.query.last for goal in goals):
         return None
-    if not names and kind in COURSES and moves():
+    if not names and time[1] is not None:  # "once the door has been open for a second, shut it"
+        names, queries = _things(iter(names_in(time[1].said, thing)[:1]), thing)
+    if not names and kind in (*COURSES, "open", "close") and moves():
         names, queries = (MOVING,), (Query(text="", moving=True, pick="all"),)
     if not names and len(goals) == 1:  # "a coat of paint on the bed"
         names, queries = (goals[0].name,), (goals[0].query,)
@@ -242,6 +246,13 @@ def slots(
     )  # fmt: skip
 
 
+def _joined(span: Span, words: Sequence[str], kind: str) -> Span:
+    """A mark; of a look the other thing that is joined with "and" has that look, too: "bed and shelf, both in blue"."""
+    tag, start, stop = span
+    joined = tag == "y" and kind in _LOOKS and start > 1 and words[start - 1] == "and"
+    return ("x", start, stop) if joined else span
+
+
 def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind: str) -> bool:
     """Whether other words stand between the names of several things: "stop the fan, and the lamp should sing"."""
     if kind in ("order", "together"):
@@ -252,12 +263,14 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
         for name, start, stop in names
     ]
     told = [(query, start, stop) for query, start, stop in meant if query is not None and not query.last]
+    joints = _JOINTS | _AGAIN if kind in _LOOKS else _JOINTS
     return any(
-        one != other and not set(words[stop:start]) <= _JOINTS for (one, _, stop), (other, start, _) in pairwise(told)
+        one != other and not set(words[stop:start]) <= joints for (one, _, stop), (other, start, _) in pairwise(told)
     )
 
 
-_JOINTS = bag("and , or nor plus & both the as well with along")
+_JOINTS = bag("and , or nor neither plus & both the as well with along")
+_AGAIN = bag("lose remove delete hide take get rid of away out too also then drop bin scrap ditch to see")  # of a look
 _EVERYTHING = re.compile(r"^(?:everything|all) (?:else|but)\b|\b(?:the rest|the others?)$")
 
 
@@ -337,11 +350,33 @@ def _goals(words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], s
         )  # fmt: skip
 
 
+_HALFWAY = re.compile(r"\b(?:half ?way|mid ?way)\b")
+_ENDED = ("hide", "recolor", "pause", "halt")  # kinds that two times begin and end: "gone at 1 s, and back at 3 s"
+_A_NUMBER = re.compile(r"^(?:at|from|in) (?:t ?= ?|second )?\d")
+_ONLY = re.compile(r"^(?:right|only|just|exactly|precisely|immediately|directly|shortly|already|not) ")
+_JUST_BEFORE = re.compile(r"^(?:right |just |directly |immediately )*before ")
+_LIKEWISE = re.compile(
+    r"^(?:when|once|as soon as|after|until|till) (?P<who>(?:the|a|my) [a-z ]+?) (?:does|do|did|has|is)(?: too| so)?$"
+)
+
+
+def _as_well(happening: Happening, other: Query, tag: str, phrase: str) -> Happening:
+    """The time at which another thing does the same: "when the red book lands, ... when the blue one does"."""
+    ends = {"from": "until", "while": "until", "after": "until_end"}
+    part = ends.get(happening.during.part, "until") if tag == "to" else happening.during.part
+    return Happening(happening.during.model_copy(update={"of": other, "part": part}), phrase)
+
+
+_REVERTED = re.compile(  # ", and come back when it is closed again"
+    r"\b(?:back|returns?|reappears?|again|visible|normal|usual|reverts?)\b.*?"
+    r"\b(?P<then>(?:when|once|as soon as|at|after|upon) .+)$"
+)
+_RESTS = re.compile(rf"^for (?P<lasting>{DURATION}) (?P<then>(?:after|once|when|from|right after|as soon as) .+)$")
 _AT_A_TIME = re.compile(r"^(?:(?:forward|back|up|out|on) )?(?:to|at|from) (?:t ?= ?)?\d+(?:\.\d+)?$")  # for what begins
 
 
 def _time(
-    words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], str], thing: Thing, ends: bool
+    words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], str], thing: Thing, kind: str
 ) -> tuple[Moment, Happening | None] | None:
     """The time that marks tell; None if one of them is not understood, or if they contradict each other."""
     moment, happening = Moment(), None
@@ -349,37 +384,29 @@ def _time(
         tag, phrase = span[0], text(span)
         if tag == "by" and _AT_A_TIME.match(phrase):
             tag = "from"
+        if tag == "not" and kind in _ENDED and (reverted := _REVERTED.search(phrase)) is not None:
+            tag, phrase = "to", reverted["then"]
+        if tag == "from" and (rests := _RESTS.match(phrase)) is not None:
+            lasting = told_by("for", rests["lasting"], thing)
+            if lasting is None or lasting[0] is None or (both := joined(moment, lasting[0])) is None:
+                return None
+            moment, phrase = both, rests["then"]
         if tag not in TIMES or not phrase or _KEEPING.match(phrase):
             continue
         for pattern, plain in _PLAINER:
             phrase = pattern.sub(plain, phrase)
-        begun = isinstance(moment.start, float) or (
-            happening is not None and happening.during.part not in ("until", "until_end")
-        )
-        if tag == "from" and begun and (ends or _ARRIVES.search(" ".join(words[max(0, span[1] - 4) : span[1]]))):
-            tag = "to"
-        if tag == "from" and UNTIL.match(phrase):
-            tag = "to"
-        if tag in ("from", "to") and LASTS.match(phrase):
-            tag = "for"
+        tag = _plainer_tag(tag, phrase, " ".join(words[max(0, span[1] - 4) : span[1]]), kind, moment, happening)
         phrase, delay = delayed(LEADING.sub("", phrase))
-        told = told_by(tag, phrase, thing)
-        if (
-            told is None
-            and (
-                bare := re.sub(
-                    r"^(?:right|only|just|exactly|precisely|immediately|directly|shortly|already|not) ", "", phrase
-                )
-            )
-            != phrase
-        ):
-            told = told_by(tag, bare, thing)
-        told = told or told_by_event(tag, text(span), thing)
+        if tag == "from" and kind == "pause" and (before := _JUST_BEFORE.match(phrase)) is not None:
+            phrase = f"when {phrase[before.end() :]}"  # a rest before its turn begins where that did
+        told = _told(tag, phrase, text(span), thing, happening)
         if told is None:
             return None
         found, event = told
         if delay is not None:
             found = replace(found or Moment(), start=delay)
+        elif found is not None and isinstance(found.start, float) and happening is not None and _begins(happening):
+            happening = None  # "once the fan has stopped, at 4.5 s": the number tells it
         if found is not None:
             if (both := joined(moment, found)) is None:
                 return None
@@ -389,4 +416,44 @@ def _time(
             if event is None:
                 return None
         happening = event or happening
+    if kind in _LOOKS and moment.start == 0.0 and moment.stop is not None:
+        moment = replace(moment, start=None)
     return moment, happening
+
+
+def _begins(happening: Happening) -> bool:
+    """Whether what happens is that from which something is to be."""
+    return happening.until is None and happening.during.part in ("from", "after")
+
+
+def _plainer_tag(tag: str, phrase: str, before: str, kind: str, moment: Moment, happening: Happening | None) -> str:
+    """The tag of words that tell a time, where they or those before them say what they are: "it lasts", "back at"."""
+    begun = isinstance(moment.start, float) or (
+        happening is not None and happening.during.part not in ("until", "until_end")
+    )
+    numbers = isinstance(moment.start, float) or _A_NUMBER.search(phrase) is None
+    if tag == "from" and begun and ((kind in _ENDED and numbers) or _ARRIVES.search(before)):
+        tag = "to"
+    if tag == "from" and UNTIL.match(phrase):
+        tag = "to"
+    return "for" if tag in ("from", "to") and LASTS.match(phrase) else tag
+
+
+def _told(
+    tag: str, phrase: str, said: str, thing: Thing, happening: Happening | None
+) -> tuple[Moment | None, Happening | None] | None:
+    """The time that words with a tag tell, by rules or else by the kind of what happens; None if they tell none.
+
+    Args:
+        phrase: the words without those that only lead to them.
+        said: all of the words.
+        happening: what happens at the time that is told so far.
+    """
+    if happening is not None and (likewise := _LIKEWISE.match(phrase)) is not None:
+        other = thing(likewise["who"])
+        return None if other is None else (None, _as_well(happening, other, tag, phrase))
+    for plainer in dict.fromkeys((phrase, _ONLY.sub("", phrase))):
+        told = told_by(tag, plainer, thing)
+        if told is not None and (told[0] is not None or not is_told_by_event(phrase)):
+            return told
+    return told_by_event(tag, said, thing)

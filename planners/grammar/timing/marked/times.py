@@ -20,15 +20,15 @@ from .plain import loosely, plain
 
 TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
 LEADING = re.compile(
-    r"^(?:(?:,|and|then|but|just|only|right|exactly|about|around|starting|beginning|start|begin|finish(?:ed|ing)?|"
-    r"done|"
-    r"ending|end|arriving|being|be|there|taking|takes?|lasting|lasts?) (?=\w))*"
+    r"^(?:(?:,|and|then|but|just|only|right|exactly|about|around|starting|beginning|starts?|begins?|leaves?|leaving|"
+    r"departs?|sets? off|finish(?:ed|ing)?|done|ending|end|arriving|arrives?|being|be|there|taking|takes?|lasting|"
+    r"lasts?) (?=\w))*"
 )
 UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
 LASTS = re.compile(r"^(?:and )?(?:tak(?:es?|ing)|last(?:s|ing)?)\b")  # how long it is said to take
 _DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
 _BARE = re.compile(
-    r"^(?:(?:by|at|on|from|in|to|till|until|after|before|up|for|over|within|during|the|only|just|about|around|"
+    r"^(?:(?:by|at|on|from|in|into|to|till|until|after|before|up|for|over|within|during|the|only|just|about|around|"
     r"exactly|"
     r"somewhere|roughly|approximately|precisely|"
     r"say|like|mark|starting|beginning|finished|done|,) )*(?P<value>.+?)(?: (?:mark|on|onwards?|already|sharp|"
@@ -45,8 +45,8 @@ _FROM_EVENT = re.compile(
 _GERUND = re.compile(r"^(?P<word>after|once|when|while|before|until) (?P<doing>[a-z]+ing)(?= |$)")
 _WHERE = re.compile(r"^(?:right |just |exactly )?(?:at )?(?:the (?:point|place|spot|corner) )?(?:where|upon) (?=\w)")
 _BESIDE = re.compile(  # "set off with the robot", "at the same time as the top one"
-    r"^(?:at )?(?:just |right |exactly )?(?:the )?(?:(?:very )?same (?:time|moment|second|instant)(?: as)?|"
-    r"together with|along with|alongside|with) "
+    r"^(?:at |in )?(?:just |right |exactly )?(?:the )?(?:(?:very )?same (?:time|moment|second|instant)(?: as)?|"
+    r"together with|along with|alongside|in (?:sync|step|time|unison|parallel) with|with) "
     r"(?P<who>(?:the|my|our|that) [a-z ]+?)(?: (?:does|moves|starts|sets off|opens|goes))?$"
 )
 _ALL = re.compile(
@@ -66,7 +66,7 @@ _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     (
         re.compile(
             r"\b(?:begin(?:n?ing)?|start|outset|first (?:frame|moment|second)|at once|immediately|straight away)\b|"
-            r"\btop (?:of the (?:film|show|clip|video|scene|shot))?$"
+            r"\bthe top(?: of the (?:film|show|clip|video|scene|shot))?$"
         ),
         0.0,
     ),

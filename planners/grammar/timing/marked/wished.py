@@ -8,6 +8,7 @@ from .....gaussians import late_re as re
 from ...learned.marks import Span
 from ...tagging.words import bag
 from ..asides import HUES
+from .kinds import SURE
 
 _ORDERS = (
     r"paint|make|turn|colou?r|recolou?r|change|dye|tint|take|get rid|remove|delete|strike|lose|ditch|bin|scrap|clear|"
@@ -30,13 +31,17 @@ _RID_OF_IT = re.compile(
     r"(?:remove|delete|bin|ditch|scrap|lose) (?:it|them))\b"
 )
 _DENIED = re.compile(r"\b(?:not|never|no one|nobody|if|unless|or|but)\b")
-CERTAINLY = 0.98  # probability of a wish of its kind that no word has to say
+CERTAINLY = 0.93  # probability of a wish of its kind that no word has to say
 _IS = re.compile(r"\b(?:is|are|was|were|has|have|had|looks?|seems?|used|should|if)\b|\?")
 SURELY = 0.95  # probability of a wish of its kind from which any other words may stand in it
 _ASKS = re.compile(  # or tells
     r"\b(?:know|knows|whether|wonder|wondering|remember|recall|what|which|who|whose|why|when|where|how|said|says?|told|"
     r"tells?|thought|heard|believed?|agree|calls?|called|imagine|think|picture|treated|seen|for all|i (?:want|need) is|"
     r"yesterday|ago|used to|tomorrow|earlier|last (?:week|month|year|time|night))\b"
+)
+_FOR_GOOD = re.compile(
+    r"\b(?:always|for ?ever|permanent(?:ly)?|for good|once and for all|from now on|for keeps|remain so|stay(?:s|ing)? "
+    r"(?:so|that way|like that))\b"
 )
 _CHOICE = re.compile(rf"\b(?:{HUES}) or (?:\w+ )?(?:{HUES})\b")
 _THAT_I_WANT = re.compile(
@@ -69,6 +74,8 @@ def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float) -> boo
     said = " ".join(words)
     if _CONTRARY.match(said) or _CHOICE.search(said) or _THAT_I_WANT.search(said):
         return False
+    if chance >= SURE and _FOR_GOOD.search(said) is not None:
+        return True  # "my car is red, and not for a bit: always"
     if _RID_OF_IT.search(f"{asked} . {said}") and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"
     if chance >= CERTAINLY and _DENIED.search(asked) is None and _ASKS.search(said) is None and not _IS.search(asked):
