@@ -125,9 +125,9 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         if (made_of := made(words, survey, timeline)) is not None:
             return made_of
     still = _of_moments(asked, survey, timeline)
-    if still is not None and still.answer.answer is not None:
+    if still is not None and still.answer.answer is not None and not (still.restated and still.answer.answer == ()):
         return still
-    refused = moved or still
+    refused = moved or (still if still is not None and still.answer.answer is None else None)
     names = _names(survey)
     guesses: tuple[tuple[str, ...], ...]
     if refused is None or refused.answer.text.startswith(_MISREAD):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ....gaussians.motion import events
 from ....gaussians.motion.events import Encounter
 from ....gaussians.motion.holding import Span, joined, lowest, rest, spans
+from ...grammar.vocabulary.nouns import is_opened
 from ..reading.time.deeds import Deed, Kind
 from ..survey import Survey, Thing
 from .bodies import Body, Timeline
@@ -242,8 +243,10 @@ def _strokes(value: Callable[[F64], F64], span: Span) -> list[Span]:
 
 
 def _opening(deed: Deed, body: Body, timeline: Timeline) -> list[Span] | None:
-    if not body.moving:
-        return None
+    if not body.moving:  # what opens, and never moves, is shut
+        if body.thing is None or not is_opened(body.thing.label):
+            return None
+        return [(timeline.start, timeline.stop)] if deed.kind == "is_closed" else []
     times, _, most = openness(body, timeline)
     if most < _ABOUT:
         return None

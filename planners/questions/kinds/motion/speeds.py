@@ -72,6 +72,10 @@ def _spans(told: Told, body: Body) -> list[Span]:
     """The spans over which a speed is taken: those of the deed, or of the time that is asked of."""
     window = told.window()
     deed = told.frame.what.deed
+    if deed is not None and deed.kind in ("is_open", "is_closed"):  # "is drawn out"
+        opens = Deed("open" if deed.kind == "is_open" else "close")
+        told = replace(told, frame=replace(told.frame, what=replace(told.frame.what, deed=opens)))
+        deed = opens
     found = (
         list(body.moving)
         if deed is None or deed.kind in AT_ONCE or (deed.kind == "move" and deed.phase)

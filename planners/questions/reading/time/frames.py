@@ -14,7 +14,7 @@ from typing import Literal
 from .....gaussians import late_re as re
 from .....gaussians.world.words import singular
 from ..noun_phrase import is_color_word
-from .deeds import STATES, Deed, Kind, as_noun
+from .deeds import STATES, Deed, Kind, Phase, as_noun
 from .happenings import PARTICLES, Happening, by_noun, happenings, thing
 from .moments import CLIP_EDGE, When, clauses, is_main, time_first, without_time
 from .notation import pattern
@@ -233,6 +233,7 @@ _QUANTITIES: dict[str, tuple[Asks, Kind]] = {
 }  # fmt: skip
 _QUESTION_WORD = re.compile(r"\b(?:when|what|which|how|where|who|why)\b")
 _NOMINAL = re.compile(rf"^(?:the )?(?P<x>.*?) ?\b(?P<q>{'|'.join(_QUANTITIES)})(?: (?:of|for) (?P<y>.+))?$")
+_EDGE_OF = re.compile(r"(?P<start>start(?:ing)?|begin(?:ning)?|onset)|end(?:ing)?|stop(?:ping)?|finish(?:ing)?")
 _MOST = re.compile(r"\b(?:total|overall|max|maximum|full|whole|greatest|travel|net|dwell|contact|final|'s)(?= |$)")
 _RATE_FIRST = re.compile(rf"^(?P<u>{_RATE}) (?:of|for)? ?(?P<rest>.+)$")
 _SPEED_LAST = re.compile(rf"^(?P<rest>.+?)(?: 's)? (?:(?:its )?(?P<kind>{pattern(_SPEED)})|(?P<unit>{_RATE}) )$")
@@ -277,10 +278,14 @@ def _named(said: str, unit: str) -> Iterator[Frame]:
             continue
         asks, kind = _QUANTITIES[found["q"]]
         x, y = _MOST.sub("", found["x"]).strip(), found["y"]
+        edge: Phase = ""
+        if found["q"] == "time" and y and (of := _EDGE_OF.fullmatch(x)) is not None:  # "start time of its going back"
+            x, edge = "", "start" if of["start"] else "stop"
         for what in happenings(f"{x} of {y}" if x and y else y or x):
             if what.subject is None or (what.deed is None and asks != "how_far"):
                 continue
             deed = what.deed or Deed(kind)
+            deed = replace(deed, phase=edge) if edge and not deed.at_once else deed
             told = "how_long" if asks == "when" and not deed.at_once else asks
             own = unit or ("degrees" if found["q"] == "angle" else "")
             last = When("end") if found["x"].startswith("final") else when
@@ -522,6 +527,10 @@ def _told(start: Frame, said: str) -> Iterator[Frame]:
         if telic and what.deed is not None and not what.deed.phase and (by := _by_then(start.when, said)) is not None:
             yield replace(start, what=replace(what, deed=replace(what.deed, phase="stop")), when=by)
             continue  # "how many have fallen by 2 s"
+        gone = start.asks in ("how_many", "which") and what.deed is not None and what.deed.kind in _AT_A_STROKE
+        if gone and (by := _by_then(start.when, said)) is not None:
+            yield replace(start, what=what, when=by)
+            continue  # "which have come off the board at 2 s"
         if start.asks == "when" and _DONE.match(said) and what.deed is not None and not _is_whole(what.deed):
             what = replace(what, deed=replace(what.deed, phase="stop"))  # "when has it crossed the rug"
         if _belongs(what, start.asks, said):
@@ -529,6 +538,7 @@ def _told(start: Frame, said: str) -> Iterator[Frame]:
 
 
 _TELIC = ("fall", "open", "close", "cross")
+_AT_A_STROKE = ("leave", "land", "reach", "enter", "pass")
 _HAS_DONE = re.compile(r"\b(?:has|have|had) ")
 
 

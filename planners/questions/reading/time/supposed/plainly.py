@@ -25,7 +25,7 @@ from ..loosely import HARD
 from .kinds import kinds_of, marked, vocabulary
 from .times import plain_time
 
-LEAST = 0.6  # probability of a kind that is tried
+LEAST = 0.5  # probability of a kind that is tried
 SURE = 0.8  # probability from which words without a mark are taken for those of the question
 _LONGEST = 40  # words
 _SHORTEST = 2
@@ -81,15 +81,19 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
         return ()
     if not said.x and kind not in _OF_ALL:
         said = replace(said, x="it")
-    times = dict.fromkeys(_times(kind, said.time)) if said.time and kind != "gap" else ("",)
+    times = dict.fromkeys(_times(kind, said.times)) if said.time and kind != "gap" else ("",)
     return tuple(dict.fromkeys(" ".join(f"{plain} {time}".split()) for time in times for plain in _PLAIN[kind](said)))
 
 
-def _times(kind: str, said: str) -> Iterator[str]:
+def _times(kind: str, said: tuple[str, ...]) -> Iterator[str]:
     """The words for a time, as they are said and by what happens at it; those that both are read agree in it."""
-    plain = _plain_time(kind, said)
+    plain = " ".join(filter(None, (_plain_time(kind, one) for one in said)))
+    told = plain_time(plain) if plain else None
+    if told is not None and told in _EDGES and kind not in _STATES:
+        yield ""  # it is asked of the whole film
+        return
     yield everyday(_ROUGHLY.sub("", plain))
-    if plain and (told := plain_time(plain)):
+    if told:
         yield told
 
 
@@ -99,7 +103,8 @@ _OF_ALL = bag(
 )
 _WHOLE_FILM = re.compile(  # a time that is all of the film
     r"^(?:(?:during|in|over|throughout|within|for|across|through) (?:the|this|these|all(?: of)? the|its|his|her) "
-    r"(?:(?:whole|entire|full|complete) )?(?:(?:five|5) seconds|(?:\w+ )?(?:film|clip|video|scene|time|movie|"
+    r"(?:(?:whole|entire|full|complete) )?(?:(?:five|5) seconds|(?:\w+ )?"
+    r"(?:(?:five|5) ?s(?:ec(?:ond)?s?)? )?(?:film|clip|video|scene|time|movie|"
     r"footage|recording|shot|"
     r"sequence|interval of motion|motion|movement|run|journey|trip))(?: is to be| long)?|throughout|ever|overall|"
     r"in total|altogether|in all|"
@@ -135,7 +140,8 @@ _OUT = re.compile(
     r"shut|closed)$|^while (?:going|coming|sliding|moving) (?P<doing>out|back|in)$"
 )
 _FURTHEST = re.compile(
-    r"^at (?:its|his|her|the) (?:very )?(?:furthest|farthest|widest|most|maximum|fullest|utmost|greatest|peak)\b.*$"
+    r"^at (?:full \w+|"
+    r"(?:its|his|her|the) (?:very )?(?:furthest|farthest|widest|most|maximum|fullest|utmost|greatest|peak)\b.*)$"
 )
 _BEFORE_BACK = re.compile(
     r"^(?:before|until|till) (?:it |he |she )?(?:\w+ )?(?:goes|going|comes|coming|sliding|slides|moving|moves|"
@@ -143,6 +149,7 @@ _BEFORE_BACK = re.compile(
 )
 
 
+_EDGES = ("", "at the start", "at the end")
 _ALL_OF_IT = re.compile(  # of a movement
     r"^(?:across|over|during|in|for|throughout) (?:its|his|her|their|the) (?:whole|entire|full|complete) \w+$|"
     r"^(?:between|from) (?:start(?:ing)?|beginning|first \w+|release) (?:and|to|until) (?:stop(?:ping)?|rest|"
@@ -249,7 +256,7 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
     }
     if len(found["t"]) > 2 or any(_TIMED.search(aside) for aside in found["off"]):
         return None
-    unit = _IN_UNIT.search(" ".join(found["u"]))
+    unit = _IN_UNIT.search(re.sub(r"metre", "meter", " ".join(found["u"])))
     return Said(
         x=_joined(things["x"]), y=_joined(things["y"][:1]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
         rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]), places=things["y"],
@@ -294,7 +301,7 @@ def _joined(names: tuple[str, ...]) -> str:
 
 def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
-    rest, allowed = said.rest.split(), _ALLOWED.get(kind, frozenset())
+    rest, allowed = _WHAT_SECOND.sub("when", said.rest).split(), _ALLOWED.get(kind, frozenset())
     if kind in ("what_moves", "what_still"):
         whose = said.x in _ANYTHING or _is_kind(said.x) or _APART.search(said.rest) is not None
         if not whose or said.y:
@@ -320,16 +327,13 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
             return True  # "which way does it turn" wants no yes or no; two deeds, or things to choose from
         if any(word in _HARD for word in told):
             return True
-    return any(
-        singular(w) in names
-        for w in told
-        if w not in _VERBS and not (kind in _TO_THE_FLOOR and w in ("floor", "ground"))
-    )
+    return any(singular(w) in names for w in told if w not in _VERBS and not (kind in _TO_THE_FLOOR and w in _LEVELS))
 
 
+_WHAT_SECOND = re.compile(r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b")
 _APART = re.compile(r"\b(?:besides|apart from|except|excepting|other than|aside from|but)\b")
 _RANKED = bag("order visits long_moves long_opens long_closes far apart long_falls")
-_COUNTED = bag("order visits how_many what_still what_shut what_up what_open what_on what_fell what_moves")
+_COUNTED = bag("order does visits how_many what_still what_shut what_up what_open what_on what_fell what_moves")
 _OWN_DEEDS: Mapping[str, tuple[str, ...]] = {
     "when_shut": ("clos", "shut"), "if_shut": ("clos", "shut"), "what_shut": ("clos", "shut"),
     "when_stops": ("stop",), "when_lands": ("land",), "when_falls": ("fall",), "when_starts": ("start", "go", "mov"),
@@ -342,6 +346,7 @@ _NTH = re.compile(r"\b(?:second|third|fourth|last) (?:time|trip|turn|movement|ru
 _ANYTHING = ("", "things", "the things", "anything", "everything", "something", "the furniture", "it")
 _DENIED = bag("not no never without nothing nobody")
 _RANKS = bag("second third first last other another twice again")
+_LEVELS = bag("floor ground board shelf")
 _TO_THE_FLOOR = bag("when_lands when_falls if_falls long_falls how_many what_fell what_up far_falls")
 _ASKS = bag("which what how when where who whose")
 _AUXILIARIES = bag("is are was were does do did has have had")
@@ -522,9 +527,15 @@ def _of_those(asked: str, always: str) -> Plain:
     def made(said: Said) -> Iterator[str]:
         noun = re.sub(r"^(?:two|three|four) ", "", _several(said.x)) if _is_kind(said.x) else ""
         form = asked if said.time or not always else always
+        if _HOW_MANY.search(said.rest):
+            yield f"how many {noun or 'things'} {form}"
+            return
         yield f"which {noun} {form}" if noun else f"what {_singular(form)}"
 
     return made
+
+
+_HOW_MANY = re.compile(r"\b(?:how many|(?:what|the) number of|count)\b")
 
 
 def _singular(form: str) -> str:
@@ -541,14 +552,18 @@ def _what_on(said: Said) -> Iterator[str]:
         yield f"what is on {said.x}"
 
 
+_EVENTS = re.compile(r"\b(?:leav|reach|set|start|stop|depart|arriv|roll|com)(?:e?s|ing)\b")  # that are put in order
+
+
 def _visits(said: Said) -> Iterator[str]:
-    if said.x and len(said.places) > 1:
-        yield f"in what order does {said.x} pass {' and '.join(said.places)}"
+    places = [place for place in said.places if place != said.x]
+    if said.x and len(places) > 1 and not _EVENTS.search(said.rest):
+        yield f"in what order does {said.x} pass {' and '.join(places)}"
 
 
 def _long_open(said: Said) -> Iterator[str]:
     if said.x:
-        yield f"how long does {said.x} stay {'fully ' if _FULLY.search(said.rest) else ''}open"
+        yield f"how long does {said.x} stay {'fully ' if _FULLY.search(f'{said.rest} {said.time}') else ''}open"
 
 
 _SUMMED = re.compile(
@@ -574,8 +589,13 @@ def _over(said: Said) -> Iterator[str]:
         yield f"does {said.x} {'pass' if passes else 'cross'} {said.y}"
 
 
+_RESTS = re.compile(r"\b(?:pause|break|rest|hold|wait|stay|dwell)\b")
+
+
 def _gap(said: Said) -> Iterator[str]:
-    if len(said.times) == 2:
+    if len(said.times) == 2 and _RESTS.search(said.rest):
+        yield f"how long is the pause between {said.times[0]} and {said.times[1]}"
+    elif len(said.times) == 2:
         yield f"how much time is there between {said.times[0]} and {said.times[1]}"
     deed = {"fall": "falling", "land": "landing", "stop": "stopping", "open": "opening", "close": "closing"}.get(
         _deed(said.rest, ""), "starting"
@@ -616,7 +636,7 @@ _PLAIN: Mapping[str, Plain] = {
     "often": _often,
     "where_ends": _about("where does {x} stop"),
     "where_starts": _about("where does {x} start"),
-    "where_at": lambda said: iter((f"where is {said.x}",) if said.x and said.time else ()),
+    "where_at": _about("where is {x}"),
     "way": _about("which way does {x} move"),
     "turn_way": _about("which way does {x} turn"),
     "if_moves": _moves,

@@ -26,12 +26,14 @@ _SPANS = {  # what is so for a while
 _ALONE = {"reaches": "stops", "leaves": "starts"}  # where no other thing is named
 
 
-def plain_time(phrase: str) -> str:
-    """A time that is told by what happens, as a clause with a plain verb; "" for another time."""
+def plain_time(phrase: str) -> str | None:
+    """A time that is told by what happens, as a clause with a plain verb; "" for all of the film, None for another."""
     event = event_of(phrase)
     if event is None:
-        return ""
+        return None
     lead = next((word for pattern, word in _LEADS if pattern.match(phrase)), "")
+    if event.kind == "film_end" and lead:
+        return ""  # before it ends
     if event.kind in ("film_start", "film_end"):
         return "at the start" if event.kind == "film_start" else "at the end"
     who = event.x if re.fullmatch(r"(?:it|he|she|they)", event.x) or not event.x else _with_article(event.x)
