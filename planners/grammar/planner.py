@@ -240,7 +240,8 @@ def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
     if scene is not None and _lacks(scene, outcome.ops) and (supposed := judge.likeliest(cleaned)):
         return outcome if _lacks(scene, supposed) else _guessed(supposed)
-    if not _names_things(outcome.ops, previous) and (supposed := judge.likeliest(cleaned)):
+    of_all = any(query.text == "everything" or query.moving for op in outcome.ops for query in _targets(op))
+    if not of_all and not _names_things(outcome.ops, previous) and (supposed := judge.likeliest(cleaned)):
         return _guessed(supposed) if _names_things(supposed, previous) else outcome
     return outcome
 

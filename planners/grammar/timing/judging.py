@@ -23,10 +23,10 @@ from .marked.commands import commands
 from .marked.guards import is_ruled_out, says_more
 from .marked.kinds import COURSES, LEAST, STATIC, SURE, is_changed_by, is_clear, is_done_by, likely, marked
 from .marked.lost import leaves_out
-from .marked.names import with_nouns
+from .marked.names import MOVING, with_nouns
 from .marked.slots import asks_more, slots
 from .marked.times import TIMES
-from .marked.wished import is_wished
+from .marked.wished import CERTAINLY, is_wished
 from .moments import Moment
 from .reading import CLAUSE, TIMELESS, TimeReader
 from .whens import of_one_movement
@@ -107,17 +107,18 @@ class Judge:
             kind, chance = next(iter(likely(cleaned, still)), ("", 0.0))
             if chance < least:
                 return None
-            found = self._made_of(kind, chance, wording, spans)
-            if found is not None and not self.is_still(found):
+            if (found := self._made_of(kind, chance, wording, spans)) is not None:
                 return found
         return None
 
     def _made_of(
         self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]
     ) -> tuple[Fields, ...] | None:
-        """The first operations that a kind makes of marks and that leave nothing out."""
+        """The first operations that a kind makes of marks, that leave nothing out, and that something moves for."""
         held = slots(wording, spans, self._reader.thing, kind, self._anything_moves)
-        if held is None or not (held.told or self._goes_without_time(kind, chance, wording, spans)):
+        if held is None:
+            return None
+        if not (held.told or MOVING in held.names or self._goes_without_time(kind, chance, wording, spans)):
             return None
         if not is_clear(kind, chance, held.asked) or is_ruled_out(kind, chance, held) or says_more(kind, held):
             return None
@@ -125,16 +126,18 @@ class Judge:
             with suppress(Refusal, UserError, ValidationError):
                 told = wanted.moment.told or wanted.happening is not None
                 found = self._ops(wanted.command, wanted.moment, wanted.happening, told)
-                if found and not leaves_out(wording, found):
+                if found and not leaves_out(wording, found) and not self.is_still(found):
                     return of_one_movement(" ".join(wording), found)
         return None
 
     def _goes_without_time(self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]) -> bool:
         """Whether a wish of a kind needs no time: for a look or a removal, or where something moves."""
-        return is_wished(wording, spans, chance) if kind in STATIC else self._anything_moves()
+        if kind in STATIC:
+            return is_wished(wording, spans, chance)
+        return self._anything_moves() or (self._moves is None and chance >= CERTAINLY)
 
     def _anything_moves(self) -> bool:
-        return self._moves is None or self._moves(Query(text="", moving=True, pick="all")) is True
+        return self._moves is not None and self._moves(Query(text="", moving=True, pick="all")) is True
 
     def _ops(
         self, command: str | Command, moment: Moment, happening: Happening | None, told: bool
@@ -207,6 +210,8 @@ class Judge:
             and self._moves(ops[0]["target"])
         ):
             return chance >= least  # "it must stay on the shelf" puts nothing there
+        if (kind, change) == ("stay", "open"):  # where it opens and closes by itself
+            return self._moves is not None and self._moves(ops[0]["target"]) is True and chance >= least
         if told is None and op not in (*_LOOKS_OR_THINGS, "pace", "articulate"):
             return False
         if ops[0]["op"] == "scale" and not _SPEEDS.search(cleaned):
@@ -215,8 +220,6 @@ class Judge:
             return False  # "turn the chair round to face the other way"
         if told is None and (kind not in _PACED or op == "articulate"):
             return False  # "three more blocks, all green" are put in
-        if (kind, change) == ("stay", "open"):  # where it opens and closes by itself
-            return self._moves is not None and self._moves(ops[0]["target"]) is True and chance >= least
         if (kind, change) in (("open", "close"), ("close", "open")):
             return chance >= least
         if change in ("begin", "later") and not is_changed_by(kind, str(change)):

@@ -362,6 +362,7 @@ def _duration(slots: Slots) -> Iterator[Wanted]:
 # -- rests -------------------------------------------------------------------------------------------------------------
 
 _HALFWAY = {"state": "halfway", "part": "from"}
+_WIDE = {"state": "fully_open", "part": "from"}
 
 
 def _pause(slots: Slots) -> Iterator[Wanted]:
@@ -414,6 +415,7 @@ def _still(slots: Slots) -> Iterator[Wanted]:
 def _stay(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     if is_opened(_noun(slots)) and slots.moment.start != "end":
+        yield Wanted(replace(pace(_whose(slots), "stop"), during=_WIDE), Moment(), None)  # what opens by itself
         yield Wanted(f"keep {slots.whom} open", Moment(), None)
     else:
         yield from _halt(slots)
@@ -453,6 +455,8 @@ def _how_far(slots: Slots) -> str | None:
     share = slots.one("times", "%")
     if (share is not None and share.value in (0.5, 50.0)) or (share is None and slots.tell(_HALF)):
         return "halfway"
+    if share is not None:
+        slots.used.discard(share.said)  # "twice as quick"
     return None
 
 

@@ -11,7 +11,6 @@ from ..whens import HELD_BACK
 from .kinds import STATIC, SURE, is_any_word
 from .names import MOVING
 from .slots import Slots
-from .wished import CERTAINLY
 
 _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
 _THERE_AND_BACK = re.compile(r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and\b")
@@ -45,7 +44,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     if not is_any_word(first) and _DETERMINED.match(then):
         return True  # a verb that is no word may ask for anything
     timeless = not slots.told and not slots.moment.always
-    if kind in STATIC and timeless and (chance < SURE or (chance < CERTAINLY and _ORDERED.match(asked))):
+    if kind in STATIC and timeless and (chance < SURE or _ORDERED.match(asked)):
         return True
     if _LIT.search(asked) and _A_LIGHT.search(things[0]):
         return True  # "turn the lamp off" stops no motion

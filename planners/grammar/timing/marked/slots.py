@@ -226,6 +226,10 @@ def slots(
     goals = tuple(_goals(words, spans, text, thing))
     if kind not in (*_LOOKS, "order") and any(goal.query.last for goal in goals):
         return None
+    if not names and not any(tag in ("x", "y") for tag, _, _ in spans):  # what no mark names
+        taken = {at for _, start, stop in spans for at in range(start, stop)}
+        bare = " ".join("," if at in taken else word for at, word in enumerate(words))
+        names, queries = _things(iter(names_in(bare, thing)[:1]), thing)
     if not names and time[1] is not None:  # "once the door has been open for a second, shut it"
         names, queries = _things(iter(names_in(time[1].said, thing)[:1]), thing)
     if not names and kind in (*COURSES, "open", "close") and moves():
