@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
+from ...gaussians import late_re as re
 from ...gaussians.errors import UserError
 from ...gaussians.language.query.nested import queries, with_queries
 from ...gaussians.language.query.query import Query
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from ..plan import Observation
 
 NAME = "grammar"
+_SAYS_MOVING = re.compile(r"\bmov(?:es|ing)\b", re.IGNORECASE)
 SUPPOSED = "no rule reads these words; this is what such a wish most likely asks for"
 _COPIES = frozenset({"copy", "duplicate", "clone", "new one", "second one", "second copy"})
 _ORIGINALS = frozenset({"original", "original one", "first one", "old one"})
@@ -240,7 +242,8 @@ def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
     if scene is not None and _lacks(scene, outcome.ops) and (supposed := judge.likeliest(cleaned)):
         return outcome if _lacks(scene, supposed) else _guessed(supposed)
-    of_all = any(query.text == "everything" or query.moving for op in outcome.ops for query in _targets(op))
+    of_all = any(query.text == "everything" for op in outcome.ops for query in _targets(op))
+    of_all = of_all and _SAYS_MOVING.search(cleaned) is None  # "play it all at half speed" is about the whole scene
     if not of_all and not _names_things(outcome.ops, previous) and (supposed := judge.likeliest(cleaned)):
         return _guessed(supposed) if _names_things(supposed, previous) else outcome
     return outcome

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import pairwise
+from itertools import islice, pairwise
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
@@ -69,6 +69,7 @@ _PLAINER = (  # times in plainer words
         r"\g<lead>",
     ),
 )
+_A_THING = re.compile(r"\b(?:the|that|this|my|our) (?:[a-z]+ ){1,3}things?\b")  # "the left red thing"
 _IDLE = ("not", "off", "keep")
 _LOOKS = ("recolor", "hide", "remove")  # kinds that other things only tell the place of
 _ARRIVES = re.compile(
@@ -229,7 +230,8 @@ def slots(
     if not names and not any(tag in ("x", "y") for tag, _, _ in spans):  # what no mark names
         taken = {at for _, start, stop in spans for at in range(start, stop)}
         bare = " ".join("," if at in taken else word for at, word in enumerate(words))
-        names, queries = _things(iter(names_in(bare, thing)[:1]), thing)
+        named_so = names_in(bare, thing)[:1] or tuple(found[0] for found in islice(_A_THING.finditer(bare), 1))
+        names, queries = _things(iter(named_so), thing)
     if not names and time[1] is not None:  # "once the door has been open for a second, shut it"
         names, queries = _things(iter(names_in(time[1].said, thing)[:1]), thing)
     if not names and kind in (*COURSES, "open", "close") and moves():
