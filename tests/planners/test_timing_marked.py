@@ -6,8 +6,10 @@ from typing import Any
 
 import pytest
 
-from scenewright.planners.grammar.planner import SUPPOSED, GrammarPlanner
+from scenewright.planners.grammar.planner import SUPPOSED, GrammarPlanner, _operations, _thing
+from scenewright.planners.grammar.timing.marked.events import told_by_event
 from scenewright.planners.grammar.timing.marked.kinds import is_clear, likely, marked
+from scenewright.planners.grammar.timing.reading import TimeReader
 from scenewright.training.timed_words import FILES
 from scenewright.training.wording import sentences
 
@@ -481,3 +483,48 @@ def test_one_begins_when_the_other_has_stopped() -> None:
 def test_what_travels_the_other_way_goes_back() -> None:
     (back,) = planned("Could we have the ball travelling the other way, starting from the wall?")
     assert (back["op"], back["change"]) == ("pace", "reverse")
+
+
+@pytest.mark.parametrize(
+    ("phrase", "during"),
+    [
+        ("on fan stop", {"state": "moving", "of": {"text": "fan"}, "part": "after"}),
+        ("having made its turn", {"state": "turning", "of": {"last": True}, "part": "after"}),
+        ("the second the drawer is all the way out", {"state": "fully_open", "of": {"text": "drawer"}, "part": "from"}),
+        ("until the ball bumps into the wall",
+         {"state": "touches", "anchors": [{"text": "wall"}], "of": {"text": "ball"}, "part": "until"}),
+        ("for as long as the gate stays ajar", {"state": "open", "of": {"text": "gate"}}),
+    ],
+)  # fmt: skip
+def test_times_are_told_by_what_happens(phrase: str, during: dict[str, Any]) -> None:
+    """None of these was learned from."""
+    assert phrase not in {sentence.said for sentence in sentences(FILES["events"])}
+    tag = "to" if phrase.startswith("until") else "in" if phrase.startswith("for") else "from"
+    told = told_by_event(tag, phrase, TimeReader(_operations, _thing).thing)
+    assert told is not None and told[1] is not None
+    assert told[1].during.model_dump(exclude_defaults=True, mode="json") == during
+
+
+@pytest.mark.parametrize("phrase", ["at 2 s", "twice as fast", "", "when the snork frobs", "before it comes over"])
+def test_what_tells_no_happening_tells_no_time(phrase: str) -> None:
+    assert told_by_event("from", phrase, TimeReader(_operations, _thing).thing) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "plainly"),
+    [
+        ("bed and shelf, both in blue for the whole film", "make the bed and the shelf blue for the whole film"),
+        ("on fan stop, the vase goes red", "make the vase red once the fan has stopped"),
+    ],
+)
+def test_marks_make_commands(text: str, plainly: str | None) -> None:
+    ops = planned(text)
+    if plainly is not None:
+        assert (
+            [(op["op"], op.get("color"), op.get("when")) for op in ops]
+            == [(op["op"], op.get("color"), op.get("when")) for op in planned(plainly)]
+            != []
+        )
+    else:
+        assert ops[0]["change"] == "stop" and ops[0]["when"]["lasting"] == 0.5
+        assert ops[0]["when"]["during"]["state"] == "turning" and ops[0]["when"]["during"]["part"] == "from"

@@ -14,6 +14,8 @@ TASK = "events"
 NO_EVENT = "none"  # the kind of phrases that tell a time in numbers, or none
 LEAST = 0.5  # probability of a kind that is believed
 
+_WHOSE = {"its": "it", "his": "he", "her": "she", "their": "they"}
+
 
 @dataclass(frozen=True)
 class Event:
@@ -38,7 +40,9 @@ def event_of(phrase: str) -> Event | None:
     kind, chance = next(iter(found.kinds), (NO_EVENT, 0.0))
     if kind == NO_EVENT or chance < LEAST:
         return None
-    said = {tag: {" ".join(words[a:b]) for own, a, b in found.spans if own == tag} for tag in ("x", "y")}
+    named = [(tag, " ".join(words[a:b]).removesuffix(" 's")) for tag, a, b in found.spans]
+    named = [(tag, _WHOSE.get(name, name)) for tag, name in named]
+    said = {tag: {name for own, name in named if own == tag} for tag in ("x", "y")}
     if any(len(names) > 1 for names in said.values()):
         return None
     x, y = ("".join(said[tag]) for tag in ("x", "y"))

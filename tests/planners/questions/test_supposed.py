@@ -7,6 +7,7 @@ import pytest
 from scenewright.planners.grammar.tagging.words import bag
 from scenewright.planners.questions.reading.time.supposed.kinds import kinds_of, marked
 from scenewright.planners.questions.reading.time.supposed.plainly import supposed
+from scenewright.planners.questions.reading.time.supposed.times import plain_time
 
 NAMES = bag("ball sofa rug lamp table wall floor door plant drawer fan book robot car bed shelf")
 
@@ -25,10 +26,24 @@ NAMES = bag("ball sofa rug lamp table wall floor door plant drawer fan book robo
         ("did the green book drop ahead of the red book", "does the green book fall before the red book"),
         ("where does the ball finish up", "where does the ball stop"),
         ("duration of the drawer's opning?", "how long does the drawer take to open"),
+        ("be so kind and name the drawers that are shut at 2.5 s", "which drawers are closed at 2.5 s"),
+        ("which of the books have yet to tumble at 1.1 s", "which books have not fallen at 1.1 s"),
+        ("rug, sofa, wall: which does the ball come by first, which next, which last",
+         "in what order does the ball pass the rug and the sofa and the wall"),
+        ("as the crow flies, how far from its start does the robot end up",
+         "how far does the robot move as the crow flies"),
+        ("how high up did the red book come from", "how far does the red book fall"),
     ],
-)
+)  # fmt: skip
 def test_a_question_is_put_plainly(text: str, plainly: str) -> None:
     assert supposed(text, NAMES) == (plainly,)
+
+
+def test_a_time_that_is_told_by_what_happens_is_put_plainly_too() -> None:
+    (said, plainly) = supposed("where is the robot once it's got to the end of its bend", NAMES)
+    assert "the end of its bend" in said and plainly == "where is the robot after it has turned"
+    assert plain_time("at 2 s") is None and plain_time("until the film is over") == ""
+    assert plain_time("during its first walk") == "before it turns"
 
 
 @pytest.mark.parametrize(

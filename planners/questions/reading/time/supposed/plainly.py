@@ -149,6 +149,7 @@ _BEFORE_BACK = re.compile(
 )
 
 
+_STRAIGHT = re.compile(r"\b(?:crow|straight|beeline)\b")
 _EDGES = ("", "at the start", "at the end")
 _ALL_OF_IT = re.compile(  # of a movement
     r"^(?:across|over|during|in|for|throughout) (?:its|his|her|their|the) (?:whole|entire|full|complete) \w+$|"
@@ -164,6 +165,8 @@ def _plain_time(kind: str, said: str) -> str:
     if _ALL_OF_IT.match(said) or (kind in ("far_opens", "far_turns") and _AT_MOST.match(said)):
         return ""
     if kind == "long_on" and said.startswith(("before it ", "until it ")):
+        return ""
+    if kind == "apart" and _STRAIGHT.search(said):
         return ""
     if (_FURTHEST.match(said) and kind.startswith("far")) or (kind == "long_open" and _BEFORE_BACK.match(said)):
         return ""
