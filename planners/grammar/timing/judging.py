@@ -34,7 +34,6 @@ from .wording import LONG_WORDS, in_words, spelt_out, spelt_right
 
 Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
 
-_HIDDEN = 0.6  # probability from which something is to be hidden though no word says so
 _SURELY = 0.7  # probability from which it speaks against another change of a motion
 _SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 _WISHED = ("recolor", "delete")
@@ -74,7 +73,6 @@ _BOTH_AT_ONCE = re.compile(
     rf"simultaneously|all at once)\b"
 )
 _EXCHANGES = re.compile(r"\b(?:swap|exchange|trade|switch)\b.*\bcolou?rs?\b", re.IGNORECASE)
-_FRAGMENT = re.compile(r"^(?:to|at|on|in|into|onto|off|down|up|over|out|back|of|with|by|from|all|fully|and|,)\b")
 
 
 class Judge:
@@ -100,6 +98,8 @@ class Judge:
         """The operations that the likeliest kind of wish makes of what the marks of an instruction hold; None if it is
         not as likely as `least`, or if one of the marks is not understood."""
         wording = with_nouns(spelt_right(spelt_out(in_words(cleaned)), LONG_WORDS)).split(" ")
+        if len(wording) > _LONGEST or _ALL_ELSE.search(" ".join(wording)):
+            return None
         spans = marked(wording)
         if any(asks_more(wording[start:stop], tag) for tag, start, stop in spans):
             return None

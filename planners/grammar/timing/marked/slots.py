@@ -223,17 +223,12 @@ def slots(
     named = [span for span in spans if span[0] == "x"]
     if any(_EVERYTHING.search(text(span)) for span in named) or _is_divided(words, named, thing, kind):
         return None
-    names, queries = _things(map(text, named), thing)
     goals = tuple(_goals(words, spans, text, thing))
     if kind not in (*_LOOKS, "order") and any(goal.query.last for goal in goals):
         return None
-    if not names and not any(tag in ("x", "y") for tag, _, _ in spans):  # what no mark names
-        taken = {at for _, start, stop in spans for at in range(start, stop)}
-        bare = " ".join("," if at in taken else word for at, word in enumerate(words))
-        named_so = names_in(bare, thing)[:1] or tuple(found[0] for found in islice(_A_THING.finditer(bare), 1))
-        names, queries = _things(iter(named_so), thing)
-    if not names and time[1] is not None:  # "once the door has been open for a second, shut it"
-        names, queries = _things(iter(names_in(time[1].said, thing)[:1]), thing)
+    names, queries = _things(map(text, named), thing)
+    if not names:
+        names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
     if not names and kind in (*COURSES, "open", "close") and moves():
         names, queries = (MOVING,), (Query(text="", moving=True, pick="all"),)
     if not names and len(goals) == 1:  # "a coat of paint on the bed"
@@ -250,6 +245,19 @@ def slots(
         names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said,
         words, spans, thing,
     )  # fmt: skip
+
+
+def _named_elsewhere(
+    words: Sequence[str], spans: Sequence[Span], thing: Thing, happening: Happening | None
+) -> tuple[str, ...]:
+    """What an instruction is about where no mark names that: what its other words name, or else that which its time is
+    told by: "once the door has been open for a second, shut it"."""
+    if not any(tag in ("x", "y") for tag, _, _ in spans):
+        taken = {at for _, start, stop in spans for at in range(start, stop)}
+        bare = " ".join("," if at in taken else word for at, word in enumerate(words))
+        if found := names_in(bare, thing)[:1] or tuple(m[0] for m in islice(_A_THING.finditer(bare), 1)):
+            return found
+    return () if happening is None else names_in(happening.said, thing)[:1]
 
 
 def _joined(span: Span, words: Sequence[str], kind: str) -> Span:
