@@ -1,4 +1,4 @@
-"""Tests of planners/grammar/timing/supposed/plain.py: marked words of time in plain words."""
+"""Tests of planners/grammar/timing/marked/plain.py: marked words of time in plain words."""
 
 from __future__ import annotations
 
