@@ -128,19 +128,24 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     if still is not None and still.answer.answer is not None and not (still.restated and still.answer.answer == ()):
         return still
     refused = moved or (still if still is not None and still.answer.answer is None else None)
-    names = _names(survey)
-    guesses: tuple[tuple[str, ...], ...]
-    if refused is None or refused.answer.text.startswith(_MISREAD):
-        guesses = (supposed(text, names, SURE), loosely(plain(words), names), supposed(text, names))
-    else:
-        guesses = (supposed(text, names, SURE),)
-    for questions in guesses:
+    misread = refused is None or refused.answer.text.startswith(_MISREAD)
+    for questions in _guesses(text, words, _names(survey), misread):
         if (guess := _read_as(questions, survey, timeline)) is not None:
             return guess
     if refused is not None:
         return refused
     none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
     return Reading(none, sight=True)
+
+
+def _guesses(text: str, words: Words, names: frozenset[str], misread: bool) -> Iterator[Sequence[str]]:
+    """Plainer questions that a question may mean, the surest first; fewer if it was read and only has no answer."""
+    surely = supposed(text, names, SURE)
+    yield surely
+    if misread:
+        yield loosely(plain(words), names)
+        if (likely := supposed(text, names)) != surely:
+            yield likely
 
 
 # How reasons begin where words may have been taken for what they are not: a name, a time.

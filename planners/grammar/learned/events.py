@@ -14,6 +14,7 @@ TASK = "events"
 NO_EVENT = "none"  # the kind of phrases that tell a time in numbers, or none
 LEAST = 0.5  # probability of a kind that is believed
 
+_ALONE = {"reaches": "stops", "leaves": "starts"}  # where no other thing is named
 _WHOSE = {"its": "it", "his": "he", "her": "she", "their": "they"}
 
 
@@ -46,4 +47,4 @@ def event_of(phrase: str) -> Event | None:
     if any(len(names) > 1 for names in said.values()):
         return None
     x, y = ("".join(said[tag]) for tag in ("x", "y"))
-    return Event(kind, x, y, chance)
+    return Event(kind if y else _ALONE.get(kind, kind), x, y, chance)

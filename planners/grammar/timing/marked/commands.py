@@ -227,11 +227,11 @@ def _is_last(moment: Moment) -> bool:
 
 
 def _reverse(slots: Slots) -> Iterator[Wanted]:
-    goals = slots.goals  # "the wrong way round, from the wall to the sofa" is back along its way
     slots.pass_goals()
     if slots.told:
         return
-    if not goals and not slots.tell(_TRAVELS) and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
+    back = slots.goals or slots.tell(_TRAVELS)  # "the wrong way round, from the wall to the sofa"
+    if not back and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
         yield _now(slots, f"let {slots.whom} turn the other way round")
     else:
         whose = slots.queries[0]
@@ -496,15 +496,15 @@ _NO_ORDER = re.compile(
 
 def _order(slots: Slots) -> Iterator[Wanted]:
     order = listed(slots.words, slots.spans, slots.thing) or _listed(slots)
-    goals = slots.goals
     slots.pass_goals()
     if slots.told:
         return
     if order:
         yield Wanted(in_order(order), Moment(), None)
-    elif len(slots.names) == len(goals) == 1 and _AFTER_IT.search(slots.rest):
-        after = During(state="moving", of=goals[0].query, part="after")
-        yield Wanted(pace(_whose(slots), "begin"), Moment(), Happening(after, f"after {goals[0].name}"))
+    elif len(slots.names) == len(slots.goals) == 1 and _AFTER_IT.search(slots.rest):
+        other = slots.goals[0]
+        after = During(state="moving", of=other.query, part="after")
+        yield Wanted(pace(_whose(slots), "begin"), Moment(), Happening(after, f"after {other.name}"))
     elif slots.tell(_REVERSED) and len(slots.names) == 1 and not slots.goals:
         yield Wanted(f"let {slots.names[0]} move in reverse order", Moment(), None)
 

@@ -50,7 +50,6 @@ _STATES = {
     "reaches": _begins("touches"), "leaves": _ends("on"), "on": _State("on"),
     "first_of": _begins("moving"), "last_of": _ends("moving"),
 }  # fmt: skip
-_ALONE = {"reaches": "stops", "leaves": "starts"}  # where no other thing is named
 _RANKS = {"first_of": "first", "last_of": "last"}
 _ITS_OWN = ("film_start", "film_end", "first_leg", "last_leg")  # kinds that no rule reads, or takes for something else
 _SURELY = 0.7  # probability from which they go before what rules read
@@ -76,7 +75,7 @@ def told_by_event(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, H
         return None
     if event.kind in ("first_leg", "last_leg"):
         return None, _leg(event.kind == "first_leg", ends, of, phrase)
-    found = _STATES[event.kind if event.y else _ALONE.get(event.kind, event.kind)]
+    found = _STATES[event.kind]
     anchors: tuple[Query, ...] = ()
     if found.state in ("touches", "on"):
         if (other := thing(event.y)) is None:

@@ -413,6 +413,10 @@ def _several(x: str) -> str:
     return _PLURAL.sub("", x)
 
 
+def _uncounted(x: str) -> str:
+    return re.sub(r"^(?:two|three|four) ", "", _several(x))
+
+
 Plain = Callable[[Said], Iterator[str]]
 
 
@@ -521,14 +525,14 @@ _WHICH = re.compile(r"\b(?:which|name|list|what)\b")
 
 def _those_shut(said: Said) -> Iterator[str]:
     if _is_kind(said.x) and _WHICH.search(f"{said.rest} {said.off}") and not re.search(r"\d", said.time):
-        yield f"which {re.sub(r'^(?:two|three|four) ', '', _several(said.x))} stay closed"
+        yield f"which {_uncounted(said.x)} stay closed"
 
 
 def _of_those(asked: str, always: str) -> Plain:
     """Which things of a kind do something at a time, or all the time."""
 
     def made(said: Said) -> Iterator[str]:
-        noun = re.sub(r"^(?:two|three|four) ", "", _several(said.x)) if _is_kind(said.x) else ""
+        noun = _uncounted(said.x) if _is_kind(said.x) else ""
         form = asked if said.time or not always else always
         if _HOW_MANY.search(said.rest):
             yield f"how many {noun or 'things'} {form}"

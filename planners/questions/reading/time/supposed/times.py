@@ -21,9 +21,10 @@ _MOMENTS = {  # what happens, as a predicate
 _SPANS = {  # what is so for a while
     "moves": "is moving", "still": "stands still", "opening": "is opening", "is_open": "is open",
     "closing": "is closing", "is_shut": "is closed", "falling": "is falling", "turning": "is turning",
-    "on": "is on {y}", "first_leg": "", "last_leg": "",
+    "on": "is on {y}",
 }  # fmt: skip
-_ALONE = {"reaches": "stops", "leaves": "starts"}  # where no other thing is named
+
+_PRONOUNS = ("it", "he", "she", "they")
 
 
 def plain_time(phrase: str) -> str | None:
@@ -36,22 +37,19 @@ def plain_time(phrase: str) -> str | None:
         return ""  # before it ends
     if event.kind in ("film_start", "film_end"):
         return "at the start" if event.kind == "film_start" else "at the end"
-    who = event.x if re.fullmatch(r"(?:it|he|she|they)", event.x) or not event.x else _with_article(event.x)
-    who = who or "it"
+    who = event.x or "it"
+    if who not in _PRONOUNS:
+        who = _with_article(who)
     if event.kind == "first_leg":
         return f"before {who} turns"
     if event.kind == "last_leg":
         return f"after {who} has turned"
-    return f"{lead or _conjunction(event)} {who} {_said(event)}"
+    said = (_MOMENTS | _SPANS)[event.kind].format(y=_with_article(event.y))
+    return f"{lead or _conjunction(event)} {who} {said}"
 
 
 def _with_article(name: str) -> str:
     return name if re.match(r"^(?:the|a|an|my|our|this|that|all|both)\b", name) else f"the {name}"
-
-
-def _said(event: Event) -> str:
-    kind = event.kind if event.y else _ALONE.get(event.kind, event.kind)
-    return (_MOMENTS | _SPANS)[kind].format(y=_with_article(event.y))
 
 
 def _conjunction(event: Event) -> str:
