@@ -123,6 +123,15 @@ class PlannerClient:
         self.last = plan.model_copy(update={"ops": without_confirmation(plan.ops)})
         return self.last
 
+    def otherwise(self, plan: EditPlan) -> EditPlan | None:
+        """Another plan for the instruction of one that cannot be carried out in the scene, None if there is none; only
+        of the grammar."""
+        from ...planners.grammar import GrammarPlanner
+
+        if plan.planner != GrammarPlanner.name:
+            return None
+        return GrammarPlanner().otherwise(plan, observation=self._observation)
+
     def reads_as_question(self, text: str) -> bool | None:
         """Whether the grammar takes a text for a question: no if it plans an edit, None if it cannot tell."""
         from ...planners.grammar import GrammarPlanner

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 from ...gaussians.camera import Camera
-from ...gaussians.errors import ScenewrightError, UserError
+from ...gaussians.errors import AmbiguousError, InstructionError, ScenewrightError, UnconfirmedError, UserError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
@@ -428,6 +428,23 @@ class Session:
             if again is None:
                 raise
             return self.apply(again, planned_in=again.seconds)
+        except (AmbiguousError, UnconfirmedError):
+            raise  # a question that the user answers
+        except (InstructionError, UserError):
+            if (done := self._done_otherwise(plan)) is None:
+                raise
+            return done
+
+    def _done_otherwise(self, plan: EditPlan) -> Result | None:
+        """The result of what the instruction of a plan that failed most likely asks for; None if that fails, too."""
+        other, question = self._planner.otherwise(plan), self.question
+        if other is None:
+            return None
+        try:
+            return self.apply(other, planned_in=other.seconds)
+        except ScenewrightError:
+            self.question = question  # that of the first plan
+            return None
 
     def _planned_again(self, plan: EditPlan, error: JudgedError) -> EditPlan | None:
         """Another plan of a language model for an instruction whose first plan was judged a failure; None if the model

@@ -106,6 +106,19 @@ class GrammarPlanner:
             told = {"verdict": refusal.verdict, "reason": str(refusal), "unknown": _shortened(refusal.words)}
         return EditPlan(instruction=text, planner=NAME, seconds=time.perf_counter() - started, **told)
 
+    def otherwise(self, plan: EditPlan, *, observation: Observation | None = None) -> EditPlan | None:
+        """What the instruction of a plan most likely asks for by its kind, for a scene in which that plan cannot be
+        carried out; None if that is not likely enough, or the same."""
+        started = time.perf_counter()
+        try:
+            ops = tuple(_valid(op) for op in _most_likely(clean(plan.instruction), observation))
+        except Refusal:
+            return None
+        if not ops or ops == plan.ops:
+            return None
+        seconds = time.perf_counter() - started
+        return EditPlan(instruction=plan.instruction, planner=NAME, ops=ops, reason=SUPPOSED, seconds=seconds)
+
     def is_sure(self, text: str, *, previous: str | None = None) -> bool:
         """Whether nothing of an instruction's meaning was guessed.
 
@@ -197,6 +210,26 @@ def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -
     return replace(outcome, ops=held(with_end(asked.lower(), outcome.ops, movement), kept, movement))
 
 
+def _most_likely(cleaned: str, scene: Observation | None) -> Sequence[Fields]:
+    """What an instruction most likely asks for by its kind, without any rule; none if that is not likely enough.
+
+    Raises:
+        Refusal: that would change what it says is to stay.
+    """
+    cleaned = written(cleaned)
+    movement = scene.movement if scene is not None else _unknown
+    judge = _judge(TimeReader(_operations, _thing), scene)
+    if not may_be_timed(cleaned):
+        return judge.wished(cleaned) or ()
+    asked, kept = without_kept(cleaned)
+    return held(with_end(asked.lower(), judge.likeliest(asked) or (), movement), kept, movement)
+
+
+def _judge(reader: TimeReader, scene: Observation | None) -> Judge:
+    """A judge of what a reader reads, for a scene if there is one."""
+    return Judge(reader) if scene is None else Judge(reader, scene.moves, scene.movement)
+
+
 def _unknown(query: Query) -> None:
     """How something moves where there is no scene."""
 
@@ -208,7 +241,7 @@ def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _
         Refusal: as `_read_whole`.
     """
     reader = TimeReader(_operations, _thing)
-    judge = Judge(reader, scene.moves if scene is not None else None)
+    judge = _judge(reader, scene)
     if judge.contradicts_itself(cleaned):
         raise Refusal("this asks for two things that cannot both be", cleaned[:200], verdict="impossible")
     try:

@@ -18,16 +18,16 @@ from ..tagging.words import bag
 from ..vocabulary.nouns import is_known, is_opened
 from . import happenings, moments
 from .command import Command, Fields
-from .happenings import IT, Happening
-from .marked.commands import commands
+from .ending import MovementOf
+from .happenings import IT
+from .marked.commands import Wanted, commands
 from .marked.guards import is_ruled_out, says_more
 from .marked.kinds import COURSES, LEAST, STATIC, SURE, is_changed_by, is_clear, is_done_by, likely, marked
 from .marked.lost import leaves_out
 from .marked.names import MOVING, with_nouns
-from .marked.slots import asks_more, slots
+from .marked.slots import ALL_MOVING, Slots, asks_more, slots
 from .marked.times import TIMES
 from .marked.wished import CERTAINLY, is_wished
-from .moments import Moment
 from .reading import CLAUSE, TIMELESS, TimeReader
 from .whens import of_one_movement
 from .wording import LONG_WORDS, in_words, spelt_out, spelt_right
@@ -80,11 +80,11 @@ class Judge:
 
     Args:
         reader: reads its times, names and commands.
-        moves: tells what moves in the scene; None if there is none.
+        moves, movement: tell what moves in the scene, and how; None if there is none.
     """
 
-    def __init__(self, reader: TimeReader, moves: Moves | None = None) -> None:
-        self._reader, self._moves = reader, moves
+    def __init__(self, reader: TimeReader, moves: Moves | None = None, movement: MovementOf | None = None) -> None:
+        self._reader, self._moves, self._movement = reader, moves, movement
         self._likeliest: dict[tuple[str, float], tuple[Fields, ...] | None] = {}
 
     def likeliest(self, cleaned: str, least: float = 0.0) -> tuple[Fields, ...] | None:
@@ -115,7 +115,7 @@ class Judge:
         self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]
     ) -> tuple[Fields, ...] | None:
         """The first operations that a kind makes of marks, that leave nothing out, and that something moves for."""
-        held = slots(wording, spans, self._reader.thing, kind, self._anything_moves)
+        held = slots(wording, spans, self._reader.thing, kind, self._does_move)
         if held is None:
             return None
         if not (held.told or MOVING in held.names or self._goes_without_time(kind, chance, wording, spans)):
@@ -124,9 +124,12 @@ class Judge:
             return None
         for wanted in commands(kind, held):
             with suppress(Refusal, UserError, ValidationError):
-                told = wanted.moment.told or wanted.happening is not None
-                found = self._ops(wanted.command, wanted.moment, wanted.happening, told)
-                if found and not leaves_out(wording, found) and not self.is_still(found):
+                found = self._ops(wanted)
+                if (
+                    found
+                    and not leaves_out(wording, found, held.said_twice(self._facts(held)))
+                    and not self.is_still(found)
+                ):
                     return of_one_movement(" ".join(wording), found)
         return None
 
@@ -134,22 +137,28 @@ class Judge:
         """Whether a wish of a kind needs no time: for a look or a removal, or where something moves."""
         if kind in STATIC:
             return is_wished(wording, spans, chance)
-        return self._anything_moves() or (self._moves is None and chance >= CERTAINLY)
+        return self._does_move(ALL_MOVING) or (self._moves is None and chance >= CERTAINLY)
 
-    def _anything_moves(self) -> bool:
-        return self._moves is not None and self._moves(Query(text="", moving=True, pick="all")) is True
+    def _does_move(self, query: Query) -> bool:
+        return self._moves is not None and self._moves(query) is True
 
-    def _ops(
-        self, command: str | Command, moment: Moment, happening: Happening | None, told: bool
-    ) -> tuple[Fields, ...] | None:
-        """The operations of a command, in words or as it is, at a time.
+    def _facts(self, held: Slots) -> tuple[float, ...]:
+        """The seconds at which the first thing of an instruction begins and ends to move, and how long that takes."""
+        moves = self._movement(held.queries[0]) if self._movement is not None else None
+        return () if moves is None else (moves.start, moves.stop, moves.stop - moves.start)
 
-        Args:
-            told: whether any time is told.
-        """
+    def _ops(self, wanted: Wanted) -> tuple[Fields, ...] | None:
+        """The operations of a command, in words or as it is, at its time, and of those that go with it; None if one of
+        them is not understood."""
+        command, moment, happening = wanted.command, wanted.moment, wanted.happening
         if isinstance(command, Command):
-            return self._reader.made(command, moment, happening)
-        return self._reader.command(command, "", moment, happening, told)
+            found = self._reader.made(command, moment, happening)
+        else:
+            found = self._reader.command(command, "", moment, happening, moment.told or happening is not None)
+        for more in wanted.also:
+            then = self._ops(more)
+            found = None if found is None or then is None else (*found, *then)
+        return found
 
     def contradicts_itself(self, cleaned: str) -> bool:
         """Whether something is to be so all the time, and otherwise at a time or as well: "keep it shut throughout, and

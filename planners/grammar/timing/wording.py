@@ -49,6 +49,7 @@ _FILM_BEGINS = re.compile(
 )
 _CLOSE = re.compile(r"(?<=\b(?:to|ll|il|at) )the (?:close|finale)\b", re.IGNORECASE)
 _DOTS = re.compile(r"(?<=[a-z])\.\.+ ")
+_NUMBER = rf"(?:\d[\d.]*|half|{'|'.join(NUMBERS)})"
 _SYNONYMS = tuple(
     (re.compile(rf"\b{said}\b", re.IGNORECASE), plain)
     for said, plain in (
@@ -56,6 +57,9 @@ _SYNONYMS = tuple(
         (r"the initial(?= [a-z0-9.]+ sec)", "the first"),
         (r"thereafter", "afterwards"),
         (r"(?:all|all along|all through) the (?=film|clip|video|movie)", "for the whole "),
+        (rf"(?P<lead>at|by|for|in|to|from|after|up|until|around) like (?={_NUMBER}\b)", r"\g<lead> "),
+        (r"(?P<rank>first|last) second and a half", r"\g<rank> 1.5 seconds"),
+        (r"(?P<word>until|while|when) ?, (?:and|but) only (?P=word) ?,?", r"\g<word>"),
     )
 )
 _NO_NEED = re.compile(r"(?: ?,)? (?:and |there is )?no need to (?:wait|hurry|rush)\b[^,.;!]*", re.IGNORECASE)

@@ -22,11 +22,12 @@ from .slots import Slots
 
 @dataclass(frozen=True)
 class Wanted:
-    """A command, in words or as it is, and its time."""
+    """A command, in words or as it is, its time, and the commands that go with it."""
 
     command: str | Command
     moment: Moment
     happening: Happening | None
+    also: tuple[Wanted, ...] = ()
 
 
 _SLOWER = re.compile(
@@ -121,6 +122,7 @@ def commands(kind: str, slots: Slots) -> Iterator[Wanted]:
         if not slots.unused():
             yield wanted
         slots.used.clear()
+        slots.repeated.clear()
 
 
 _NEGATIVE = ("hide", "remove", "still", "stay", "halt", "longer", "amount", "begin", "pause", "duration")
@@ -262,7 +264,9 @@ def _return(slots: Slots) -> Iterator[Wanted]:
 def _begin(slots: Slots) -> Iterator[Wanted]:
     slots.used |= {goal.name for goal in slots.goals if slots.happening is None}
     moment, by = _plainly(slots.moment), slots.one("s")
-    if by is not None and not (isinstance(moment.start, float) and slots.happening is None):
+    if by is not None and isinstance(moment.start, float) and slots.happening is None:
+        slots.repeated.add(by.said)  # "0.4 s earlier: it begins at 3.1"
+    elif by is not None:
         if (sign := _sign(slots)) is not None and slots.happening is None:
             yield Wanted(pace(_whose(slots), "later", seconds=sign * by.value), Moment(), None)
         elif slots.happening is not None and moment.empty and slots.happening.during.part != "until":
@@ -277,6 +281,11 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
         moment = replace(moment, start=moment.stop, stop=None)  # "it waits until 2 s"
     if moment.lasting is not None:
         moment = replace(moment, taken=True)
+    faster = slots.one("times", "%")
+    if faster is not None and (factor := _factor(slots)) is not None:  # "at 2 s, but at double speed"
+        speed = Wanted(pace(_whose(slots), "speed", factor=round(factor, 4)), Moment(), None)
+        yield replace(speed, also=(_paced(slots, "begin", moment),))
+        return
     yield _paced(slots, "begin", moment)
 
 
@@ -466,7 +475,9 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     if _TOO.search(" ".join(slots.words)) and not slots.told:
         return  # by how much is not told
     by = slots.one("s")
-    if by is not None and not isinstance(slots.moment.start, float):
+    if by is not None and isinstance(slots.moment.start, float):
+        slots.repeated.add(by.said)
+    elif by is not None:
         sign = _sign(slots)
         if sign is not None and not slots.told:
             yield Wanted(pace(_whose(slots), "later", seconds=sign * by.value), Moment(), None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 
 from pydantic import BaseModel
 
@@ -19,15 +19,18 @@ from .kinds import marked
 CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
 
 
-def leaves_out(words: Sequence[str], ops: Sequence[Fields]) -> bool:
+def leaves_out(words: Sequence[str], ops: Sequence[Fields], free: Set[int] = frozenset()) -> bool:
     """Whether a number beside a time, or a colour, that an instruction tells stands in no operation.
 
     What is not wanted, and what comes back, may be left out.
+
+    Args:
+        free: where numbers stand that say nothing new.
     """
     if _loses_colors(words, ops):
         return True
     said = " ".join(words)
-    return (TIMED.search(said) or _A_SECOND.search(said)) is not None and _loses_numbers(words, ops)
+    return (TIMED.search(said) or _A_SECOND.search(said)) is not None and _loses_numbers(words, ops, free)
 
 
 def _loses_colors(words: Sequence[str], ops: Sequence[Fields]) -> bool:
@@ -49,9 +52,9 @@ _NOT_WANTED = bag(
 )
 
 
-def _loses_numbers(words: Sequence[str], ops: Sequence[Fields]) -> bool:
+def _loses_numbers(words: Sequence[str], ops: Sequence[Fields], free: Set[int]) -> bool:
     """Whether a number stands in no operation, and not among what is not wanted."""
-    missing = set(_missing(words, ops))
+    missing = set(_missing(words, ops)) - free
     if missing and "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
         missing -= set(range(words.index("not"), words.index("but", words.index("not"))))
     if missing:

@@ -37,6 +37,10 @@ _ONE = re.compile(
 _RANKED = re.compile(  # "from when the first book falls until the last one is down"
     r"\bthe (?:first|last|second|third) (?P<noun>[a-z]+)\b.*\bthe (?:first|last|second|third) (?P<one>one)\b"
 )
+_RANKED_ALONE = re.compile(  # "until the last has landed"
+    r"\bthe (?P<rank>first|last)(?= (?:has|have|is|'s|lands?|falls?|hits?|stops?|drops?|comes?|goes|opens?|starts?|sets|"
+    r"begins?|leaves)\b)"
+)
 
 
 def with_moving(text: str) -> str:
@@ -52,12 +56,12 @@ def with_nouns(text: str) -> str:
             [word for word in part.split() if is_known(word) and word not in _NO_THINGS and word not in ("can", "back")]
             for part in (text[: found.start()], text[found.end() :])
         )
-        return f"{found['how']} {singular((before[-1:] or after[:1] or ['one'])[0])}"
+        return f"{found[0].removesuffix(' one')} {singular((before[-1:] or after[:1] or ['one'])[0])}"
 
     ranked = _RANKED.search(text)
     if ranked is not None and is_known(ranked["noun"]):
         text = f"{text[: ranked.start('one')]}{ranked['noun']}{text[ranked.end('one') :]}"
-    return _ONE.sub(noun, text)
+    return _RANKED_ALONE.sub(noun, _ONE.sub(noun, text))
 
 
 def named(text: str, thing: Thing) -> tuple[str, ...]:

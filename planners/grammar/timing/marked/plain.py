@@ -16,6 +16,7 @@ _BRIEFLY = (
 )
 _GONE = r"(?:has|have|had|is|are|'s|was) (?:passed|elapsed|gone(?: by)?|over|up|past|out|in)"
 _WAYS = r"movement|motion|slide|climb|run|ride|trip|roll|walk|drop|fall|way|journey|swing|turn|descent|opening|closing"
+_LENGTHS = r"(?:travel(?:l?ing)?|run(?:ning)?|transit) ?time|duration|time|length|dur|total|travel|lasting|taking|long|trip time"
 _ALWAYS, _TO_THE_END = "the whole time", "until the end"
 _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what they are put as
     ("", rf"\bits (?=(?:{_STATES}|(?!opening|closing|turning|landing|ending)[a-z]+ing)\b)", "it is "),
@@ -32,7 +33,18 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
         rf"(?=(?:the )?(?:first|last|{_NUMBER})\b)",
         r"\g<word> ",
     ),
+    (
+        "for",
+        rf"^(?:,|with|a|an|its|the|only|total|and)*(?: ?(?:{_LENGTHS})(?: ?(?:of|is|:|=|should be))?) (?=.*{_SECONDS})",
+        "",
+    ),
+    (
+        "for",
+        rf"(?<=s) (?:for (?:it|that)|of (?:travel|rest|silence|pause|waiting|stillness)|(?:{_LENGTHS}|pause|break|rest))(?: .*)?$",
+        "",
+    ),
     ("for", rf"^of (?={_SECONDS})", ""),
+    ("for", rf"^(?:frame|t|time) (?={_SECONDS})", "at "),
     ("", rf"\bthe usual (?={_NUMBER}\b)", ""),
     ("", r"\bbusy (?=[a-z]+ing\b)", ""),
     ("", rf"\bthe (?P<n>{_NUMBER}) second (?:mark|point)\b", r"\g<n> seconds"),
@@ -65,7 +77,7 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ("from to", r"^(?:with effect )?from (?=second \w+$)", "at "),
     (
         "from",
-        r"^(?:at|from|on) (?:the|that) (?:very |exact |same )?(?:moment|instant|time|second) "
+        r"^(?:at|from|on|in) (?:the|that) (?:very |exact |same )?(?:moment|instant|time|second|sec) "
         r"(?:that |when |as |at which )?(?=(?:the|it|he|she|they) )",
         "when ",
     ),
@@ -88,6 +100,9 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     (
         "in for to",
         r"^(?:for good|for ever|forever|ever|at any (?:point|time)|at no time|non ?stop|for keeps|for all time|"
+        r"permanently|(?:stays |constant |unchanging |unchanged )?(?:in|over|through) (?:all )?time|"
+        r"(?:for|in|at|on|over) (?:all|every|each) (?:t|times?|frames?|seconds?)|at all|all along|"
+        r"(?:for|at) (?:any|every|all) (?:t|moment)|"
         r"through to the credits|until we fade out|(?:until|till) the credits(?: roll)?)$",
         _ALWAYS,
     ),

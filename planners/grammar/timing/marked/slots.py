@@ -16,7 +16,7 @@ from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS
 from ..happenings import IT, Happening
 from ..manner import Thing
-from ..moments import DURATION, Moment
+from ..moments import DURATION, Moment, seconds_of
 from .amounts import Amount, amount
 from .events import is_told_by_event, told_by_event
 from .kinds import COURSES
@@ -71,11 +71,15 @@ _PLAINER = (  # times in plainer words
 )
 _A_THING = re.compile(r"\b(?:the|that|this|my|our) (?:[a-z]+ ){1,3}things?\b")  # "the left red thing"
 _IDLE = ("not", "off", "keep")
+_NEAR = 0.06  # seconds by which a number may differ from what it says of how it is now
 _LOOKS = ("recolor", "hide", "remove")  # kinds that other things only tell the place of
 _ARRIVES = re.compile(
     r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?|home|parks?|"
     r"complet\w+|back|again|return\w*|re ?\w+s)\b"
 )
+
+
+ALL_MOVING = Query(text="", moving=True, pick="all")
 
 
 @dataclass(frozen=True)
@@ -101,7 +105,9 @@ class Slots:
         said: all words that ask for something: those without a mark, and of things, goals and amounts.
         spans: the marks.
         thing: reads a name.
+        moves: tells whether what is named moves in the scene.
         used: what of this a command holds.
+        repeated: amounts that a time tells, too.
     """
 
     names: tuple[str, ...]
@@ -116,7 +122,9 @@ class Slots:
     words: Sequence[str]
     spans: Sequence[Span]
     thing: Thing
+    moves: Callable[[Query], bool]
     used: set[str] = field(default_factory=set)
+    repeated: set[str] = field(default_factory=set)
 
     @property
     def told(self) -> bool:
@@ -168,6 +176,23 @@ class Slots:
         """The words about what is not wanted, what stays, or nothing."""
         return " ".join(" ".join(self.words[a:b]) for tag, a, b in self.spans if tag in _IDLE)
 
+    def said_twice(self, facts: Sequence[float]) -> set[int]:
+        """Where numbers stand that say nothing new: those of amounts that a time tells, too, and in words about what
+        stays or is not wanted those that are how it is now.
+
+        Args:
+            facts: seconds of how it is now.
+        """
+        found = set[int]()
+        for tag, start, stop in self.spans:
+            said = " ".join(self.words[start:stop])
+            if tag == "by" and any(own in said for own in self.repeated):
+                found |= set(range(start, stop))
+            if tag in _IDLE:
+                numbers = ((at, seconds_of(f"{self.words[at]} seconds")) for at in range(start, stop))
+                found |= {at for at, value in numbers if any(abs((value or -9.0) - now) < _NEAR for now in facts)}
+        return found
+
     def unused(self) -> bool:
         """Whether an amount, or a goal, stands in no command."""
         return any(own.said not in self.used for own in self.amounts) or any(
@@ -194,14 +219,14 @@ def asks_more(words: Sequence[str], tag: str) -> bool:
 
 
 def slots(
-    words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str, moves: Callable[[], bool]
+    words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str, moves: Callable[[Query], bool]
 ) -> Slots | None:
     """What the marks in words hold; None if one of them is not understood, or a number stands in none.
 
     Args:
         thing: reads a name.
         kind: that of the wish.
-        moves: tells whether anything moves in the scene: what is to move otherwise is that, where nothing is named.
+        moves: tells whether what is named moves in the scene; where nothing is named, what moves is meant.
     """
 
     def text(span: Span) -> str:
@@ -229,8 +254,8 @@ def slots(
     names, queries = _things(map(text, named), thing)
     if not names:
         names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
-    if not names and kind in (*COURSES, "open", "close") and moves():
-        names, queries = (MOVING,), (Query(text="", moving=True, pick="all"),)
+    if not names and kind in (*COURSES, "open", "close") and moves(ALL_MOVING):
+        names, queries = (MOVING,), (ALL_MOVING,)
     if not names and len(goals) == 1:  # "a coat of paint on the bed"
         names, queries = (goals[0].name,), (goals[0].query,)
     goals = tuple(goal for goal in goals if not goal.query.last and goal.query not in queries)
@@ -243,7 +268,7 @@ def slots(
     said = " ".join(word for at, word in enumerate(words) if at not in marked or at in asking)
     return Slots(
         names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said,
-        words, spans, thing,
+        words, spans, thing, moves,
     )  # fmt: skip
 
 
@@ -381,6 +406,10 @@ def _as_well(happening: Happening, other: Query, tag: str, phrase: str) -> Happe
     return Happening(happening.during.model_copy(update={"of": other, "part": part}), phrase)
 
 
+_UP_TO_THEN = re.compile(r"\b(?:until|till|before)(?: ,)?$")
+_AT_A_SECOND = re.compile(r"^(?:just |right )?(?:in|at|on) (?:second|sec|t ?=) ?\d")
+
+
 _REVERTED = re.compile(  # ", and come back when it is closed again"
     r"\b(?:back|returns?|reappears?|again|visible|normal|usual|reverts?)\b.*?"
     r"\b(?P<then>(?:when|once|as soon as|at|after|upon) .+)$"
@@ -448,8 +477,10 @@ def _plainer_tag(tag: str, phrase: str, before: str, kind: str, moment: Moment, 
     numbers = isinstance(moment.start, float) or _A_NUMBER.search(phrase) is None
     if tag == "from" and begun and ((kind in _ENDED and numbers) or _ARRIVES.search(before)):
         tag = "to"
-    if tag == "from" and UNTIL.match(phrase):
+    if tag == "from" and (UNTIL.match(phrase) or _UP_TO_THEN.search(before)):
         tag = "to"
+    if tag == "in" and _AT_A_SECOND.match(phrase) and kind not in _LOOKS:
+        tag = "from"
     return "for" if tag in ("from", "to") and LASTS.match(phrase) else tag
 
 
