@@ -20,13 +20,14 @@ from . import happenings, moments
 from .command import Command, Fields
 from .ending import MovementOf
 from .happenings import IT
-from .marked.commands import Wanted, commands
+from .marked.commands import commands
 from .marked.guards import is_ruled_out, says_more
 from .marked.kinds import COURSES, LEAST, STATIC, SURE, is_changed_by, is_clear, is_done_by, likely, marked
 from .marked.lost import leaves_out
 from .marked.names import MOVING, with_nouns
 from .marked.slots import ALL_MOVING, Slots, asks_more, slots
 from .marked.times import TIMES
+from .marked.wanted import Wanted
 from .marked.wished import CERTAINLY, is_wished
 from .reading import CLAUSE, TIMELESS, TimeReader
 from .whens import of_one_movement

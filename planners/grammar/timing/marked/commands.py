@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from typing import Any
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
-from .....tools.when import During
+from .....tools.when import During, Part
 from ...learned.seen import hues
 from ...vocabulary.nouns import is_opened
 from ..clauses import ALL_OF_IT
@@ -18,17 +17,8 @@ from ..happenings import Happening
 from ..moments import Moment
 from .orders import in_order, listed
 from .slots import Slots
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """A command, in words or as it is, its time, and the commands that go with it."""
-
-    command: str | Command
-    moment: Moment
-    happening: Happening | None
-    also: tuple[Wanted, ...] = ()
-
+from .steps import in_step, in_turn
+from .wanted import Wanted, now, paced, plainly, whose_of
 
 _SLOWER = re.compile(
     r"\b(?:slow\w*|calm\w*|gentl\w+|lazy|lazily|leisurely|brake|reduce\w*|less|lower|lessen|decelerat\w+|snail\w*|"
@@ -128,27 +118,6 @@ def commands(kind: str, slots: Slots) -> Iterator[Wanted]:
 _NEGATIVE = ("hide", "remove", "still", "stay", "halt", "longer", "amount", "begin", "pause", "duration")
 
 
-def _now(slots: Slots, command: str | Command, **moment: Any) -> Wanted:
-    """A command at the time that marks tell, with parts of that changed."""
-    return Wanted(command, replace(_plainly(slots.moment), **moment), slots.happening)
-
-
-def _paced(slots: Slots, change: str, moment: Moment | None = None, **more: Any) -> Wanted:
-    command = pace(_whose(slots), change, **more)
-    return Wanted(command, _plainly(slots.moment) if moment is None else moment, slots.happening)
-
-
-def _plainly(moment: Moment) -> Moment:
-    return replace(moment, slowly=False, quickly=False)
-
-
-def _whose(slots: Slots) -> Query:
-    """What is changed, as one query."""
-    first, *others = slots.queries
-    also = tuple(other for query in others for other in (query.model_copy(update={"also": ()}), *query.also))
-    return first.model_copy(update={"also": (*first.also, *also)}) if also else first
-
-
 # -- looks and places --------------------------------------------------------------------------------------------------
 
 
@@ -183,12 +152,15 @@ def _remove(slots: Slots) -> Iterator[Wanted]:
 def _move(slots: Slots) -> Iterator[Wanted]:
     if slots.tell(_OTHERWISE) or _TO_A_HEIGHT.search(slots.said):
         return
+    if (beside := _beside_another(slots)) is not None:
+        yield beside
+        return
     goal, length = slots.goal(), slots.one("m")
     if goal is not None and _FOLLOWS.search(slots.rest):
-        yield _now(slots, f"let {slots.whom} follow {goal.name}")
+        yield now(slots, f"let {slots.whom} follow {goal.name}")
         return
     if goal is not None and goal.way not in ("on", "to") and _ROUND.search(slots.rest):
-        yield _now(slots, f"let {slots.whom} drive around {goal.name}")
+        yield now(slots, f"let {slots.whom} drive around {goal.name}")
         return
     ways = [way for way, words in _WAYS.items() if words.search(slots.said)]
     if goal is not None and not (len(ways) == 1 and length is not None and goal.way == ""):
@@ -198,6 +170,27 @@ def _move(slots: Slots) -> Iterator[Wanted]:
     elif len(ways) == 1 and (length is not None or ways == ["up"]):
         how = f" by {length.value:g} m" if length is not None else ""
         yield Wanted(f"move {slots.whom} {ways[0]}{how}", slots.moment, slots.happening)
+
+
+_ARRIVES = re.compile(
+    r"\b(?:arriv\w+|there|reach\w*|gets? (?:to|in)|finish\w*|lands?|parks?|ends? (?:up )?together|both|sync\w*|same "
+    r"times|side by side|comes? in)\b"
+)
+
+
+def _beside_another(slots: Slots) -> Wanted | None:
+    """Something that goes to a place as another thing moves, which is named beside that: "the car drives to the bed,
+    too, and both arrive together"; None for others."""
+    others = [goal for goal in slots.goals if goal.way != "from"]
+    movers = [goal for goal in others if slots.moves(goal.query)]
+    if len(others) != 2 or len(movers) != 1 or slots.told or slots.moves(slots.queries[0]):
+        return None
+    place = next(goal for goal in others if goal is not movers[0])
+    slots.pass_goals()
+    words = " ".join(slots.words)
+    part: Part = "while" if _ARRIVES.search(words) else "from"
+    happening = Happening(During(state="moving", of=movers[0].query, part=part), f"as {movers[0].name} does")
+    return Wanted(f"move {slots.whom} to {place.name}", Moment(), happening)
 
 
 _TO_A_HEIGHT = re.compile(r"\bto (?:\d[\d.]*|half a|one|two|three) ?(?:m|cm|met\w+|centimet\w+)\b")
@@ -211,16 +204,16 @@ def _spin(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     whom = slots.whom
     if (rate := slots.one("turns/s")) is not None:
-        yield _now(slots, f"spin {whom} {rate.value:g} turns per second")
+        yield now(slots, f"spin {whom} {rate.value:g} turns per second")
         return
     whole = {"stop": "end"} if slots.moment.always or _is_last(slots.moment) else {}
     if (angle := slots.one("deg")) is not None:
-        yield _now(slots, f"spin {whom} by {angle.value:g} degrees", **whole)
+        yield now(slots, f"spin {whom} by {angle.value:g} degrees", **whole)
     elif (turns := slots.one("turns", "times")) is not None:
         how = {0.5: "half a turn", 0.25: "a quarter turn", 1.0: "once"}.get(turns.value, f"{turns.value:g} turns")
-        yield _now(slots, f"spin {whom} {how}", **whole)
+        yield now(slots, f"spin {whom} {how}", **whole)
     else:
-        yield _now(slots, f"let {whom} spin" if slots.told else f"spin {whom}", **whole)
+        yield now(slots, f"let {whom} spin" if slots.told else f"spin {whom}", **whole)
 
 
 def _is_last(moment: Moment) -> bool:
@@ -234,28 +227,28 @@ def _reverse(slots: Slots) -> Iterator[Wanted]:
         return
     back = slots.goals or slots.tell(_TRAVELS)  # "the wrong way round, from the wall to the sofa"
     if not back and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
-        yield _now(slots, f"let {slots.whom} turn the other way round")
+        yield now(slots, f"let {slots.whom} turn the other way round")
     else:
         whose = slots.queries[0]
-        yield Wanted(pace(ALL_OF_IT if whose.text == "everything" else _whose(slots), "reverse"), Moment(), None)
+        yield Wanted(pace(ALL_OF_IT if whose.text == "everything" else whose_of(slots), "reverse"), Moment(), None)
 
 
 def _repeat(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     again = slots.one("times", "turns")
     if slots.told:
-        yield _paced(slots, "repeat", times=1)
+        yield paced(slots, "repeat", times=1)
     elif again is not None and again.value >= 2:
-        yield _paced(slots, "repeat", times=round(again.value) - 1)
+        yield paced(slots, "repeat", times=round(again.value) - 1)
     else:
-        yield _now(slots, f"repeat the movement of {slots.whom}")
+        yield now(slots, f"repeat the movement of {slots.whom}")
 
 
 def _return(slots: Slots) -> Iterator[Wanted]:
     if slots.goals and not slots.told:
         return  # "roll to the wall and come back"
     slots.pass_goals()
-    yield _paced(slots, "return")
+    yield paced(slots, "return")
 
 
 # -- when and how fast -------------------------------------------------------------------------------------------------
@@ -263,19 +256,19 @@ def _return(slots: Slots) -> Iterator[Wanted]:
 
 def _begin(slots: Slots) -> Iterator[Wanted]:
     slots.used |= {goal.name for goal in slots.goals if slots.happening is None}
-    moment, by = _plainly(slots.moment), slots.one("s")
+    moment, by = plainly(slots.moment), slots.one("s")
     if by is not None and isinstance(moment.start, float) and slots.happening is None:
         slots.repeated.add(by.said)  # "0.4 s earlier: it begins at 3.1"
     elif by is not None:
         if (sign := _sign(slots)) is not None and slots.happening is None:
-            yield Wanted(pace(_whose(slots), "later", seconds=sign * by.value), Moment(), None)
+            yield Wanted(pace(whose_of(slots), "later", seconds=sign * by.value), Moment(), None)
         elif slots.happening is not None and moment.empty and slots.happening.during.part != "until":
-            yield _paced(slots, "begin", replace(moment, start=by.value))
+            yield paced(slots, "begin", replace(moment, start=by.value))
         return
     if not slots.told:
         return
     if is_opened(_noun(slots)) and _SHUTS.search(slots.rest) and moment.start is not None:
-        yield _now(slots, f"close {slots.whom}")
+        yield now(slots, f"close {slots.whom}")
         return
     if moment.stop is not None and moment.start is None and slots.happening is None and moment.lasting is None:
         moment = replace(moment, start=moment.stop, stop=None)  # "it waits until 2 s"
@@ -283,10 +276,10 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
         moment = replace(moment, taken=True)
     faster = slots.one("times", "%")
     if faster is not None and (factor := _factor(slots)) is not None:  # "at 2 s, but at double speed"
-        speed = Wanted(pace(_whose(slots), "speed", factor=round(factor, 4)), Moment(), None)
-        yield replace(speed, also=(_paced(slots, "begin", moment),))
+        speed = Wanted(pace(whose_of(slots), "speed", factor=round(factor, 4)), Moment(), None)
+        yield replace(speed, also=(paced(slots, "begin", moment),))
         return
-    yield _paced(slots, "begin", moment)
+    yield paced(slots, "begin", moment)
 
 
 def _noun(slots: Slots) -> str:
@@ -308,17 +301,17 @@ def _sign(slots: Slots) -> float | None:
 def _speed(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     if (rate := slots.one("turns/s")) is not None:
-        yield _now(slots, f"spin {slots.whom} {rate.value:g} turns per second")
+        yield now(slots, f"spin {slots.whom} {rate.value:g} turns per second")
         return
     if (seconds := slots.one("s")) is not None and not slots.told:
-        yield _paced(slots, "begin", Moment(lasting=seconds.value, taken=True))
+        yield paced(slots, "begin", Moment(lasting=seconds.value, taken=True))
         return
     if slots.moment.lasting is not None and slots.moment.start is None and slots.happening is None:
         slots.used |= {own.said for own in slots.amounts}
         yield from _duration(slots)
         return
     if (factor := _factor(slots)) is not None:
-        yield _paced(slots, "speed", factor=round(factor, 4))
+        yield paced(slots, "speed", factor=round(factor, 4))
 
 
 def _factor(slots: Slots) -> float | None:
@@ -351,7 +344,7 @@ def _factor(slots: Slots) -> float | None:
 
 def _duration(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    moment = _plainly(slots.moment)
+    moment = plainly(slots.moment)
     if moment.lasting is not None and not moment.taken and any(said.startswith("for ") for said in moment.said):
         return  # how long it goes on, or how long it takes
     if moment.lasting is None and moment.stop is None and (seconds := slots.one("s")) is not None:
@@ -359,13 +352,13 @@ def _duration(slots: Slots) -> Iterator[Wanted]:
             return
         moment = replace(moment, lasting=seconds.value)
     if moment.lasting is not None:
-        yield _paced(slots, "begin", replace(moment, taken=True))
+        yield paced(slots, "begin", replace(moment, taken=True))
     elif moment.stop not in (None, "end") or (moment.stop == "end" and moment.start is not None):
-        yield _paced(slots, "begin", moment)
+        yield paced(slots, "begin", moment)
     elif (factor := slots.one("times", "%")) is not None:
         value = factor.value / 100 if factor.unit == "%" else factor.value
         if value > 0:
-            yield _paced(slots, "speed", moment, factor=round(1 / value, 4))
+            yield paced(slots, "speed", moment, factor=round(1 / value, 4))
 
 
 # -- rests -------------------------------------------------------------------------------------------------------------
@@ -376,18 +369,18 @@ _WIDE = {"state": "fully_open", "part": "from"}
 
 def _pause(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    moment = replace(_plainly(slots.moment), taken=False)
+    moment = replace(plainly(slots.moment), taken=False)
     if moment.lasting is None and (seconds := slots.one("s")) is not None:
         moment = replace(moment, lasting=seconds.value)
     if moment.lasting is not None and moment.start is None and slots.happening is None and moment.stop is None:
         if slots.tell(_HALF):
             slots.used |= {own.said for own in slots.amounts}
-            rest = replace(pace(_whose(slots), "stop"), during=_HALFWAY)
+            rest = replace(pace(whose_of(slots), "stop"), during=_HALFWAY)
             yield Wanted(rest, moment, None)
         return
     both = moment.stop is not None and (moment.start is not None or slots.happening is not None)
     if moment.lasting is not None or both or _has_ends(slots.happening):
-        yield _paced(slots, "stop", moment)
+        yield paced(slots, "stop", moment)
 
 
 def _has_ends(happening: Happening | None) -> bool:
@@ -397,9 +390,9 @@ def _has_ends(happening: Happening | None) -> bool:
 
 def _halt(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    moment = _plainly(slots.moment)
+    moment = plainly(slots.moment)
     if (length := slots.one("m")) is not None and not slots.told:
-        yield _paced(slots, "part", Moment(), distance={"value": length.value})
+        yield paced(slots, "part", Moment(), distance={"value": length.value})
         return
     if moment.lasting is not None:
         return
@@ -407,24 +400,24 @@ def _halt(slots: Slots) -> Iterator[Wanted]:
     if ended:  # "it only runs until 2 s"
         moment = replace(moment, start=moment.stop, stop=None)
     if slots.told and (moment.start is not None or slots.happening is not None):
-        yield _paced(slots, "stop", replace(moment, stop=None) if moment.stop == "end" else moment)
+        yield paced(slots, "stop", replace(moment, stop=None) if moment.stop == "end" else moment)
     elif slots.tell(_HALF):
         slots.used |= {own.said for own in slots.amounts}
-        yield Wanted(replace(pace(_whose(slots), "stop"), during=_HALFWAY), Moment(), None)
+        yield Wanted(replace(pace(whose_of(slots), "stop"), during=_HALFWAY), Moment(), None)
 
 
 def _still(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     if not slots.told or slots.moment.always:
-        yield Wanted(pace(_whose(slots), "stop"), Moment(), None)
+        yield Wanted(pace(whose_of(slots), "stop"), Moment(), None)
     elif slots.happening is None:
-        yield _paced(slots, "stop")
+        yield paced(slots, "stop")
 
 
 def _stay(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     if is_opened(_noun(slots)) and slots.moment.start != "end":
-        yield Wanted(replace(pace(_whose(slots), "stop"), during=_WIDE), Moment(), None)  # what opens by itself
+        yield Wanted(replace(pace(whose_of(slots), "stop"), during=_WIDE), Moment(), None)  # what opens by itself
         yield Wanted(f"keep {slots.whom} open", Moment(), None)
     else:
         yield from _halt(slots)
@@ -434,7 +427,7 @@ def _longer(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     if slots.moment.lasting is None and slots.happening is None and not slots.amounts:
         stop = slots.moment.stop if isinstance(slots.moment.stop, float) else None
-        yield Wanted(pace(_whose(slots), "go_on"), Moment(stop=stop), None)
+        yield Wanted(pace(whose_of(slots), "go_on"), Moment(stop=stop), None)
 
 
 # -- how far -----------------------------------------------------------------------------------------------------------
@@ -448,11 +441,11 @@ def _amount(slots: Slots) -> Iterator[Wanted]:
         return
     slots.used |= {own.said for own in slots.amounts if own.unit in ("times", "%")}  # "half as far, 15 cm"
     if is_opened(_noun(slots)):
-        yield _now(slots, f"open {slots.whom} {how}")
+        yield now(slots, f"open {slots.whom} {how}")
     elif how.startswith("by") and how.endswith(" m"):
-        yield _now(slots, f"let {slots.whom} only move {how.removeprefix('by ')}")
+        yield now(slots, f"let {slots.whom} only move {how.removeprefix('by ')}")
     elif how == "halfway":
-        yield _now(slots, f"let {slots.whom} go half the way")
+        yield now(slots, f"let {slots.whom} go half the way")
 
 
 def _how_far(slots: Slots) -> str | None:
@@ -469,9 +462,21 @@ def _how_far(slots: Slots) -> str | None:
     return None
 
 
+_IN_TURN = re.compile(
+    r"\bone (?:after|behind) (?:the )?(?:other|another)\b|\bone by one\b|\bin turn\b|\bstagger\w*|\bcascad\w+|"
+    r"\bafter each other\b"
+)
+
+
 def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
-    if slots.goals or slots.moment.start == "end":
-        return  # as another one does, or how it is at the end
+    if verb == "open" and (order := listed(slots.words, slots.spans, slots.thing)) and len(order) > 1:
+        yield from in_turn(order, slots)
+        return
+    if verb == "open" and (together := in_step(slots)) is not None:
+        yield together
+        return
+    if slots.goals or slots.moment.start == "end" or _IN_TURN.search(" ".join(slots.words)):
+        return  # as another one does, or how it is at the end, or one after the other
     if _TOO.search(" ".join(slots.words)) and not slots.told:
         return  # by how much is not told
     by = slots.one("s")
@@ -480,14 +485,14 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     elif by is not None:
         sign = _sign(slots)
         if sign is not None and not slots.told:
-            yield Wanted(pace(_whose(slots), "later", seconds=sign * by.value), Moment(), None)
+            yield Wanted(pace(whose_of(slots), "later", seconds=sign * by.value), Moment(), None)
         elif slots.happening is not None and slots.moment.empty:
-            yield _now(slots, f"{verb} {slots.whom}", start=by.value)
+            yield now(slots, f"{verb} {slots.whom}", start=by.value)
         return
     how = _how_far(slots) if slots.amounts else None
     moment = slots.moment if slots.moment.lasting is None else replace(slots.moment, taken=True)
     command = f"{verb} {slots.whom}" if how is None or verb == "close" else f"open {slots.whom} {how}"
-    yield Wanted(command, _plainly(moment), slots.happening)
+    yield Wanted(command, plainly(moment), slots.happening)
 
 
 # -- one after the other -----------------------------------------------------------------------------------------------
@@ -508,16 +513,31 @@ _NO_ORDER = re.compile(
 def _order(slots: Slots) -> Iterator[Wanted]:
     order = listed(slots.words, slots.spans, slots.thing) or _listed(slots)
     slots.pass_goals()
-    if slots.told:
+    if order and all(is_opened(query.text) for query in order) and not all(map(slots.moves, order)):
+        yield from in_turn(order, slots)
+        return
+    gap = _gap(slots)
+    if slots.told and (gap is None or slots.moment.start is not None or slots.happening is not None):
         return
     if order:
-        yield Wanted(in_order(order), Moment(), None)
+        yield Wanted(in_order(order, gap), Moment(), None)
     elif len(slots.names) == len(slots.goals) == 1 and _AFTER_IT.search(slots.rest):
         other = slots.goals[0]
         after = During(state="moving", of=other.query, part="after")
-        yield Wanted(pace(_whose(slots), "begin"), Moment(), Happening(after, f"after {other.name}"))
+        yield Wanted(pace(whose_of(slots), "begin"), Moment(), Happening(after, f"after {other.name}"))
     elif slots.tell(_REVERSED) and len(slots.names) == 1 and not slots.goals:
         yield Wanted(f"let {slots.names[0]} move in reverse order", Moment(), None)
+
+
+_BETWEEN = re.compile(r"\b(?:between|apart|gaps?|intervals?|distance|spaced|stagger\w*|each|delay)\b")
+
+
+def _gap(slots: Slots) -> float | None:
+    """The seconds from one thing of an order to the next; None if they are not told."""
+    if _BETWEEN.search(" ".join(slots.words)) is None:
+        return None
+    seconds = slots.one("s")
+    return seconds.value if seconds is not None else slots.moment.lasting
 
 
 def _listed(slots: Slots) -> tuple[Query, ...]:
@@ -543,12 +563,19 @@ def _place_of(name: str, slots: Slots) -> int:
 
 
 def _together(slots: Slots) -> Iterator[Wanted]:
+    if (step := in_step(slots)) is not None:
+        yield step
+        return
+    if not slots.moves(slots.queries[0]) and slots.goals:
+        yield from _move(slots)
+        return
     who = [*slots.names, *(goal.name for goal in slots.goals)]
     slots.pass_goals()
     whose = slots.queries[0]
-    paced = slots.moment.slowly or slots.moment.quickly or slots.tell(_SLOWER) or slots.tell(_HASTE)
-    if slots.happening is None and not paced and (len(who) > 1 or whose.pick == "all" or slots.names[0].endswith("s")):
-        yield Wanted(f"let {' and '.join(who)} start at the same time", _plainly(slots.moment), None)
+    hasty = slots.moment.slowly or slots.moment.quickly or slots.tell(_SLOWER) or slots.tell(_HASTE)
+    several = len(who) > 1 or whose.pick == "all" or slots.names[0].endswith("s")
+    if not hasty and several and (slots.happening is None or slots.happening.until is None):
+        yield Wanted(f"let {' and '.join(who)} start at the same time", plainly(slots.moment), slots.happening)
 
 
 _KINDS: dict[str, Callable[[Slots], Iterator[Wanted]]] = {

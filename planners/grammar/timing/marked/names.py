@@ -32,14 +32,14 @@ _LONGEST = 5  # words of a name
 _UNKNOWN = 3  # words of a name with "the" whose noun is not known
 _ONE = re.compile(
     r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b"
-    r"(?! (?:and|full|whole|half|third|quarter|seconds?|secs?|s|m|cm|met(?:re|er)s?|times?|turns?|by)\b)"
+    r"(?! (?:and a (?:half|quarter)|full|whole|half|third|quarter|seconds?|secs?|s|m|cm|met(?:re|er)s?|times?|turns?|by)\b)"
 )
 _RANKED = re.compile(  # "from when the first book falls until the last one is down"
     r"\bthe (?:first|last|second|third) (?P<noun>[a-z]+)\b.*\bthe (?:first|last|second|third) (?P<one>one)\b"
 )
 _RANKED_ALONE = re.compile(  # "until the last has landed"
-    r"\bthe (?P<rank>first|last)(?= (?:has|have|is|'s|lands?|falls?|hits?|stops?|drops?|comes?|goes|opens?|starts?|sets|"
-    r"begins?|leaves)\b)"
+    r"\bthe (?P<rank>first|last)(?= (?:has|have|is|'s|lands?|falls?|hits?|stops?|drops?|comes?|goes|opens?|starts?|"
+    r"sets|begins?|leaves)\b)"
 )
 
 

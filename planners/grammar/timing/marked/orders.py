@@ -6,10 +6,11 @@ from collections.abc import Iterator, Sequence
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
+from .....gaussians.world.words import singular
 from ...learned.marks import Span
 from ...learned.seen import hues
 from ...tagging.words import bag
-from ...vocabulary.nouns import is_known
+from ...vocabulary.nouns import is_known, is_opened
 from ..command import Command
 from ..manner import Thing
 from ..verbs import SENSES, has_form
@@ -20,11 +21,16 @@ _MIDDLE = re.compile(r"\b(?:middle|second|between)\b")
 _LATER = re.compile(r"\b(?:after|following|behind)\b")
 _SOONER = re.compile(r"\b(?:before|ahead of|prior to)\b")
 _NEXT_TO_IT = re.compile(r"\b(?:before|after) (?:it|that|both|them|the others?)\b")
-_TOLD = re.compile(r"\b(?:order|then|next|followed)\b")
+_TOLD = re.compile(
+    r"\b(?:order|sequence|then|next|followed|one after the other|one by one|in turn|cascad\w+|stagger\w*)\b"
+)
 _TELLS = re.compile(r"\b(?:notice[sd]?|saw|see|sees|think|thought|said|says?|know|watched|heard)\b")
 _CONTRARY = re.compile(r"\b(?:instead of|rather than|not)\b")
 _JOINTS = re.compile(r"[,.;:]|\b(?:and|then|but|with)\b")
 _BEHIND = bag("and then one first last next before after comes goes falls drops at in to")
+_RANKS_OF_PLACE = bag("top middle bottom upper lower upmost lowest topmost highest")  # among things of a kind
+_ONE_BY_ONE = re.compile(r"\bone (?:after|behind|following) (?:the )?(?:other|another|next)\b|\bafter each other\b")
+_SINGLE = ("one", "highest", "middle", "lowest")
 _MOST = 8  # things in an order
 
 
@@ -39,11 +45,12 @@ def listed(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[Q
     named = list(_named(words, spans, thing))
     if not 1 < len(named) <= _MOST:
         return ()
-    gaps = [" ".join(words[a:b]) for a, b in _gaps([(start, stop) for _, start, stop in named], len(words))]
+    places = [(start, stop) for _, start, stop in named]
+    gaps = [_ONE_BY_ONE.sub("in turn", " ".join(words[a:b])) for a, b in _gaps(places, len(words))]
     between = gaps[1:-1]
     if any(map(_CONTRARY.search, gaps)) or any(map(_TELLS.search, gaps)) or any(_is_past(gap) for gap in gaps):
         return ()
-    if _NEXT_TO_IT.search(" ".join(words)):
+    if _NEXT_TO_IT.search(_ONE_BY_ONE.sub("in turn", " ".join(words))):
         return ()
     if any(pattern.search(gap) for gap in (gaps[0], gaps[-1]) for pattern in (_LATER, _SOONER)):
         return ()  # "the green one before both"
@@ -55,8 +62,8 @@ def listed(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[Q
     if "middle" in ranks and not {"first", "last"} & set(ranks):
         return ()
     told = any(ranks) or any(_TOLD.search(gap) or _SOONER.search(gap) for gap in gaps)
-    places = {None: 1, "middle": 1, "first": 0, "last": 2}
-    order = sorted(range(len(named)), key=lambda at: (places[ranks[at]], at))
+    place = {None: 1, "middle": 1, "first": 0, "last": 2}
+    order = sorted(range(len(named)), key=lambda at: (place[ranks[at]], at))
     return tuple(queries[at] for at in order) if told else ()
 
 
@@ -71,11 +78,12 @@ def _is_past(said: str) -> bool:
     )
 
 
-def in_order(things: Sequence[Query]) -> Command:
-    """The command that lets things begin to move in an order."""
+def in_order(things: Sequence[Query], gap: float | None = None) -> Command:
+    """The command that lets things begin to move in an order, so many seconds after each other if that is told."""
     both = things[0].model_copy(update={"also": (things[1],)})
     target = both if len(things) == 2 and all(query.text for query in things) else Query(moving=True, pick="all")
-    return Command(({"op": "order", "target": target, "order": "listed", "first": tuple(things)},))
+    fields = {"op": "order", "target": target, "order": "listed", "first": tuple(things)}
+    return Command(({**fields, "gap": gap} if gap is not None else fields,))
 
 
 def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterator[tuple[Query, int, int]]:
@@ -83,18 +91,23 @@ def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterato
     marks = [(start, stop) for tag, start, stop in spans if tag in ("x", "y")]
     held = {at for start, stop in marks for at in range(start, stop)}
     marks += [(at - 1, at + 1) for at in range(1, len(words)) if at not in held and _is_bare_color(words, at)]
+    if noun := next((noun for noun in map(singular, words) if is_opened(noun) and f"{noun}s" in words), ""):
+        whole = [mark for mark in marks if not set(words[mark[0] : mark[1]]) <= _RANKS_OF_PLACE | {"the", "one"}]
+        places = ((at, at + 1) for at, word in enumerate(words) if word in _RANKS_OF_PLACE)
+        marks = whole + [own for own in places if not any(start <= own[0] < stop for start, stop in whole)]
+        words = [f"the {word} {noun}" if word in _RANKS_OF_PLACE else word for word in words]
     marks.sort()
     found = [(thing(" ".join(words[start:stop])), start, stop) for start, stop in marks]
     nouns = [query.text for query, _, _ in found if query is not None and query.text not in ("", "one", "ones")]
     seen = list[Query]()
     for query, start, stop in found:
-        bare = [word for word in words[start:stop] if word not in ("the", "one")]
+        bare = [word for word in " ".join(words[start:stop]).split() if word not in ("the", "one")]
         if query is not None and not is_known(bare[-1]) and bare[0] in hues():
             bare = bare[:1]  # "the red concludes"
         if bare and set(bare) <= hues():
             hue = " ".join(bare)
             query = Query(text=nouns[0] if nouns else "", colors=(hue,), moving=None if nouns else True)
-        if query is None or query.last or query.pick != "one" or query in seen:
+        if query is None or query.last or query.pick not in _SINGLE or query in seen:
             continue
         seen.append(query)
         yield query, start, stop

@@ -16,7 +16,9 @@ _BRIEFLY = (
 )
 _GONE = r"(?:has|have|had|is|are|'s|was) (?:passed|elapsed|gone(?: by)?|over|up|past|out|in)"
 _WAYS = r"movement|motion|slide|climb|run|ride|trip|roll|walk|drop|fall|way|journey|swing|turn|descent|opening|closing"
-_LENGTHS = r"(?:travel(?:l?ing)?|run(?:ning)?|transit) ?time|duration|time|length|dur|total|travel|lasting|taking|long|trip time"
+_LENGTHS = (
+    r"(?:travel(?:l?ing)?|run(?:ning)?|transit|trip) ?time|duration|time|length|dur|total|travel|lasting|taking|long"
+)
 _ALWAYS, _TO_THE_END = "the whole time", "until the end"
 _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what they are put as
     ("", rf"\bits (?=(?:{_STATES}|(?!opening|closing|turning|landing|ending)[a-z]+ing)\b)", "it is "),
@@ -40,7 +42,8 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ),
     (
         "for",
-        rf"(?<=s) (?:for (?:it|that)|of (?:travel|rest|silence|pause|waiting|stillness)|(?:{_LENGTHS}|pause|break|rest))(?: .*)?$",
+        rf"(?<=[sd]) (?:for (?:it|that)|of (?:travel|rest|silence|pause|waiting|stillness)|{_LENGTHS}|pause|break|"
+        r"rest)(?: .*)?$",
         "",
     ),
     ("for", rf"^of (?={_SECONDS})", ""),

@@ -12,7 +12,7 @@ from .....gaussians.language.query.query import Query
 from ...learned.marks import Span
 from ...learned.seen import hues
 from ...tagging.words import bag
-from ...vocabulary.nouns import is_known
+from ...vocabulary.nouns import is_known, is_opened
 from ...vocabulary.quantities import NUMBERS
 from ..happenings import IT, Happening
 from ..manner import Thing
@@ -302,12 +302,15 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
         for name, start, stop in names
     ]
     told = [(query, start, stop) for query, start, stop in meant if query is not None and not query.last]
+    if kind == "open" and _IN_ORDER & set(words) and all(is_opened(query.text) for query, _, _ in told):
+        return False
     joints = _JOINTS | _AGAIN if kind in _LOOKS else _JOINTS
     return any(
         one != other and not set(words[stop:start]) <= joints for (one, _, stop), (other, start, _) in pairwise(told)
     )
 
 
+_IN_ORDER = bag("first then next last finally lastly followed")
 _JOINTS = bag("and , or nor neither plus & both the as well with along")
 _AGAIN = bag("lose remove delete hide take get rid of away out too also then drop bin scrap ditch to see")  # of a look
 _EVERYTHING = re.compile(r"^(?:everything|all) (?:else|but)\b|\b(?:the rest|the others?)$")

@@ -21,9 +21,10 @@ from .plain import loosely, plain
 TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
 LEADING = re.compile(
     r"^(?:(?:,|and|then|but|just|only|right|exactly|about|around|starting|beginning|starts?|begins?|leaves?|leaving|"
-    r"departs?|departing|(?:sets?|setting|heads?|heading|kicks?|kicking|takes?|taking|goes|going|pulls?|pulling|moves?|moving) "
-    r"(?:off|out|away)|departure|go(?:es|ing)?|finish(?:ed|ing)?|done|ending|end|arriving|arrives?|being|be|there|taking|takes?|lasting|"
-    r"lasts?) (?=\w))*"
+    r"departs?|departing|departure|"
+    r"(?:sets?|setting|heads?|heading|kicks?|kicking|takes?|taking|goes|going|pulls?|pulling|moves?|moving) "
+    r"(?:off|out|away)|go(?:es|ing)?|finish(?:ed|ing)?|done|ending|end|arriving|arrives?|being|be|there|taking|takes?|"
+    r"lasting|lasts?) (?=\w))*"
 )
 UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
 LASTS = re.compile(r"^(?:and )?(?:tak(?:es?|ing)|last(?:s|ing)?)\b")  # how long it is said to take

@@ -1,0 +1,87 @@
+"""Things that open one after the other, or as another one does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from .....gaussians import late_re as re
+from .....gaussians.language.query.query import Query
+from .....tools.when import During
+from ...vocabulary.nouns import is_opened
+from ..command import Command, pace
+from ..happenings import Happening
+from ..moments import Moment
+from .slots import Slots
+from .wanted import Wanted
+
+_GAP = re.compile(r"\b(?:between|apart|gaps?|intervals?|distance|spaced|stagger\w*|each|after|later|behind)\b")
+_AS_ONE = re.compile(
+    r"\b(?:same|together|with|as|like|sync\w*|step|unison|tandem|parallel|copy|copies|copying|mirror\w*|match\w*|"
+    r"accompan\w+|follow\w*|alongside|simultaneous\w*|join\w*|both|does)\b"
+)
+_STAYS = re.compile(
+    r"\b(?:stays?|remains?|leave|left|keeps?|holds?) (?:\w+ )?(?:open|out)\b|\bnot (?:close|shut|go back)\b"
+)
+_OPENS_ALONE = re.compile(r"\b(?:open|opens|opening|slides? out|comes? out|pops? out)\b")
+_CLOSES = re.compile(
+    r"\b(?:clos\w+|shut\w*|back|in again|both|everything|motions?|movements?|moves?|copy|copies|copying|mirror\w*|"
+    r"accompan\w+|does|together|sync\w*|step|tandem|same times?)\b"
+)
+
+
+def _opened(query: Query, moment: Moment, happening: Happening | None, change: str = "open", **more: Any) -> Wanted:
+    command = Command(({"op": "articulate", "target": query, "change": change, **more},))
+    return Wanted(command, moment, happening)
+
+
+def in_turn(things: Sequence[Query], slots: Slots) -> Iterator[Wanted]:
+    """Things that open one after the other, in their order: each when the one before is open, or so many seconds after
+    that began; what opens by itself begins then."""
+    if not all(is_opened(query.text) for query in things) or slots.happening is not None:
+        return
+    slots.pass_goals()
+    gap: float | None = None
+    if _GAP.search(" ".join(slots.words)) is not None:
+        seconds = slots.one("s")
+        gap = seconds.value if seconds is not None else slots.moment.lasting
+    start = slots.moment.start
+    steps = list[Wanted]()
+    for at, query in enumerate(things):
+        moves, moment, happening = slots.moves(query), Moment(), None
+        if at:
+            part = During(state="opening", of=things[at - 1], part="after" if gap is None else "from")
+            moment, happening = Moment(start=gap), Happening(part, "after the one before")
+        elif not moves or start is not None:
+            moment = Moment(start=start if start is not None else 0.0)
+        else:
+            continue  # the first one opens when it does
+        steps.append(Wanted(pace(query, "begin"), moment, happening) if moves else _opened(query, moment, happening))
+    if steps:
+        yield replace(steps[0], also=tuple(steps[1:]))
+
+
+def in_step(slots: Slots) -> Wanted | None:
+    """What opens, and closes, when another does: "the middle drawer, in sync with the top one"; None for others."""
+    if len(slots.queries) != 1 or not is_opened(slots.queries[0].text) or slots.moves(slots.queries[0]):
+        return None
+    other: Query | None = None
+    if slots.happening is not None and slots.happening.during.part == "while" and slots.moment.empty:
+        other = slots.happening.during.of
+    elif not slots.told and len(slots.goals) == 1 and _AS_ONE.search(slots.rest):
+        other = slots.goals[0].query
+        slots.pass_goals()
+    if other is None or not is_opened(other.text) or not slots.moves(other):
+        return None
+    query, words = slots.queries[0], " ".join(slots.words)
+    opening, closing = (
+        Happening(During(state=state, of=other), f"as it is {state}") for state in ("opening", "closing")
+    )
+    length = slots.one("m")
+    opened = _opened(query, Moment(), opening)
+    if length is not None:
+        opened = _opened(query, Moment(), opening, distance={"value": length.value})
+    if _STAYS.search(words) or not _CLOSES.search(_OPENS_ALONE.sub(" ", words)):
+        return opened
+    return replace(opened, also=(_opened(query, Moment(), closing, "close"),))
