@@ -437,7 +437,7 @@ class Session:
 
     def _done_otherwise(self, plan: EditPlan) -> Result | None:
         """The result of what the instruction of a plan that failed most likely asks for; None if that fails, too."""
-        other, question = self._planner.otherwise(plan), self.question
+        other, question = self._planner.otherwise(plan) if plan.ok else None, self.question
         if other is None:
             return None
         try:

@@ -224,7 +224,8 @@ def _moves(expect: dict[str, Any], name: str, effect: _Effect) -> str:
     """What is wrong with the motion of a thing."""
     course, earlier = effect.course(name), effect.course(name, before=True)
     spans = _spans(course)
-    stays = expect.get("angle_deg") == 0 and expect.get("start") is None  # "keep it shut"
+    rests = expect.get("frozen", [0])[0] > 0 or expect.get("stop") is not None  # it opens before it closes
+    stays = expect.get("angle_deg") == 0 and expect.get("start") is None and not rests  # "keep it shut"
     if expect.get("factor") == 0 or stays:
         return f"it moves from {spans[0][0]:.2f} s" if spans else ""
     if not spans:
@@ -244,7 +245,7 @@ def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list
     slowed = max(1.0, 1 / (expect.get("factor") or 1.0))  # what begins slowly is seen to move so much later
     if expect.get("start") is not None and not closes and abs(start - expect["start"]) > slowed * _near(expect):
         return f"it begins at {start:.2f} s"
-    if closes and start < expect["start"] - _near(expect):
+    if closes and start < (expect.get("start") or 0.0) - _near(expect):
         return f"it closes at {start:.2f} s"
     returns = expect.get("distance_m") is not None and expect["kind"] == "articulate"
     stops = {spans[0][1], spans[-1][1]} if returns else {spans[-1][1]}  # until it is out, or back in
@@ -253,6 +254,8 @@ def _timing(expect: dict[str, Any], course: Course, earlier: Course, spans: list
     if "starts_after_s" in expect and start < expect["starts_after_s"]:
         return f"it begins at {start:.2f} s"
     later = closes or (expect["kind"] == "path" and start > spans[0][0])  # it goes on from another movement
+    if moved and expect.get("start") is None:  # how long it takes from where its own movement ends
+        start, later = spans[-1][0], True
     taken = spans[-1][1] - (start if later else spans[0][0])
     if "duration_s" in expect and abs(taken - expect["duration_s"]) > 0.4:
         return f"it takes {taken:.2f} s"
@@ -315,8 +318,9 @@ def _turning(expect: dict[str, Any], course: Course, earlier: Course, spans: lis
         angle = math.degrees(float(course.angles(np.array([effect.end]))[0]))
         return f"it is open by {angle:.0f} degrees" if abs(angle - expect["angle_deg"]) > 5 else ""
     if "turn_deg" in expect:
-        turned = sum(math.degrees(events.yawed(course, s)) for s in spans)
-        return f"it turns by {turned:.0f} degrees" if abs(turned - expect["turn_deg"]) > 20 else ""
+        turned, own = (sum(math.degrees(events.yawed(c, s)) for s in _spans(c)) for c in (course, earlier))
+        misses = min(abs(turned - expect["turn_deg"]), abs(abs(turned - own) - expect["turn_deg"]))  # in all, or anew
+        return f"it turns by {turned:.0f} degrees" if misses > 20 else ""
     return ""
 
 

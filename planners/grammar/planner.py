@@ -268,6 +268,8 @@ def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _
         plainly = outcome.ops[0]["op"] == "delete" and outcome.ops[0]["target"].text != "everything"
         if plainly and judge.is_named_beside(cleaned, outcome.ops[0]["target"]):
             raise Refusal("what is to be removed is not understood", cleaned[:200])
+    if judge.misses_a_thing(cleaned, outcome.ops) and (supposed := judge.likeliest(cleaned)):
+        return outcome if judge.misses_a_thing(cleaned, supposed) else _guessed(supposed)
     if judge.is_of_another_kind(cleaned, outcome.ops):
         if supposed := judge.likeliest(cleaned):
             return _guessed(supposed)

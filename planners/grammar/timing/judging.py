@@ -25,10 +25,11 @@ from .marked.guards import is_ruled_out, says_more
 from .marked.kinds import COURSES, LEAST, STATIC, SURE, is_changed_by, is_clear, is_done_by, likely, marked
 from .marked.lost import leaves_out
 from .marked.names import MOVING, with_nouns
+from .marked.orders import each_in_time
 from .marked.slots import ALL_MOVING, Slots, asks_more, slots
 from .marked.times import TIMES
 from .marked.wanted import Wanted
-from .marked.wished import CERTAINLY, is_wished
+from .marked.wished import CERTAINLY, SURELY, is_wished
 from .reading import CLAUSE, TIMELESS, TimeReader
 from .whens import of_one_movement
 from .wording import LONG_WORDS, in_words, spelt_out, spelt_right
@@ -52,6 +53,8 @@ _SWITCHED_OFF = re.compile(r"\b(?:turn|switch|shut)(?:ed|s)? (?:\w+ ){0,4}off\b"
 _PLACED = re.compile(r" (?:beside|on|near|by|in|at|under|behind|next to|above|with|of|from) ")
 _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
+_EACH = {"order": "begin", "begin": "begin", "together": "begin", "open": "open", "close": "close", "hide": "hide"}
+_SEEN = ("delete", "opacity", "recolor")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 MARKED = 0.5  # probability of a kind from which what the marks hold is its command
 _LONGEST = 45  # words of an instruction with one wish
@@ -65,6 +68,17 @@ _EDGE = re.compile(r"\b(?:start|beginning|end|finish|first frame|last frame)\b")
 _AS_WELL = re.compile(
     r"\b(?:and|but|yet) (?:\w+ )?(?:also|meanwhile)\b|\bmeanwhile\b|, yet \w+ (?:must|should|has to)\b"
 )
+_SHUT, _OUT = (
+    r"(?:shut|closed|pushed in)",
+    r"(?:open|opened|extended|out|pulled out|ajar|wide)",
+)
+_BOTH_WAYS = re.compile(  # "completely shut and simultaneously extended"
+    rf"\b{_SHUT} (?:and|but|yet) (?:simultaneously|also|at the same time|at once|both|likewise) {_OUT}\b|"
+    rf"\b{_OUT} (?:and|but|yet) (?:simultaneously|also|at the same time|at once|both|likewise) {_SHUT}\b|"
+    rf"\bboth (?:\w+ )?(?:{_SHUT} and (?:\w+ )?{_OUT}|{_OUT} and (?:\w+ )?{_SHUT})\b|"
+    rf"\b(?:{_SHUT} and (?:\w+ )?{_OUT}|{_OUT} and (?:\w+ )?{_SHUT}),? (?:\w+ ){{0,3}}"
+    r"(?:at the same time|simultaneously|at once)\b"
+)
 _AT_REST = r"(?:still|shut|closed|motionless|not move|not be moving|stays? put|perfectly still|at rest)"
 _MOVES = r"(?:spin\w*|mov(?:e|es|ing)|roll\w*|walk\w*|turn\w*|open\w*|fall\w*|run\w*|rotat\w*)"
 _BOTH_AT_ONCE = re.compile(
@@ -72,6 +86,9 @@ _BOTH_AT_ONCE = re.compile(
     rf"simultaneously|all at once)\b|"
     rf"\b{_AT_REST}\b.{{0,30}}\b(?:and|but|yet|while)\b.{{0,30}}\b{_MOVES}\b.{{0,40}}\b(?:at the same time|"
     rf"simultaneously|all at once)\b"
+)
+_AT_A_RATE = re.compile(
+    r"\b(?:once|twice|thrice|turns?|rounds?|revolutions?) (?:in|every|per|each) (?!a circle)", re.IGNORECASE
 )
 _EXCHANGES = re.compile(r"\b(?:swap|exchange|trade|switch)\b.*\bcolou?rs?\b", re.IGNORECASE)
 
@@ -108,6 +125,9 @@ class Judge:
             kind, chance = next(iter(likely(cleaned, still)), ("", 0.0))
             if chance < least:
                 return None
+            if kind in _EACH and (parts := each_in_time(wording, spans, self._reader.thing)):
+                own = [self._made_of(_EACH[kind], SURELY, words, marks) for words, marks in parts]
+                return None if None in own else tuple(op for ops in own for op in ops or ())
             if (found := self._made_of(kind, chance, wording, spans)) is not None:
                 return found
         return None
@@ -165,6 +185,8 @@ class Judge:
         """Whether something is to be so all the time, and otherwise at a time or as well: "keep it shut throughout, and
         have it open at 2 s"."""
         said = with_nouns(in_words(cleaned))
+        if _BOTH_WAYS.search(said) is not None:
+            return True
         if _ALWAYS.search(said) is None:
             return _BOTH_AT_ONCE.search(said) is not None
         words = said.split(" ")
@@ -200,6 +222,8 @@ class Judge:
         Args:
             least: probability from which a kind counts.
         """
+        if len(ops) > 1 and ops[-1]["op"] == "spin" and ops[-1]["target"] == IT and _is_of_opened(ops[0]):
+            return True  # "can the door shut again at 3.5? make it quick, half a second"
         alike = len({op["op"] for op in ops}) == 1 and (len(ops) == 1 or ops[0]["op"] in ("recolor", "move"))
         when = (ops[0].get("when") if ops else None) or When()
         if not alike or ops[0]["op"] not in _OF_A_KIND or when.gradual or when.every is not None:
@@ -226,6 +250,8 @@ class Judge:
             return False
         if ops[0]["op"] == "scale" and not _SPEEDS.search(cleaned):
             return False  # "too slow. Double it" makes nothing larger
+        if ops[0]["op"] == "rotate" and kind == "spin" and _AT_A_RATE.search(cleaned):
+            return chance >= max(least, SURE)  # "turn slowly round, once in four seconds"
         if ops[0]["op"] == "rotate" and not (self._moves is not None and self._moves(ops[0]["target"])):
             return False  # "turn the chair round to face the other way"
         if told is None and (kind not in _PACED or op == "articulate"):
@@ -251,6 +277,17 @@ class Judge:
             elif query.text and not query.last:
                 others.append(query.text != target)
         return bool(others) and all(others)
+
+    def misses_a_thing(self, cleaned: str, ops: Sequence[Fields]) -> bool:
+        """Whether a look or a removal is of one thing only, and the marks of an instruction name several: "rip out the
+        shelf, and the lamp can go with it"."""
+        if not ops or any(op["op"] not in _SEEN for op in ops):
+            return False
+        words = with_nouns(in_words(cleaned)).split(" ")
+        named = (self._reader.thing(" ".join(words[start:stop])) for tag, start, stop in marked(words) if tag == "x")
+        things = {query.text.split(" ")[-1] for query in named if query is not None and query.text and not query.last}
+        held = {word for op in ops for word in re.findall(r"[a-z]+", str(op.get("target")))}
+        return len(things) > 1 and bool(things & held) and not things <= held
 
     def is_named_beside(self, cleaned: str, target: Query) -> bool:
         """Whether the words for a thing only tell where or when something is to be done."""
@@ -316,6 +353,10 @@ class Judge:
             return False
         spans = (words[start:stop] for tag, start, stop in marked(words) if tag in TIMES)
         return any(CLAUSE.match(" ".join(said)) and any(map(is_known, said)) for said in spans)
+
+
+def _is_of_opened(op: Fields) -> bool:
+    return isinstance(op.get("target"), Query) and is_opened(op["target"].text)
 
 
 def _ends_told(when: When) -> int:

@@ -29,6 +29,7 @@ _SAME = re.compile(  # words by which something stays as it is
     r"normal|hitherto|(?:is|are|was|were|be) fine|no change|nothing (?:else|about)|as (?:is|now|it|they|he|she|"
     r"before|"
     r"specified|planned|ever|in the|at present|usual|today|fast|long|quick|slow)|like (?:now|before|it|they|always)|"
+    r"always|(?:it|they|he|she) always|final|"
     r"when (?:it|they|he|she) \w+|(?:it|they|he|she) (?:does|do|has|have) now|(?:keep|stay|remain|retain|leav)\w*|"
     r"kept|left|without \w+ing|"
     r"not (?:(?:to|being|is|are|be) )*(?:chang|alter|touch|affect|mov|modif|retim|delay)\w*)\b"
@@ -42,13 +43,17 @@ _SUBJECTS = {  # what stays, and the words for it
     "start": r"start\w*|begin\w*|onset|setting off|sets? off|departure|leav(?:es|ing)|kick\w*|set(?:ting)? out|"
     r"letting go|take ?off|(?:tips?|takes?|goes|go|heads?) off|comes? out|falls?|drops?|opens?|timings?|times|"
     r"schedule|moment|cue|entrance|slots?",
-    "stop": r"ends?|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|arriv\w*|"
+    "stop": r"ends?|until|till|out ?point|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|arriv\w*|"
     r"(?<!set )(?<!sets )(?<!tips )(?<!takes )(?<!goes )(?<!kicks )(?<!setting )off|done|"
     r"timings?|times|schedule|slots?",
     "speed": r"speeds?|pace|rate|tempo|velocity|rpm|fast|quick|slow|takes?|taking|duration|long|length|last|lasting|"
     r"cycle time|turns? a second",
 }
 _SAID = {name: re.compile(rf"\b(?:{words})\b") for name, words in _SUBJECTS.items()}
+_AS_EVER = re.compile(  # "then back on duty till 4 like always"
+    r"\b(?:stop\w*|end\w*|finish\w*|until|till|off)\b.*\d.*\b(?:like|as) "
+    r"(?:always|ever|now|before|usual|it (?:does|did))\b"
+)
 _STILL = re.compile(  # "..., but it should still stop at four seconds", "? It should still be off at 4 s"
     r" (?:[,.?;!] )?(?:and |but )*(?:(?:it|he|she|they) )?(?:(?:should|must|has to|is to|needs to|to) )*"
     r"still (?:has to )?"
@@ -86,7 +91,8 @@ def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
     words = in_words(cleaned).split(" ")
     if _SAME.search(" ".join(words)) is None:
         return cleaned, ()
-    told = ((a, b, " ".join(words[a:b]).strip(" ,.;:")) for tag, a, b in marked(words) if tag == TAG)
+    tagged = ((tag, a, b, " ".join(words[a:b]).strip(" ,.;:")) for tag, a, b in marked(words))
+    told = ((a, b, said) for tag, a, b, said in tagged if tag == TAG or (tag == "not" and _AS_EVER.search(said)))
     spans = [(a, b) for a, b, said in told if _SAME.search(said) and not _A_COMMAND.search(said)]
     if not spans and (found := _STILL.search(said := " ".join(words))) is not None:
         spans = [(said[: found.start()].count(" ") + 1, len(words))]
@@ -120,14 +126,14 @@ def held(ops: Sequence[Fields], kept: Sequence[Kept], movement: MovementOf) -> t
         Refusal: they change just what is to stay.
     """
     for own in kept:
-        ops = tuple(_held(op, own, movement) for op in ops)
+        ops = tuple(made for op in ops for made in _held(op, own, movement))
     return tuple(ops)
 
 
-def _held(op: Fields, kept: Kept, movement: MovementOf) -> Fields:
+def _held(op: Fields, kept: Kept, movement: MovementOf) -> tuple[Fields, ...]:
     change = op.get("change") if op["op"] == "pace" else None
     if change is None or not kept.facts:
-        return op
+        return (op,)
     moves = movement(op["target"])
     start = kept.start if kept.start is not None or moves is None else moves.start
     stop = kept.stop if kept.stop is not None or moves is None else moves.stop
@@ -136,12 +142,15 @@ def _held(op: Fields, kept: Kept, movement: MovementOf) -> Fields:
         made = _faster(op, kept, moves, stop)
     elif change in ("begin", "later"):
         made = _begun(op, kept, start, stop)
-    elif change == "stop" and "stop" in kept.facts and not _ends(op):
-        made = None  # it stops early
+    elif change == "stop" and "stop" in kept.facts:
+        if not _ends(op):
+            made = None  # it stops early
+        elif moves is not None and moves.turns and stop is not None:  # it runs no longer for its rest
+            return op, {"op": "pace", "target": op["target"], "change": "stop", "when": When(start=round(stop, 4))}
     if made is None:
         reason = "it asks to change what it says is to stay as it is; leave one of the two out"
         raise Refusal(reason, kept.said, verdict="impossible")
-    return made
+    return (made,)
 
 
 def _faster(op: Fields, kept: Kept, moves: Movement | None, stop: float | None) -> Fields | None:

@@ -248,7 +248,10 @@ def _return(slots: Slots) -> Iterator[Wanted]:
     if slots.goals and not slots.told:
         return  # "roll to the wall and come back"
     slots.pass_goals()
-    yield paced(slots, "return")
+    moment = plainly(slots.moment)
+    if moment.always and any(tag == "to" for tag, _, _ in slots.spans):
+        moment = replace(moment, stop="end", always=False)  # it is back by the end
+    yield paced(slots, "return", moment)
 
 
 # -- when and how fast -------------------------------------------------------------------------------------------------

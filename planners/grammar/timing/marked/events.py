@@ -48,10 +48,16 @@ _STATES = {
     "falls": _begins("falling"), "falling": _State("falling"), "lands": _ends("falling"),
     "turns": _begins("turning"), "turning": _State("turning"), "turned": _ends("turning"),
     "reaches": _begins("touches"), "leaves": _ends("on"), "on": _State("on"),
-    "first_of": _begins("moving"), "last_of": _ends("moving"),
+    "first_of": _begins("moving"), "last_of": _ends("moving"), "in_step": _State("moving", since="while"),
 }  # fmt: skip
 _RANKS = {"first_of": "first", "last_of": "last"}
-_ITS_OWN = ("film_start", "film_end", "first_leg", "last_leg")  # kinds that no rule reads, or takes for something else
+_ITS_OWN = (
+    "film_start",
+    "film_end",
+    "first_leg",
+    "last_leg",
+    "in_step",
+)  # kinds that no rule reads, or takes for something else
 _SURELY = 0.7  # probability from which they go before what rules read
 
 

@@ -13,7 +13,9 @@ from .names import MOVING
 from .slots import Slots
 
 _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
-_THERE_AND_BACK = re.compile(r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and\b")
+_THERE_AND_BACK = re.compile(
+    r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and (?!(?:be |is |arrive|get|reach|stop|stay|done|there))"
+)
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
 _PROHIBITED = re.compile(
@@ -23,6 +25,9 @@ _UNWANTED = re.compile(r"\b(?:nobody|no one|none of us) (?:wants?|needs?|asked|a
 _OTHER_EDITS = re.compile(
     r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b"
 )
+_ADDED = re.compile(r"\b(?:add|insert)\b")  # "insert a pause", "add a half turn at the end"
+_FOR_ANOTHER = re.compile(r"\b(?:swap|exchange|trade|replace)\b")  # one colour for another
+_ADDABLE = ("pause", "spin", "repeat", "halt")
 _LIT = re.compile(r"\b(?:off|out|on)$")
 _A_LIGHT = re.compile(r"\b(?:lamps?|lights?|lanterns?|candles?|bulbs?)$")
 _EXCEPT = re.compile(r"(?<!\bat )\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
@@ -52,7 +57,10 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
         return True  # "everything but the fan", "take it apart"
     if (_PROHIBITED if kind in STATIC else _REMOVALS).search(asked) or _UNWANTED.search(f"{idle} {asked}"):
         return True
-    if _OTHER_EDITS.search(asked) and kind != "order":
+    shades = sum(tag == "as" for tag, _, _ in slots.spans)
+    if kind == "recolor" and shades > 1:
+        asked = _FOR_ANOTHER.sub("make", asked)
+    if _OTHER_EDITS.search(_ADDED.sub("make", asked) if kind in _ADDABLE else asked) and kind != "order":
         return True
     if kind in ("reverse", "return") and _THERE_AND_BACK.search(slots.rest):
         return True  # "roll to the wall and come back"

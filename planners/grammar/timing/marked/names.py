@@ -32,7 +32,8 @@ _LONGEST = 5  # words of a name
 _UNKNOWN = 3  # words of a name with "the" whose noun is not known
 _ONE = re.compile(
     r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b"
-    r"(?! (?:and a (?:half|quarter)|full|whole|half|third|quarter|seconds?|secs?|s|m|cm|met(?:re|er)s?|times?|turns?|by)\b)"
+    r"(?! (?:and a (?:half|quarter)|full|whole|half|third|quarter|seconds?|secs?|s|m|cm|met(?:re|er)s?|times?|turns?|"
+    r"by)\b)"
 )
 _RANKED = re.compile(  # "from when the first book falls until the last one is down"
     r"\bthe (?:first|last|second|third) (?P<noun>[a-z]+)\b.*\bthe (?:first|last|second|third) (?P<one>one)\b"

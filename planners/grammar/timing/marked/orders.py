@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
@@ -132,3 +133,33 @@ def _rank(before: str, behind: str) -> str | None:
         if pattern.search(before) or pattern.search(behind):
             return rank
     return None
+
+
+def each_in_time(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> list[tuple[list[str], list[Span]]]:
+    """The parts of an instruction that gives each of several things its own time, "blue at 0.5 s, green at 1.2 s": the
+    words that all have in common, with one thing and its time; none of others."""
+    ordered = sorted(spans, key=lambda span: span[1])
+    pairs = [
+        (own, time) for own, time in pairwise(ordered)
+        if own[0] == "x" and time[0] in ("from", "in") and _BY_NUMBER.search(" ".join(words[time[1] : time[2]]))
+    ]  # fmt: skip
+    times = [span for span in ordered if span[0] in ("from", "in", "to", "for")]
+    if len(pairs) < 2 or len(times) != len(pairs) or not all(_is_named(words[a:b], thing) for (_, a, b), _ in pairs):
+        return []
+    parts = list[tuple[list[str], list[Span]]]()
+    for pair in pairs:
+        left_out = {at for own in pairs if own != pair for _, start, stop in own for at in range(start, stop)}
+        place = {at: new for new, at in enumerate(at for at in range(len(words)) if at not in left_out)}
+        kept = [span for span in ordered if span[1] not in left_out and (span[0] != "x" or span == pair[0])]
+        own_words = [words[at] for at in place]
+        parts.append((own_words, [(tag, place[start], place[stop - 1] + 1) for tag, start, stop in kept]))
+    return parts
+
+
+def _is_named(words: Sequence[str], thing: Thing) -> bool:
+    """Whether words name something: also by its colour alone."""
+    query = thing(" ".join(words))
+    return (query is not None and not query.last) or {word for word in words if word not in ("the", "one")} <= hues()
+
+
+_BY_NUMBER = re.compile(r"^(?:(?:at|from|on|by|t|=) )*(?:second )?(?:\d|one\b|two\b|three\b|four\b|half\b)")

@@ -9,6 +9,7 @@ from itertools import islice, pairwise
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
+from ...learned.events import event_of
 from ...learned.marks import Span
 from ...learned.seen import hues
 from ...tagging.words import bag
@@ -51,7 +52,7 @@ _PLAINER = (  # times in plainer words
     (re.compile(r"\b(?:a|one) second (?=has|is|have)"), "1 seconds "),
     (
         re.compile(
-            r"\b(?:has|have|is|are|'s) (?:\w+ly )?(?:swung|slid|come|gone|been pulled|opened|swinging|pulled|rolled)"
+            r"\b(?:has|have|is|are|'s) (?:\w+ly )?(?:swung|slid|come|gone|been pulled|opened|pulled|rolled)"
             r"(?: (?:fully|wide|right|all the way|completely|wholly))? (?=(?:open|out)\b)"
         ),
         "is fully ",
@@ -191,6 +192,7 @@ class Slots:
             if tag in _IDLE:
                 numbers = ((at, seconds_of(f"{self.words[at]} seconds")) for at in range(start, stop))
                 found |= {at for at, value in numbers if any(abs((value or -9.0) - now) < _NEAR for now in facts)}
+                found |= {at for at in range(start, stop - 1) if tag == "off" and _counts(self.words[at + 1])}
         return found
 
     def unused(self) -> bool:
@@ -239,7 +241,7 @@ def slots(
     amounts = list[Amount]()
     for span in spans:
         if span[0] == "by" and _AT_A_TIME.match(text(span)) is None:
-            if (found := amount(text(span))) is None:
+            if (found := amount(f"{text(span)} around" if kind == "spin" else text(span))) is None:
                 vague = kind in ("speed", "return") and not any(map(_tells_number, text(span).split()))
                 if vague or (kind in ("pause", "halt") and _HALFWAY.search(text(span)) is not None):
                     continue  # "right down"; "halfway" is told by words
@@ -259,7 +261,9 @@ def slots(
     if not names and len(goals) == 1:  # "a coat of paint on the bed"
         names, queries = (goals[0].name,), (goals[0].query,)
     goals = tuple(goal for goal in goals if not goal.query.last and goal.query not in queries)
-    colors = dict.fromkeys(_color(text(span)) for span in spans if span[0] == "as")
+    shades = [span for span in spans if span[0] == "as"]
+    wanted = [span for span in shades if len(shades) == 1 or words[span[1] - 1] not in _FORMER]
+    colors = dict.fromkeys(_color(text(span)) for span in wanted)
     marked = {at for _, start, stop in spans for at in range(start, stop)}
     left = [word for at, word in enumerate(words) if at not in marked]
     if len(colors) > (kind == "recolor") or any(_is_number(word, then) for word, then in pairwise([*left, ""])):
@@ -288,7 +292,7 @@ def _named_elsewhere(
 def _joined(span: Span, words: Sequence[str], kind: str) -> Span:
     """A mark; of a look the other thing that is joined with "and" has that look, too: "bed and shelf, both in blue"."""
     tag, start, stop = span
-    joined = tag == "y" and kind in _LOOKS and start > 1 and words[start - 1] == "and"
+    joined = tag == "y" and kind in _LOOKS and start > 1 and words[start - 1] in ("and", "nor")
     return ("x", start, stop) if joined else span
 
 
@@ -313,6 +317,7 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
 _IN_ORDER = bag("first then next last finally lastly followed")
 _JOINTS = bag("and , or nor neither plus & both the as well with along")
 _AGAIN = bag("lose remove delete hide take get rid of away out too also then drop bin scrap ditch to see")  # of a look
+_FORMER = bag("than of 's from not that")  # before the colour that something had: "swap its brown for green"
 _EVERYTHING = re.compile(r"^(?:everything|all) (?:else|but)\b|\b(?:the rest|the others?)$")
 
 
@@ -334,12 +339,28 @@ def _tells_number(word: str) -> bool:
     return word[0].isdigit() or word in NUMBERS
 
 
+def _counts(then: str) -> bool:
+    """Whether the word behind a number is of things that are counted, and no unit: "a canon for three voices"."""
+    return then.isalpha() and then not in _UNITS and then not in NUMBERS
+
+
+_UNITS = bag(
+    "s sec secs second seconds m cm mm meter meters metre metres degree degrees deg percent turn turns time times rpm "
+    "and or to until till from at by in half"
+)
+
+
 def _color(said: str) -> str:
     """A colour without the words around it."""
     said = re.sub(
-        r"^(?:(?:as|in|to|into|a|an|the|of|nice|bright|lovely|painted|coloured|colored|turned|it) )*(?=\w)", "", said
+        r"^(?:(?:as|in|to|into|a|an|the|of|nice|bright|lovely|soft|warm|cool|rich|painted|coloured|colored|turned|it) "
+        r")*(?=\w)",
+        "",
+        said,
     )
-    return re.sub(r"(?: (?:colou?r|one|ones|instead|again|paint|shade|coat|all over|please|hue))+$", "", said)
+    return re.sub(
+        r"(?: (?:colou?r|one|ones|instead|again|paint|shade|coat|all over|please|hue|tone|tint|finish))+$", "", said
+    )
 
 
 def _things(said: Iterator[str], thing: Thing) -> tuple[tuple[str, ...], tuple[Query, ...]]:
@@ -426,6 +447,7 @@ def _time(
 ) -> tuple[Moment, Happening | None] | None:
     """The time that marks tell; None if one of them is not understood, or if they contradict each other."""
     moment, happening = Moment(), None
+    times = sum(tag in TIMES for tag, _, _ in spans)
     for span in spans:
         tag, phrase = span[0], text(span)
         if tag == "by" and _AT_A_TIME.match(phrase):
@@ -446,6 +468,8 @@ def _time(
         if tag == "from" and kind == "pause" and (before := _JUST_BEFORE.match(phrase)) is not None:
             phrase = f"when {phrase[before.end() :]}"  # a rest before its turn begins where that did
         told = _told(tag, phrase, text(span), thing, happening)
+        if told is None and times > 1 and _says_nothing(phrase, thing):
+            continue
         if told is None:
             return None
         found, event = told
@@ -458,6 +482,9 @@ def _time(
                 return None
             moment = both
         if event is not None and happening is not None:
+            resting = kind == "pause" and moment.lasting is not None and _begins(happening)
+            if resting and event.during.part == "until":
+                continue  # "for a second after its walk, before it turns"
             event = happening.ended(event) or event.ended(happening)
             if event is None:
                 return None
@@ -465,6 +492,16 @@ def _time(
     if kind in _LOOKS and moment.start == 0.0 and moment.stop is not None:
         moment = replace(moment, start=None)
     return moment, happening
+
+
+def _says_nothing(phrase: str, thing: Thing) -> bool:
+    """Whether words with a mark of time tell of nothing beside another time: "a good while first"."""
+    words = phrase.split()
+    told = any(map(_tells_number, words)) or _CLAUSE.search(phrase) is not None or names_in(phrase, thing)
+    return not told and event_of(phrase) is None
+
+
+_CLAUSE = re.compile(r"\bsame\b|\b(?:as|with|when|while|once|until|till|after|before|during) \w+ \w+")
 
 
 def _begins(happening: Happening) -> bool:

@@ -96,8 +96,15 @@ _HAS_BEEN = re.compile(
 )
 
 
+_WAITS = re.compile(
+    rf"^(?:(?:we|it|he|she|they) )?(?:waits?|pauses?|rests?|lingers?) (?:for )?(?P<delay>{DURATION}|a sec)$"
+)
+
+
 def delayed(phrase: str) -> tuple[str, float | None]:
     """Words with a mark of time without the seconds that pass behind what they tell, and these; None if none do."""
+    if (waits := _WAITS.match(phrase)) is not None:
+        return "after it has stopped", seconds_of(waits["delay"]) or 1.0
     delay = None
     for pattern in (_DELAY, _HAS_BEEN, _GIVEN):
         if (found := pattern.match(phrase)) is not None and (seconds := seconds_of(found["delay"])) is not None:
