@@ -79,9 +79,11 @@ def judged(expect: dict[str, Any], answer: Answer) -> Outcome:
         return "right" if _words(value) - _PLACING <= _words(f"{given} {answer.text}") else "wrong"
     told = [given] if isinstance(given, str) else list(given) if isinstance(given, tuple) else []
     if kind == "names":
-        fits = len(told) == len(value) and all(any(_names(v, t) for t in told) for v in value)
-        return "right" if fits else "wrong"
-    fits = len(told) == len(value) and all(_tells(v, t) for v, t in zip(value, told, strict=True))
+        each = all(any(_names(v, t) for v in value) for t in told)
+        several = any(singular(v.split()[-1]) != v.split()[-1] for v in value)  # "chairs" are all four
+        fits = each and all(any(_names(v, t) for t in told) for v in value)
+        return "right" if fits and (several or len(told) == len(value)) else "wrong"
+    fits = len(told) == len(value) and all(_tells(v, t) or _names(v, t) for v, t in zip(value, told, strict=True))
     return "right" if fits else "wrong"
 
 

@@ -31,7 +31,7 @@ from .reading.time.everyday import everyday
 from .reading.time.frames import UNIT, plain
 from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
-from .reading.time.supposed.plainly import SURE, supposed
+from .reading.time.supposed.plainly import SURE, is_of_a_leg, supposed
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
 from .telling import absent, absent_text, evidence
@@ -118,18 +118,20 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
             return told
     if (chosen := _chosen(words, survey, timeline)) is not None:
         return chosen
+    names = _names(survey)
     moved = _of_motion(asked, survey)
     if moved is not None and moved.answer.answer is not None:
-        return moved
+        nothing = moved.answer.answer == () or is_of_a_leg(text)  # or nothing of that name
+        return (nothing and _read_as(supposed(text, names, SURE), survey, timeline)) or moved
     for made in (_shared, _compared, _of_two):
         if (made_of := made(words, survey, timeline)) is not None:
             return made_of
     still = _of_moments(asked, survey, timeline)
     if still is not None and still.answer.answer is not None and not (still.restated and still.answer.answer == ()):
-        return still
+        return (still.restated and _read_as(supposed(text, names, SURE), survey, timeline)) or still
     refused = moved or (still if still is not None and still.answer.answer is None else None)
     misread = refused is None or refused.answer.text.startswith(_MISREAD)
-    for questions in _guesses(text, words, _names(survey), misread):
+    for questions in _guesses(text, words, names, misread):
         if (guess := _read_as(questions, survey, timeline)) is not None:
             return guess
     if refused is not None:

@@ -43,7 +43,8 @@ _SUBJECTS = {  # what stays, and the words for it
     "start": r"start\w*|begin\w*|onset|setting off|sets? off|departure|leav(?:es|ing)|kick\w*|set(?:ting)? out|"
     r"letting go|take ?off|(?:tips?|takes?|goes|go|heads?) off|comes? out|falls?|drops?|opens?|timings?|times|"
     r"schedule|moment|cue|entrance|slots?",
-    "stop": r"ends?|until|till|out ?point|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|arriv\w*|"
+    "stop": r"ends?|until|till|out ?point|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|"
+    r"arriv\w*|"
     r"(?<!set )(?<!sets )(?<!tips )(?<!takes )(?<!goes )(?<!kicks )(?<!setting )off|done|"
     r"timings?|times|schedule|slots?",
     "speed": r"speeds?|pace|rate|tempo|velocity|rpm|fast|quick|slow|takes?|taking|duration|long|length|last|lasting|"

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from ......gaussians import late_re as re
+from ......gaussians.world import kinds as kinds_of_things
 from ......gaussians.world.spelling import best_slip
 from ......gaussians.world.words import singular
 from .....grammar.tagging.spelling import is_word
@@ -47,6 +48,7 @@ class Said:
         times: the words of each of its times.
         off: words that ask for nothing.
         rest: all other words.
+        names: words of the names of the things of the scene.
     """
 
     x: str
@@ -57,6 +59,7 @@ class Said:
     times: tuple[str, ...] = ()
     off: str = ""
     places: tuple[str, ...] = ()
+    names: Collection[str] = ()
 
 
 @lru_cache(maxsize=1024)
@@ -73,6 +76,7 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
     told = tuple(_spelled(word, names) for word in told)
     if sum(word.isalpha() for word in told) < _SHORTEST:
         return ()
+    told, leg = _without_leg(told)
     kind, chance = _likeliest(told)
     if chance < least or kind not in _PLAIN or _asks_why(kind, " ".join(told)):
         return ()
@@ -80,7 +84,16 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
     if said is None or _says_more(kind, chance, said, names):
         return ()
     if not said.x and kind not in _OF_ALL:
+        if any(
+            kinds_of_things.find(singular(word)) is not None and singular(word) not in names and word not in names
+            for word in told
+        ):
+            return ()  # "any window I could open"
         said = replace(said, x="it")
+    if leg:
+        if said.time or kind not in _OF_A_LEG:
+            return ()
+        said = replace(said, time=leg, times=(leg,))
     times = dict.fromkeys(_times(kind, said.times)) if said.time and kind != "gap" else ("",)
     return tuple(dict.fromkeys(" ".join(f"{plain} {time}".split()) for time in times for plain in _PLAIN[kind](said)))
 
@@ -109,7 +122,9 @@ _WHOLE_FILM = re.compile(  # a time that is all of the film
     r"sequence|interval of motion|motion|movement|run|journey|trip))(?: is to be| long)?|throughout|ever|overall|"
     r"in total|altogether|in all|"
     r"at any (?:point|time|moment)|at all|all told|at some (?:point|time|moment)|from (?:start|beginning|"
-    r"first) to (?:finish|end|last)|"
+    r"first) to (?:finish|end|last)|the (?:whole|entire|full) (?:while|time)|"
+    r"(?:during|in|over|throughout|within|for|across|through) (?:[a-z]+ ){0,4}(?:film|clip|video|movie|footage|"
+    r"recording|recorded|filmed|take)|"
     r"(?:by|in|at|before) the (?:very )?end|finally|eventually|in the end|at last|when (?:it|all|"
     r"everything) is (?:all )?(?:over|done)|"
     r"when all is (?:said and )?done|before the (?:clip|film|video|scene) (?:ends|is over)|at the finish)$"
@@ -162,6 +177,7 @@ _AT_MOST = re.compile(r"^(?:once|when|after|at|in|by) (?!.*\d)(?!.*\bseconds?\b)
 
 def _plain_time(kind: str, said: str) -> str:
     """The words for a time in plain words; "" for all of the film, where that says nothing."""
+    said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", said)
     if _ALL_OF_IT.match(said) or (kind in ("far_opens", "far_turns") and _AT_MOST.match(said)):
         return ""
     if kind == "long_on" and said.startswith(("before it ", "until it ")):
@@ -198,6 +214,8 @@ def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     found, said = dict(kinds_of(words)), " ".join(words)
     if not _FILM.search(said):
         found.pop("film_long")
+    if _IS_SHUT.search(said):
+        found = {"if_shut" if kind == "if_closes" else kind: found[kind] for kind in found if kind != "if_shut"}
     if _YES_OR_NO.search(said):
         found = {kind: chance for kind, chance in found.items() if kind.startswith("if_")}
     kind = max(found, key=found.__getitem__)
@@ -206,21 +224,52 @@ def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     return kind, found[kind]
 
 
+_LEG = re.compile(
+    r"(?:(?:during|for|on|in|over|of|along|while on) )?(?:the|its|his|her|'s) (?P<rank>first|opening|initial|second|"
+    r"last|final) (?:straight |walking )?(?:leg|stretch|part|bit|section|stage|walk|straight)"
+    r"(?: of (?:the|its|his|her) (?:walk|way|trip|path|journey|route))?"
+)
+_LEGS = {"second": "after it has turned", "last": "after it has turned", "final": "after it has turned"}
+_OF_A_LEG = bag("fast fast_most far long_moves way")
+
+
+def is_of_a_leg(text: str) -> bool:
+    """Whether a question is about one stretch of a way."""
+    return _LEG.search(" ".join(word.text for word in split(clean(text)))) is not None
+
+
+def _without_leg(words: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
+    """The words without those for one stretch of a way, and the time of that; "" if there are none."""
+    said = " ".join(words)
+    if (leg := _LEG.search(said)) is None:
+        return words, ""
+    rest = " ".join(f"{said[: leg.start()]} {said[leg.end() :]}".split())
+    return tuple(rest.split(" ")), _LEGS.get(leg["rank"], "before it turns")
+
+
 _FILM = re.compile(
     r"\b(?:film|clip|video|scene|movie|footage|recording|shot|sequence|animation|thing|it all|"
     r"whole)\b"
 )
 
 
+_IS_SHUT = re.compile(r"\bis (?:the|that|my|our|every)\w*\b.*\b(?:shut|closed)\b")
+
+
 def _asks_why(kind: str, said: str) -> bool:
     """Whether words ask for a cause, or for what somebody does or feels, or only for one stretch of a way."""
-    if _CAUSES.search(said) or _A_STRETCH.search(said):
+    if _CAUSES.search(said) or _A_STRETCH.search(said) or _FEELS.search(said):
         return True
     return kind not in _OF_SOMEBODY and _REASONS.search(said) is not None
 
 
 _CAUSES = re.compile(
     r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|\bcolou?rs?\b"
+)
+_FEELS = re.compile(
+    r"\b(?:is|was|were|are|be|been|feel|feels|felt|feeling|get|gets|got) (?:the |it |he |she |they )?(?:[a-z]+ ){0,3}?"
+    r"(?:frightened|afraid|scared|happy|unhappy|sad|angry|tired|exhausted|bored|hurt|lonely|nervous|shy|proud|ashamed|"
+    r"jealous|hungry|thirsty|cold|sleepy|dizzy|worried|excited|upset|in pain)\b"
 )
 _A_STRETCH = re.compile(r"\b(?:first|second|last|final) (?:leg|stretch|part|half|bit|section|stage)\b")
 _YES_OR_NO = re.compile(
@@ -257,12 +306,15 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
         tag: tuple(dict.fromkeys(_named(_ONE.sub(noun or "one", name), names) for name in found[tag]))
         for tag in ("x", "y")
     }
+    if not found["t"] and len(found["off"]) == 1 and (blinked := _BLINKED.search(found["off"][0])) is not None:
+        found["t"], found["off"] = [blinked["time"]], []  # "I blinked at 1.4 s, which book was falling?"
     if len(found["t"]) > 2 or any(_TIMED.search(aside) for aside in found["off"]):
         return None
     unit = _IN_UNIT.search(re.sub(r"metre", "meter", " ".join(found["u"])))
     return Said(
         x=_joined(things["x"]), y=_joined(things["y"][:1]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
         rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]), places=things["y"],
+        names=names,
     )  # fmt: skip
 
 
@@ -274,12 +326,15 @@ _AN_EVENT = re.compile(
 _TIMED = re.compile(
     r"\b(?:when|while|until|till|once|after|before|during)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b"
 )
+_BLINKED = re.compile(r"^(?:i|we) [a-z ]+? (?P<time>at \d+(?:\.\d+)?(?: ?s(?:ec(?:ond)?s?)?)?)$")
 _ONE = re.compile(r"\bone$")
 
 
 def _named(said: str, names: Collection[str]) -> str:
     """A name with an article, without adjectives of which no thing of the scene has one in its name."""
     said = re.sub(r"^(?:the )?final (?=\w)", "the last ", said)
+    if (whole := re.match(r"^(?:everything|anything|something)(?= [a-z]+ly$)", said)) is not None:
+        return whole[0]  # "everything tidily"
     words = said.split()
     if words and singular(words[-1]) in names:
         said = " ".join(w for w in words if w in names or singular(w) in names or w in _TELLING or is_color_word(w))
@@ -290,6 +345,7 @@ def _named(said: str, names: Collection[str]) -> str:
 
 
 _TELLING = bag(
+    "on in at under beside behind below above from near by to next of "
     "the a an this that these those all both every each any two three top bottom middle upper lower first "
     "second third last left right other moving and of"
 )
@@ -323,10 +379,12 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
         told = [word for word in told if word not in _DENIED]
     if not _DENIED.isdisjoint(told[1:]) or (kind not in _RANKED and (not _RANKS.isdisjoint(told) or "than" in told)):
         return True
+    if kind in ("when_starts", "when_stops"):
+        told = [word for word in told if word not in ("zero", "0")]  # of a speed
     if any((w in NUMBERS and w != "one" and kind not in _COUNTED) or w[0].isdigit() or is_color_word(w) for w in told):
         return True
     if chance < SURE:
-        if (kind.startswith("if_") and _ASKS.intersection(rest)) or "and" in rest or "or" in rest:
+        if (kind.startswith("if_") and _ASKS.intersection(rest)) or ("and" in rest and kind != "gap") or "or" in rest:
             return True  # "which way does it turn" wants no yes or no; two deeds, or things to choose from
         if any(word in _HARD for word in told):
             return True
@@ -467,6 +525,12 @@ def _in_order(said: Said) -> Iterator[str]:
     yield f"in what order do {said.x if said.x and said.x not in _PRONOUNS else 'things'} {deed}"
 
 
+_ARE_THERE = re.compile(
+    r"\b(?:are there|is there|(?:have|has) (?:we|you|it|they)(?: got)?|got|there are|altogether|exist)\b"
+)
+_MOVING = re.compile(r"\b(?:mov\w*|motion|go|goes|roll\w*|walk\w*|spin\w*|slid\w*)\b")
+
+
 def _counted(said: Said) -> Iterator[str]:
     deed = _deed(said.rest, "move")
     if (
@@ -476,6 +540,9 @@ def _counted(said: Said) -> Iterator[str]:
     ):
         deed = "have fallen"
     noun = _PLURAL.sub("", said.x) if said.x and said.x not in _PRONOUNS else "things"
+    if deed == "move" and not said.time and _ARE_THERE.search(said.rest) and not _MOVING.search(said.rest):
+        yield f"how many {noun} are there"
+        return
     yield f"how many {noun} {deed}"
 
 
@@ -533,6 +600,9 @@ def _of_those(asked: str, always: str) -> Plain:
 
     def made(said: Said) -> Iterator[str]:
         noun = _uncounted(said.x) if _is_kind(said.x) else ""
+        if "fallen" in asked and _IN_THE_AIR.search(said.rest):  # neither before its fall nor behind it
+            yield f"which {singular(noun) or 'thing'} is falling"
+            return
         form = asked if said.time or not always else always
         if _HOW_MANY.search(said.rest):
             yield f"how many {noun or 'things'} {form}"
@@ -542,6 +612,9 @@ def _of_those(asked: str, always: str) -> Plain:
     return made
 
 
+_IN_THE_AIR = re.compile(
+    r"\b(?:on (?:its|their|the) way (?:down|to the (?:floor|ground))|falling|mid ?air|in the air|airborne)\b"
+)
 _HOW_MANY = re.compile(r"\b(?:how many|(?:what|the) number of|count)\b")
 
 
@@ -564,7 +637,7 @@ _EVENTS = re.compile(r"\b(?:leav|reach|set|start|stop|depart|arriv|roll|com)(?:e
 
 def _visits(said: Said) -> Iterator[str]:
     places = [place for place in said.places if place != said.x]
-    if said.x and len(places) > 1 and not _EVENTS.search(said.rest):
+    if said.x and len(places) > 1 and len(_EVENTS.findall(said.rest)) < 2:
         yield f"in what order does {said.x} pass {' and '.join(places)}"
 
 
@@ -599,7 +672,42 @@ def _over(said: Said) -> Iterator[str]:
 _RESTS = re.compile(r"\b(?:pause|break|rest|hold|wait|stay|dwell)\b")
 
 
+_EVENT_OF = re.compile(  # "the onset of the red book 's fall", "the red book 's landing", "that of the blue one 's"
+    r"^(?:(?:the |its )?(?P<first>[a-z]+(?: point)?|that) of )?(?P<who>(?:the )?[a-z ]+?)(?: 's)?"
+    r"(?: (?P<deed>fall|drop|landing|impact|start|onset|departure|release|trigger|drop trigger|stop|end|opening|"
+    r"closing))?$"
+)
+_BEGINS = re.compile(r"\b(?:start|onset|departure|release|trigger|beginning)\b")
+_ENDS = re.compile(r"\b(?:end|stop|landing|impact|touchdown)\b")
+
+
+def _event_in(said: str, names: Collection[str], noun: str) -> tuple[str, str] | None:
+    """Who does what in the words for an event, and "" for what is said of another one; None if nobody is named."""
+    found = _EVENT_OF.match(said)
+    if found is None:
+        return None
+    who, told = found["who"].removeprefix("the ").split(), f"{found['first'] or ''} {found['deed'] or ''}"
+    if who[-1] in ("one", "fall", "drop"):
+        who[-1] = noun
+    if is_color_word(who[-1]):
+        who.append(noun)
+    if not who or (singular(who[-1]) not in names and who[-1] != "one") or who == ["one"]:
+        return None
+    falls = _deed(f"{told} {said}", "") in ("fall", "land")
+    deed = "landing" if _ENDS.search(told) and falls else "stopping" if _ENDS.search(told) else ""
+    return f"the {' '.join(who)}", deed or ("falling" if falls else "starting" if _BEGINS.search(told) else "")
+
+
 def _gap(said: Said) -> Iterator[str]:
+    parts = (*said.times, said.x, said.y)
+    nouns = (word for part in parts for word in part.split() if word in said.names and not is_color_word(word))
+    noun = next(nouns, "one")
+    told = [event for part in parts if part and (event := _event_in(part, said.names, noun))]
+    if len(told) == 2 and told[0][0] != told[1][0]:
+        (one, deed), (other, then) = told
+        deed = deed or then or {"fall": "falling", "land": "landing"}.get(_deed(said.rest, ""), "starting")
+        yield f"how much time is there between {one} {deed} and {other} {then or deed}"
+        return
     if len(said.times) == 2 and _RESTS.search(said.rest):
         yield f"how long is the pause between {said.times[0]} and {said.times[1]}"
     elif len(said.times) == 2:

@@ -21,7 +21,7 @@ _MOMENTS = {  # what happens, as a predicate
 _SPANS = {  # what is so for a while
     "moves": "is moving", "still": "stands still", "opening": "is opening", "is_open": "is open",
     "closing": "is closing", "is_shut": "is closed", "falling": "is falling", "turning": "is turning",
-    "on": "is on {y}",
+    "on": "is on {y}", "in_step": "is moving",
 }  # fmt: skip
 
 _PRONOUNS = ("it", "he", "she", "they")
