@@ -157,7 +157,7 @@ class Judge:
     def _goes_without_time(self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]) -> bool:
         """Whether a wish of a kind needs no time: for a look or a removal, or where something moves."""
         if kind in STATIC:
-            return is_wished(wording, spans, chance)
+            return is_wished(wording, spans, chance, kind)
         return self._does_move(ALL_MOVING) or (self._moves is None and chance >= CERTAINLY)
 
     def _does_move(self, query: Query) -> bool:
@@ -212,8 +212,8 @@ class Judge:
             return found
         once = all(op["op"] in _WISHED and op.get("when") is None for op in found)
         words = in_words(cleaned).split(" ")
-        chance = next(iter(likely(cleaned)), ("", 0.0))[1]
-        return found if once and is_wished(words, marked(words), chance) else None
+        kind, chance = next(iter(likely(cleaned)), ("", 0.0))
+        return found if once and is_wished(words, marked(words), chance, kind) else None
 
     def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields], least: float = _SAID_SO) -> bool:
         """Whether operations of a time, or of a look or a new thing, begin with one that no wish of the likeliest kind

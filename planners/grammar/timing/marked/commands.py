@@ -64,7 +64,7 @@ _ROUND = re.compile(r"\b(?:circl\w+|orbit\w*|round|around|laps?|loops?)\b")
 _OTHERWISE = re.compile(  # moves that marks do not tell apart
     r"\b(?:hop\w*|jump\w*|bounc\w+|bob\w*|wobbl\w+|sway\w*|shak\w+|swing\w*|tip\w*|toppl\w+|fall\w*|knock\w*|"
     r"nod\w*|leap\w*|"
-    r"rock\w*|danc\w+|drop\w*|swap\w*|exchang\w+|trad\w+|places|throw\w*|kick\w*|sits?|tumbl\w+|crash\w*)\b"
+    r"rock\w*|danc\w+|drop\w*|swap\w*|exchang\w+|trad\w+|places|throw\w*|kick\w*(?! off)|sits?|tumbl\w+|crash\w*)\b"
 )
 _SEEN = re.compile(
     r"\b(?:appears?|appear(?:ed|ing)|shows?|showing|shown|visible|into view|in view|pops? (?:up|in)|comes? in(?:to)?|"
@@ -165,6 +165,9 @@ def _move(slots: Slots) -> Iterator[Wanted]:
     ways = [way for way, words in _WAYS.items() if words.search(slots.said)]
     if goal is not None and not (len(ways) == 1 and length is not None and goal.way == ""):
         how = f" by {length.value:g} m" if length is not None else ""
+        if length is None and not slots.told and not slots.moves(slots.queries[0]):
+            text = f"move {slots.whom} {'onto' if goal.way == 'on' else 'next to'} {goal.name}"
+            yield Wanted(Command(kind="look", text=text), Moment(), None)
         place = f"towards {goal.name}" if length is not None else f"{'onto' if goal.way == 'on' else 'to'} {goal.name}"
         yield Wanted(f"move {slots.whom}{how} {place}", slots.moment, slots.happening)
     elif len(ways) == 1 and (length is not None or ways == ["up"]):

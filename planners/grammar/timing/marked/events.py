@@ -59,12 +59,14 @@ _ITS_OWN = (
     "in_step",
 )  # kinds that no rule reads, or takes for something else
 _SURELY = 0.7  # probability from which they go before what rules read
+_CERTAINLY = 0.95  # probability from which any kind does
 
 
 def is_told_by_event(phrase: str) -> bool:
-    """Whether words tell an edge of the film, or a stretch of a way, which rules take for something else."""
+    """Whether words tell an edge of the film, or a stretch of a way, which rules take for something else, or surely
+    another event."""
     event = event_of(phrase)
-    return event is not None and event.kind in _ITS_OWN and event.chance >= _SURELY
+    return event is not None and event.chance >= (_SURELY if event.kind in _ITS_OWN else _CERTAINLY)
 
 
 def told_by_event(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, Happening | None] | None:

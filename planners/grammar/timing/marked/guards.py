@@ -16,6 +16,10 @@ _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|s
 _THERE_AND_BACK = re.compile(
     r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and (?!(?:be |is |arrive|get|reach|stop|stay|done|there))"
 )
+_THERE_IS = re.compile(
+    r"\bthere (?:is|sits|stands|lies|hangs|lives) an? (?:[a-z]+ )?(?P<noun>[a-z]+)\b.*\b(?:her|him|it)\b"
+)
+_ALMOST = 0.97  # probability from which also what rules should have read may be such a wish
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
 _PROHIBITED = re.compile(
@@ -49,7 +53,9 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     if not is_any_word(first) and _DETERMINED.match(then):
         return True  # a verb that is no word may ask for anything
     timeless = not slots.told and not slots.moment.always
-    if kind in STATIC and timeless and (chance < SURE or _ORDERED.match(asked)):
+    if (there := _THERE_IS.search(f"{asked} {idle}")) is not None and there["noun"] not in " ".join(things).split():
+        return True  # "on the sofa there sits a cat, could you make her black": the cat is meant
+    if kind in STATIC and timeless and (chance < SURE or (chance < _ALMOST and _ORDERED.match(asked))):
         return True
     if _LIT.search(asked) and _A_LIGHT.search(things[0]):
         return True  # "turn the lamp off" stops no motion
@@ -87,6 +93,12 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
 _BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")
+_SAME_SPEED = re.compile(  # "at unchanged speed"
+    r"\b(?:at|with) (?:an? |the |its )?(?:same|unchanged|unaltered|usual|normal|present|current|original) "
+    r"(?:speed|pace|rate|velocity|tempo)\b|\b(?:same|unchanged|unaltered) (?:speed|pace|rate|velocity|tempo)\b"
+)
+_MADE_QUICK = re.compile(r"\b(?:make (?:it|that) )?(?:quick|quickly|slow|slowly|fast)\b")
+_ROLLS_ON = re.compile(r"\bthen (?:\w+ ){0,2}(?:on|further|farther|onwards?)\b")
 _BY_HOW_MUCH = re.compile(r"\b(?:earlier|sooner|later)\b")
 _BACK_IN = re.compile(r"\bback(?: in)?\b")
 _BEFORE_IT = re.compile(  # "it waits until 2 s before it sets off"
@@ -123,6 +135,11 @@ def says_more(kind: str, slots: Slots) -> bool:
         left = _BACK_TO.sub(" ", left)
     if kind in ("open", "close") and isinstance(slots.moment.start, float):
         left = _BY_HOW_MUCH.sub(" ", left)  # "a bit sooner, at 2 s"
+    left = _SAME_SPEED.sub(" ", left)
+    if kind in ("open", "close") and slots.moment.lasting is not None:
+        left = _MADE_QUICK.sub(" ", left)
+    if kind == "pause":
+        left = _ROLLS_ON.sub(" ", left)
     if kind == "begin":
         left = _BEFORE_IT.sub(" ", HELD_BACK.sub(" ", left))
         if is_opened(slots.things[0]):

@@ -35,6 +35,7 @@ _ONE = re.compile(
     r"(?! (?:and a (?:half|quarter)|full|whole|half|third|quarter|seconds?|secs?|s|m|cm|met(?:re|er)s?|times?|turns?|"
     r"by)\b)"
 )
+_OF_DRAWERS = ("top", "middle", "bottom", "upper", "lower")  # of what "one" is then said
 _RANKED = re.compile(  # "from when the first book falls until the last one is down"
     r"\bthe (?:first|last|second|third) (?P<noun>[a-z]+)\b.*\bthe (?:first|last|second|third) (?P<one>one)\b"
 )
@@ -57,7 +58,8 @@ def with_nouns(text: str) -> str:
             [word for word in part.split() if is_known(word) and word not in _NO_THINGS and word not in ("can", "back")]
             for part in (text[: found.start()], text[found.end() :])
         )
-        return f"{found[0].removesuffix(' one')} {singular((before[-1:] or after[:1] or ['one'])[0])}"
+        unnamed = "drawer" if found[0].split()[1] in _OF_DRAWERS else "one"
+        return f"{found[0].removesuffix(' one')} {singular((before[-1:] or after[:1] or [unnamed])[0])}"
 
     ranked = _RANKED.search(text)
     if ranked is not None and is_known(ranked["noun"]):

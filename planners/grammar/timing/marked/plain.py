@@ -47,6 +47,8 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
         "",
     ),
     ("for", rf"^of (?={_SECONDS})", ""),
+    ("for", r" 's$", ""),
+    ("in", r"^long as\b", "as long as"),
     ("for", rf"^(?:frame|t|time) (?={_SECONDS})", "at "),
     ("", rf"\bthe usual (?={_NUMBER}\b)", ""),
     ("", r"\bbusy (?=[a-z]+ing\b)", ""),

@@ -45,7 +45,8 @@ _RANKS = re.compile(
 )
 _KEEPING = re.compile(
     r"^(?:while|whilst|all the while) (?:still )?(?:preserving|keeping|maintaining|retaining|leaving|holding|"
-    r"conserving)\b"
+    r"conserving)\b|^(?:from|at|with|in) (?:the |its |his |her )?(?:same|usual|present|current|normal|old|original) "
+    r"(?!(?:time|moment|instant|second|frame) (?:as|that|when)\b)"
 )
 _PLAINER = (  # times in plainer words
     (re.compile(r"^(?:for |during |in )?(?:just |exactly |precisely |only )*(?=(?:as|so) long as\b)"), ""),
@@ -256,9 +257,11 @@ def slots(
     names, queries = _things(map(text, named), thing)
     if not names:
         names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
+    if not names and any(thing(text(span)) is None and text(span) not in hues() for span in named):
+        return None  # what it is about is not understood
     if not names and kind in (*COURSES, "open", "close") and moves(ALL_MOVING):
         names, queries = (MOVING,), (ALL_MOVING,)
-    if not names and len(goals) == 1:  # "a coat of paint on the bed"
+    if not names and len(goals) == 1 and kind in _LOOKS:  # "a coat of paint on the bed"
         names, queries = (goals[0].name,), (goals[0].query,)
     goals = tuple(goal for goal in goals if not goal.query.last and goal.query not in queries)
     shades = [span for span in spans if span[0] == "as"]
@@ -266,7 +269,8 @@ def slots(
     colors = dict.fromkeys(_color(text(span)) for span in wanted)
     marked = {at for _, start, stop in spans for at in range(start, stop)}
     left = [word for at, word in enumerate(words) if at not in marked]
-    if len(colors) > (kind == "recolor") or any(_is_number(word, then) for word, then in pairwise([*left, ""])):
+    numbers = any(_is_number(word, then) for word, then in pairwise([*left, ""]) if (kind, word) != ("still", "zero"))
+    if len(colors) > (kind == "recolor") or numbers:
         return None
     asking = {at for tag, start, stop in spans if tag in ("x", "y", "by") for at in range(start, stop)}
     said = " ".join(word for at, word in enumerate(words) if at not in marked or at in asking)
@@ -286,6 +290,8 @@ def _named_elsewhere(
         bare = " ".join("," if at in taken else word for at, word in enumerate(words))
         if found := names_in(bare, thing)[:1] or tuple(m[0] for m in islice(_A_THING.finditer(bare), 1)):
             return found
+    elif named := [name for tag, a, b in spans if tag == "off" for name in names_in(" ".join(words[a:b]), thing)]:
+        return tuple(dict.fromkeys(named)) if len(set(named)) == 1 else ()  # "reroute the ball, it should ..."
     return () if happening is None else names_in(happening.said, thing)[:1]
 
 
@@ -539,6 +545,7 @@ def _told(
         return None if other is None else (None, _as_well(happening, other, tag, phrase))
     for plainer in dict.fromkeys((phrase, _ONLY.sub("", phrase))):
         told = told_by(tag, plainer, thing)
-        if told is not None and (told[0] is not None or not is_told_by_event(phrase)):
-            return told
+        if told is not None:
+            by_event = told[0] is None and is_told_by_event(phrase)
+            return (told_by_event(tag, said, thing) if by_event else None) or told
     return told_by_event(tag, said, thing)

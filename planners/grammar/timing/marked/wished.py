@@ -17,7 +17,7 @@ _ORDERS = (
 _WISHES = re.compile(
     r"(?:^|[,.;:!] |\b(?:please|just|and|so|then|now|kindly|maybe) )(?:please |just |kindly )?"
     rf"(?:{_ORDERS})\b|"
-    r"\b(?:can|could|would|will) (?:you|we)\b|^(?:,|so|and)? ?(?:can|could|may|might) |"
+    r"\b(?:can|could|would|will) (?:you|we|somebody|someone|anybody|anyone)\b|^(?:,|so|and)? ?(?:can|could|may|might) |"
     r"\b(?:i|we) (?:would|should) (?:\w+ ){0,2}?(?:like|love|prefer|want|go for|rather have)\b|"
     r"\b(?:i|we) (?:\w+ )?(?:want|wish|need|prefer)\b|^would (?:love|like|prefer)\b|"
     r"\b(?:should|must|ought to|needs? to|has to|have to|wants to|is to|are to) "
@@ -30,13 +30,20 @@ _RID_OF_IT = re.compile(
     r"(?:get rid of (?:it|them)|(?:take|throw) (?:it|them) (?:away|out)|"
     r"(?:remove|delete|bin|ditch|scrap|lose) (?:it|them))\b"
 )
+_UNSEEN = re.compile(  # that something is not to be seen is a wish, too
+    r"\b(?:must|should|may|can|need|shall|to) (?:not|never) (?:appear|show|exist|be (?:seen|shown|there|visible|in))\b"
+)
+_ELSEWHERE = re.compile(
+    r"\b(?:should|must|ought to|needs? to|has to|have to|wants? to|is to|are to|can|could|might|may|would|shall) [a-z]+|"
+    r"\b(?:ends?|end|finish\w*) up\b"
+)
 _DENIED = re.compile(r"\b(?:not|never|no one|nobody|if|unless|or|but)\b")
 CERTAINLY = 0.93  # probability of a wish of its kind that no word has to say
 _IS = re.compile(r"\b(?:is|are|was|were|has|have|had|looks?|seems?|used|should|if)\b|\?")
 SURELY = 0.95  # probability of a wish of its kind from which any other words may stand in it
 _ASKS = re.compile(  # or tells
     r"\b(?:know|knows|whether|wonder|wondering|remember|recall|what|which|who|whose|why|when|where|how|said|says?|told|"
-    r"tells?|thought|heard|believed?|agree|calls?|called|imagine|think|picture|treated|seen|for all|i (?:want|need) is|"
+    r"tells?|thought|heard|believed?|agree|calls?|called|imagine|think|(?<!the )picture|treated|seen|for all|i (?:want|need) is|"
     r"yesterday|ago|used to|tomorrow|earlier|last (?:week|month|year|time|night))\b"
 )
 _FOR_GOOD = re.compile(
@@ -59,25 +66,30 @@ _BESIDE = bag(  # that may stand in a wish beside what is marked
 )
 
 
-def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float) -> bool:
+def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float, kind: str = "") -> bool:
     """Whether a sentence asks for something: "I would love the bed in pink", and not "the bed is pink already".
 
     Args:
         words: those of the sentence.
         spans: the marks in them.
         chance: the probability that it is a wish of its kind.
+        kind: that kind.
     """
     idle = {at for tag, start, stop in spans if tag in ("off", "not") for at in range(start, stop)}
     held = {at for _, start, stop in spans for at in range(start, stop)}
     left = [word for at, word in enumerate(words) if at not in held and word.isalpha()]
     asked = " ".join(word for at, word in enumerate(words) if at not in idle).strip(" ,.")
     said = " ".join(words)
+    if kind in ("hide", "remove"):
+        asked = _UNSEEN.sub("goes away", asked)
     if _CONTRARY.match(said) or _CHOICE.search(said) or _THAT_I_WANT.search(said):
         return False
     if chance >= SURE and _FOR_GOOD.search(said) is not None:
         return True  # "my car is red, and not for a bit: always"
     if _RID_OF_IT.search(f"{asked} . {said}") and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"
+    if kind == "move" and chance >= SURE and _DENIED.search(asked) is None and _ASKS.search(said) is None:
+        return _ELSEWHERE.search(asked) is not None  # "the ball should roll to the lamp instead"
     if chance >= CERTAINLY and _DENIED.search(asked) is None and _ASKS.search(said) is None and not _IS.search(asked):
         return True  # "rug: purple, permanent"
     plainly = chance >= SURELY and _DENIED.search(asked) is None and _ASKS.search(asked) is None
