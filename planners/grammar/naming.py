@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 
+from pydantic import BaseModel
+
 from ...gaussians import late_re as re
+from ...gaussians.language.query.nested import with_queries
 from ...gaussians.language.query.query import Query
 from ...gaussians.world import kinds
+from ...gaussians.world.words import singular
 from .meaning.changes import Fields
 from .tagging.spelling import is_common, misspelled_name
 from .vocabulary import nouns
@@ -19,19 +23,24 @@ _FEELS = re.compile(  # words that say what one thinks of a thing, and not which
 
 
 def named_there(ops: Sequence[Fields], lacks: Callable[[Query], bool]) -> Iterator[Fields]:
-    """Operations whose targets a scene has, where it has them by a name that is spelt right, or without words that only
-    say what one thinks of them.
+    """Operations whose things a scene has, where it has them by a name that is spelt right, by another name of their
+    kind, or without words that only say what one thinks of them.
 
     Args:
         lacks: whether the scene has nothing that a query names.
     """
+
+    def renamed(query: Query) -> Query:
+        others = [] if query.last else [query.model_copy(update={"text": text}) for text in _as_near(query.text)]
+        return next((other for other in others if not lacks(other)), query) if others and lacks(query) else query
+
     for op in ops:
-        target = op.get("target")
-        if isinstance(target, Query) and not target.last:
-            others = [target.model_copy(update={"text": text}) for text in _as_near(target.text)]
-            if others and lacks(target):
-                op = {**op, "target": next((other for other in others if not lacks(other)), target)}
-        yield op
+        made = {
+            key: with_queries(value, renamed)
+            for key, value in op.items()
+            if key in ("target", "when", "toward") and isinstance(value, BaseModel)
+        }
+        yield {**op, **made}
 
 
 def _as_near(text: str) -> Iterator[str]:
@@ -45,6 +54,9 @@ def _as_near(text: str) -> Iterator[str]:
     known = next((at for at, word in enumerate(words) if not _FEELS.fullmatch(word)), len(words))
     if 0 < known < len(words):
         yield " ".join(words[known:])
+    kind = kinds.find(text)
+    if kind is not None and singular(kind.name) != text:  # "the ventilator" is the fan
+        yield singular(kind.name)
 
 
 @cache

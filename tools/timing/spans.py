@@ -163,7 +163,7 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
     from ...gaussians.motion.holding import joined
 
     groups = _groups(target if during.of is None else _meant(scene, during.of, context), scene)
-    anchors = [_groups(_meant(scene, q, context), scene) for q in during.anchors]
+    anchors = [_groups(_anchor(scene, q, context, during, target), scene) for q in during.anchors]
     if scene.motion is None:
         raise InstructionError("nothing moves in this scene: give the time in seconds")
     up, field = scene.frame.up_vector, scene.language
@@ -312,6 +312,21 @@ _SEVERAL = ("wall", "walls", "floor", "ground", "ceiling")
 def _meant(scene: Scene, query: Query, context: Context) -> Selection:
     several = query.text in _SEVERAL and query.pick == "one" and not query.relations
     return moving_one(scene, query.model_copy(update={"pick": "all"}) if several else query, context).require()
+
+
+def _anchor(scene: Scene, query: Query, context: Context, during: During, target: Selection) -> Selection:
+    """What a query for another thing means; of several the one with which it is ever so: "when the book leaves the
+    shelf" is about the shelf on which it stands."""
+    found = context.resolve(scene, query)
+    if found.verdict != "ambiguous" or query.pick != "one" or len(during.anchors) > 1 or during.state == "closest":
+        return _meant(scene, query, context)
+    fits = list[Selection]()
+    for candidate in found.candidates:
+        one = context.resolve(scene, Query(text=query.text, groups=(candidate.group,)))
+        alone = during.model_copy(update={"anchors": (one.query,)})
+        if one.chosen and _happening(alone, scene, target, context):
+            fits.append(one)
+    return fits[0] if len(fits) == 1 else _meant(scene, query, context)
 
 
 def moving_one(scene: Scene, query: Query, context: Context) -> Selection:

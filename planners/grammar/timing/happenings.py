@@ -251,7 +251,7 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
             return ("fully_open" if fully else "open"), _HOLDS
         states: dict[str, tuple[str, _Course]] = {
             "closed": ("open", _LACKS),
-            "still": ("still", _LASTS),
+            "still": ("still", _HOLDS),
             "moving": ("moving", _LASTS),
             "off": ("moving", _ENDED),
         }

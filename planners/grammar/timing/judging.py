@@ -90,6 +90,7 @@ _BOTH_AT_ONCE = re.compile(
 _AT_A_RATE = re.compile(
     r"\b(?:once|twice|thrice|turns?|rounds?|revolutions?) (?:in|every|per|each) (?!a circle)", re.IGNORECASE
 )
+_ALL = re.compile(r"\b(?:every\w*|all|whatever|anything|both|each|they|them|things?|what)\b", re.IGNORECASE)
 _EXCHANGES = re.compile(r"\b(?:swap|exchange|trade|switch)\b.*\bcolou?rs?\b", re.IGNORECASE)
 
 
@@ -265,7 +266,10 @@ class Judge:
     def is_about_another(self, cleaned: str, ops: Sequence[Fields]) -> bool:
         """Whether an operation is about none of the things that the marks of an instruction name: "the chair is no good
         there, roll it to the bed once the drawer is out" moves no drawer."""
-        if len(ops) != 1 or ops[0].get("target") is None or not ops[0]["target"].text or ops[0]["target"].also:
+        if len(ops) != 1 or ops[0].get("target") is None or ops[0]["target"].also:
+            return False
+        moving = ops[0]["target"].moving is True and ops[0]["target"].pick == "all"
+        if not ops[0]["target"].text and (not moving or _ALL.search(cleaned)):
             return False
         words = with_nouns(in_words(cleaned)).split(" ")
         target, others = ops[0]["target"].text, list[bool]()

@@ -257,6 +257,10 @@ def slots(
     names, queries = _things(map(text, named), thing)
     if not names:
         names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
+    of = None if time[1] is None else time[1].during.of
+    if not names and of is not None and of.text and kind not in _LOOKS:  # "once the blue volume falls, its fall ..."
+        own = re.search(rf"\bthe (?:[a-z]+ )?{re.escape(of.text)}\b", time[1].said if time[1] is not None else "")
+        names, queries = ((own[0],), (of,)) if own is not None else ((), ())
     if not names and any(thing(text(span)) is None and text(span) not in hues() for span in named):
         return None  # what it is about is not understood
     if not names and kind in (*COURSES, "open", "close") and moves(ALL_MOVING):
