@@ -13,7 +13,7 @@ import argparse
 from pathlib import Path
 
 from ..planners.grammar.learned.network import FILE
-from .wording import network, sentences, told_of, without
+from .wording import networks, sentences, told_of, without
 
 FILES = {task: Path(__file__).with_name(f"timed_{task}.tsv") for task in ("wishes", "questions", "events")}
 
@@ -24,7 +24,7 @@ def main() -> None:
     parser.add_argument("--held", nargs="+", default=[], metavar="TASK:WRITERS")
     writers = {task: said.split(",") for task, said in (held.split(":") for held in parser.parse_args().held)}
     tasks, held = without({task: sentences(path) for task, path in FILES.items()}, writers)
-    model = network(tasks)
+    model = networks(tasks)
     if not writers:
         model.write(FILE)
     for task, known in held.items() if writers else ():

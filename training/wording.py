@@ -18,7 +18,7 @@ from torch import nn
 
 from ..gaussians import late_re as re
 from ..planners.grammar.learned.marks import OUTSIDE, Span, labels_of
-from ..planners.grammar.learned.network import LAYERS, ROWS, UNKNOWN, WAYS, Network, pieces
+from ..planners.grammar.learned.network import LAYERS, ROWS, UNKNOWN, WAYS, Network, Networks, pieces
 from ..planners.grammar.tagging.words import split
 
 OFTEN = 2  # sentences' words that stand so often have a row of their own
@@ -27,6 +27,7 @@ HIDDEN = 128
 DROPPED = 0.4
 HIDDEN_WORDS = 0.1  # share of the words that are shown by their classes, or by their pieces, alone
 PASSES = 16
+MEMBERS = 2  # networks that learn the same sentences
 BATCH = 48
 RATE, DECAY, CLIP = 3e-3, 1e-2, 2.0
 SMOOTHED = 0.02  # of the probability of a kind
@@ -170,12 +171,12 @@ def _chain_loss(scores: torch.Tensor, moves: torch.Tensor, here: torch.Tensor, w
     return torch.logsumexp(sums, 1).sum() - gold
 
 
-def network(tasks: Tasks, passes: int = PASSES, seed: int = 0) -> Network:
-    """The network that has learned the sentences of some tasks; the same ones give the same bytes on one machine."""
+def networks(tasks: Tasks, passes: int = PASSES, count: int = MEMBERS) -> Networks:
+    """Networks that have learned the sentences of some tasks; the same ones give the same bytes on one machine."""
     threads = torch.get_num_threads()
     torch.set_num_threads(1)  # several sum in another order each time
     try:
-        return _learned(tasks, passes, seed)
+        return Networks(tuple(_learned(tasks, passes, seed) for seed in range(count)))
     finally:
         torch.set_num_threads(threads)
 
@@ -226,8 +227,8 @@ class Told:
     whole: float
 
 
-def told_of(model: Network, task: str, known: Sequence[Sentence]) -> Told:
-    """How well a network tells sentences."""
+def told_of(model: Networks, task: str, known: Sequence[Sentence]) -> Told:
+    """How well networks tell sentences."""
     told = [(sentence, model.told(task, sentence.words)) for sentence in known if sentence.words]
     pairs = [(set(found.spans), set(sentence.spans)) for sentence, found in told]
     hits = sum(len(found & true) for found, true in pairs)

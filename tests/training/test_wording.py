@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenewright.planners.grammar.learned.network import network as kept
+from scenewright.planners.grammar.learned.network import networks as kept
 from scenewright.planners.grammar.tagging.words import split
 from scenewright.training.timed_words import FILES
-from scenewright.training.wording import Sentence, Tasks, network, sentences, told_of, without
+from scenewright.training.wording import Sentence, Tasks, networks, sentences, told_of, without
 
 MADE = [
     Sentence(str(at % 5), kind, text)
@@ -35,7 +35,7 @@ def test_marks_stand_in_the_words() -> None:
 
 
 def test_what_is_learned_tells_the_kinds_and_marks_of_new_sentences() -> None:
-    model = network(TASKS, passes=20)
+    model = networks(TASKS, passes=20, count=1)
     words = [
         tuple(word.text for word in split(said))
         for said in ("halt the ferry at 2 s", "hide the old cat once the bell has rung")
@@ -45,13 +45,20 @@ def test_what_is_learned_tells_the_kinds_and_marks_of_new_sentences() -> None:
 
 
 def test_the_same_sentences_give_the_same_weights() -> None:
-    one, other = network(TASKS, passes=2), network(TASKS, passes=2)
-    assert all(np.array_equal(one.weights[name], other.weights[name]) for name in one.weights)
+    made = (networks(TASKS, passes=2).members for _ in range(2))
+    for one, other in zip(*made, strict=True):
+        assert all(np.array_equal(one.weights[name], other.weights[name]) for name in one.weights)
+
+
+def test_each_of_them_begins_elsewhere() -> None:
+    one, other = networks(TASKS, passes=1).members
+    assert one.lists == other.lists
+    assert not np.array_equal(one.weights["rows.words"], other.weights["rows.words"])
 
 
 def test_writers_are_told_by_what_others_wrote() -> None:
     left, held = without(TASKS, {"wishes": ["2"]})
-    told = told_of(network(left, passes=20), "wishes", held["wishes"])
+    told = told_of(networks(left, passes=20, count=1), "wishes", held["wishes"])
     assert len(left["wishes"]) + len(held["wishes"]) == len(MADE)
     assert told.kinds > 0.9 and min(told.precision, told.recall, told.whole) > 0.7
 

@@ -3,7 +3,9 @@
 Words, and the runs of letters in them, are embedded; two layers of long short-term memory (Hochreiter, Schmidhuber
 1997) read them forwards and backwards. The kind is told from the greatest and the mean of what they hold, the marks
 from what they hold at each word, as a chain of labels (Lample et al. 2016, "Neural Architectures for Named Entity
-Recognition"). Several tasks share all but their last layers.
+Recognition"). Several tasks share all but their last layers. Networks that learned the same sentences from other
+beginnings err in other places, so that the mean of what a few of them tell is right more often (Hansen, Salamon 1990,
+"Neural Network Ensembles").
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from .seen import amount_or_color, classed
 
 F32 = NDArray[np.float32]
 
-FILE = Path(__file__).with_name("network.npz")
+FILE = Path(__file__).with_name("networks.npz")
 ROWS = 8192  # of the table of pieces
 LAYERS = 2
 WAYS = ("forwards", "backwards")
@@ -61,39 +63,23 @@ class Network:
     lists: Mapping[str, Sequence[str]]
     weights: Mapping[str, F32]
 
-    @classmethod
-    def of(cls, path: Path = FILE) -> Network:
-        """The one that a file holds."""
-        return cls(*stored(path))
-
-    def write(self, path: Path = FILE) -> None:
-        """Store it in a file."""
-        store(path, self.lists, self.weights)
-
     @cached_property
     def places(self) -> dict[str, int]:
         """The row of each word."""
         return {word: row for row, word in enumerate(self.lists["words"])}
 
-    def told(self, task: str, words: Sequence[str]) -> Told:
-        """The kind of a sentence and its marks.
+    def scores(self, task: str, words: Sequence[str]) -> tuple[F32, F32]:
+        """The probabilities of the kinds of a task, and the score of each label at each word, `[words, labels]`.
 
         Args:
             task: one of those that it has learned.
-            words: lower-case words and marks of punctuation.
+            words: lower-case words and marks of punctuation; at least one.
         """
-        labels = self.lists[f"labels.{task}"]
-        if not words:
-            return Told((), ())
         held = self._held(words)
         pooled = np.concatenate([held.max(axis=0), held.mean(axis=0)])
         scores = self._linear(f"kinds.{task}", pooled)
         chances = np.exp(scores - scores.max())
-        chances /= chances.sum()
-        names = self.lists[f"kinds.{task}"]
-        kinds = tuple((names[i], float(chances[i])) for i in np.argsort(-chances, kind="stable"))
-        row = likeliest(self._linear(f"labels.{task}", held), self.weights[f"moves.{task}"], labels)
-        return Told(kinds, tuple(spans_of(row)))
+        return chances / chances.sum(), self._linear(f"labels.{task}", held)
 
     def _held(self, words: Sequence[str]) -> F32:
         """What the last layer holds at each word, `[words, 2 hidden]`."""
@@ -126,6 +112,55 @@ class Network:
         return _times(values, self.weights[f"{name}.inputs"]) + self.weights[f"{name}.biases"]
 
 
+@dataclass(frozen=True, eq=False)
+class Networks:
+    """Networks with the same lists, which tell what they hold on average.
+
+    Attributes:
+        members: one at least.
+    """
+
+    members: tuple[Network, ...]
+
+    @classmethod
+    def of(cls, path: Path = FILE) -> Networks:
+        """Those that a file holds."""
+        lists, weights = stored(path)
+        count = 1 + max(int(name.split(".")[0]) for name in weights)
+        own = [{name: values for name, values in weights.items() if name.startswith(f"{i}.")} for i in range(count)]
+        return cls(
+            tuple(Network(lists, {name.split(".", 1)[1]: values for name, values in held.items()}) for held in own)
+        )
+
+    def write(self, path: Path = FILE) -> None:
+        """Store them in a file."""
+        weights = {f"{i}.{name}": held for i, own in enumerate(self.members) for name, held in own.weights.items()}
+        store(path, self.members[0].lists, weights)
+
+    @property
+    def places(self) -> Mapping[str, int]:
+        """The row of each word."""
+        return self.members[0].places
+
+    def told(self, task: str, words: Sequence[str]) -> Told:
+        """The kind of a sentence and its marks.
+
+        Args:
+            task: one of those that they have learned.
+            words: lower-case words and marks of punctuation.
+        """
+        if not words:
+            return Told((), ())
+        chances, labels = (
+            np.mean(own, axis=0) for own in zip(*(m.scores(task, words) for m in self.members), strict=True)
+        )
+        moves = np.mean([member.weights[f"moves.{task}"] for member in self.members], axis=0)
+        lists = self.members[0].lists
+        names = lists[f"kinds.{task}"]
+        kinds = tuple((names[i], float(chances[i])) for i in np.argsort(-chances, kind="stable"))
+        return Told(kinds, tuple(spans_of(likeliest(labels, moves, lists[f"labels.{task}"]))))
+
+
 def _times(values: F32, weights: F32) -> F32:
     """Each row of weights with the values; without threads, which wait for each other on a busy machine."""
     found: F32 = np.einsum("...i,oi->...o", values, weights)
@@ -144,11 +179,11 @@ def pieces(word: str) -> tuple[int, ...]:
 
 @lru_cache(maxsize=512)  # several checks ask for the same words
 def told(task: str, words: tuple[str, ...]) -> Told:
-    """What the network that comes with the package tells of a sentence."""
-    return network().told(task, words)
+    """What the networks that come with the package tell of a sentence."""
+    return networks().told(task, words)
 
 
 @cache
-def network() -> Network:
-    """The network that comes with the package."""
-    return Network.of()
+def networks() -> Networks:
+    """The networks that come with the package."""
+    return Networks.of()

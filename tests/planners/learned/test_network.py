@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from scenewright.planners.grammar.learned.files import LEVELS, store, stored
-from scenewright.planners.grammar.learned.network import ROWS, Network, network, pieces
+from scenewright.planners.grammar.learned.network import ROWS, Network, Networks, networks, pieces
 from scenewright.planners.grammar.learned.seen import classed
 from scenewright.training.wording import Learner, Sentence
 
@@ -39,7 +39,7 @@ def test_it_tells_what_the_learner_tells(learner: Learner, task: str, monkeypatc
         kinds, marks, _ = learner._scores(task, [words], random.Random(0))
     model = learner.learned()
     chances = dict(zip(learner.lists[f"kinds.{task}"], kinds[0].softmax(0).tolist(), strict=True))
-    told = model.told(task, words)
+    told = Networks((model,)).told(task, words)
     assert dict(told.kinds) == pytest.approx(chances, abs=1e-5)
     assert [kind for kind, _ in told.kinds] == sorted(chances, key=chances.__getitem__, reverse=True)
     held = model._held(words)
@@ -48,11 +48,22 @@ def test_it_tells_what_the_learner_tells(learner: Learner, task: str, monkeypatc
 
 def test_it_is_read_as_it_was_written(learner: Learner, tmp_path: Path) -> None:
     model = learner.learned()
-    model.write(tmp_path / "a.npz")
-    read = Network.of(tmp_path / "a.npz")
-    assert read.lists == model.lists
-    for name, values in model.weights.items():
-        assert np.abs(read.weights[name] - values).max() <= np.abs(values).max() / LEVELS / 2 + 1e-6, name
+    Networks((model, model)).write(tmp_path / "a.npz")
+    read = Networks.of(tmp_path / "a.npz").members
+    assert [own.lists for own in read] == [model.lists] * 2
+    for own in read:
+        for name, values in model.weights.items():
+            assert np.abs(own.weights[name] - values).max() <= np.abs(values).max() / LEVELS / 2 + 1e-6, name
+
+
+def test_several_tell_their_mean(learner: Learner) -> None:
+    one = learner.learned()
+    other = Network(one.lists, {name: -values for name, values in one.weights.items()})
+    words = ["hide", "the", "fan"]
+    chances = [own.scores("wishes", words)[0] for own in (one, other)]
+    told = dict(Networks((one, other)).told("wishes", words).kinds)
+    assert [told[kind] for kind in one.lists["kinds.wishes"]] == pytest.approx(np.mean(chances, axis=0), abs=1e-6)
+    assert Networks((one, one)).told("wishes", words) == Networks((one,)).told("wishes", words)
 
 
 def test_weights_are_stored_to_half_a_step(tmp_path: Path) -> None:
@@ -64,7 +75,7 @@ def test_weights_are_stored_to_half_a_step(tmp_path: Path) -> None:
 
 
 def test_no_words_tell_nothing() -> None:
-    told = network().told("wishes", ())
+    told = networks().told("wishes", ())
     assert told.kinds == told.spans == ()
 
 

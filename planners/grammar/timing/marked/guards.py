@@ -13,13 +13,13 @@ from .names import MOVING
 from .slots import Slots
 
 _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
+_JOINED = re.compile(r"^(?:[,.;:!] |and |then |but )+")
 _THERE_AND_BACK = re.compile(
     r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and (?!(?:be |is |arrive|get|reach|stop|stay|done|there))"
 )
 _THERE_IS = re.compile(
     r"\bthere (?:is|sits|stands|lies|hangs|lives) an? (?:[a-z]+ )?(?P<noun>[a-z]+)\b.*\b(?:her|him|it)\b"
 )
-_ALMOST = 0.97  # probability from which also what rules should have read may be such a wish
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
 _PROHIBITED = re.compile(
@@ -32,6 +32,9 @@ _OTHER_EDITS = re.compile(
 _ADDED = re.compile(r"\b(?:add|insert)\b")  # "insert a pause", "add a half turn at the end"
 _FOR_ANOTHER = re.compile(r"\b(?:swap|exchange|trade|replace)\b")  # one colour for another
 _ADDABLE = ("pause", "spin", "repeat", "halt")
+_PLACES_IT = re.compile(
+    r"\b(?:place|put|lay|hang|install|set)s? (?!\| ?(?:away|aside|out)\b)(?!.*\b(?:away|aside|out)\b)"
+)
 _LIT = re.compile(r"\b(?:off|out|on)$")
 _A_LIGHT = re.compile(r"\b(?:lamps?|lights?|lanterns?|candles?|bulbs?)$")
 _EXCEPT = re.compile(r"(?<!\bat )\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
@@ -49,13 +52,19 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     things, asked, idle = slots.things, slots.asked, slots.idle
     if not things or (slots.queries and slots.queries[0].text.split(" ")[-1] in EVERYWHERE):
         return True
-    first, then = (*_GREETING.sub("", asked).split(" "), "")[:2]
-    if not is_any_word(first) and _DETERMINED.match(then):
-        return True  # a verb that is no word may ask for anything
+    aside = (" ".join(slots.words[start:stop]) for tag, start, stop in slots.spans if tag in ("off", "not", "keep"))
+    for said in (asked, *aside):
+        first, then = (*_GREETING.sub("", _JOINED.sub("", said)).split(" "), "")[:2]
+        if first.isalpha() and not is_any_word(first) and _DETERMINED.match(then):
+            return True  # a verb that is no word may ask for anything
     timeless = not slots.told and not slots.moment.always
+    if timeless and kind in STATIC and any(word.isalpha() and not is_any_word(word) for word in slots.rest.split()):
+        return True
+    if kind in ("hide", "remove") and _PLACES_IT.search(asked) is not None:
+        return True  # "place three bottles on the table"
     if (there := _THERE_IS.search(f"{asked} {idle}")) is not None and there["noun"] not in " ".join(things).split():
         return True  # "on the sofa there sits a cat, could you make her black": the cat is meant
-    if kind in STATIC and timeless and (chance < SURE or (chance < _ALMOST and _ORDERED.match(asked))):
+    if kind in STATIC and timeless and (chance < SURE or _ORDERED.match(asked)):
         return True
     if _LIT.search(asked) and _A_LIGHT.search(things[0]):
         return True  # "turn the lamp off" stops no motion

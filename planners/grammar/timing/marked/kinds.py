@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from .....gaussians import late_re as re
 from ...learned.marks import Span
-from ...learned.network import network, told
+from ...learned.network import networks, told
 from ...tagging.spelling import is_common, is_word
 from ...tagging.words import split
 from ...vocabulary.nouns import is_known
@@ -119,6 +119,6 @@ def is_any_word(word: str) -> bool:
         is_word(word)
         or is_known(word)
         or is_common(word)
-        or word in network().places
+        or word in networks().places
         or has_form(word, tuple(SENSES), "plain", "s", "ing", "past")
     )

@@ -34,7 +34,8 @@ _UNSEEN = re.compile(  # that something is not to be seen is a wish, too
     r"\b(?:must|should|may|can|need|shall|to) (?:not|never) (?:appear|show|exist|be (?:seen|shown|there|visible|in))\b"
 )
 _ELSEWHERE = re.compile(
-    r"\b(?:should|must|ought to|needs? to|has to|have to|wants? to|is to|are to|can|could|might|may|would|shall) [a-z]+|"
+    r"\b(?:should|must|ought to|needs? to|has to|have to|wants? to|is to|are to|can|could|might|may|would|shall) "
+    r"[a-z]+|"
     r"\b(?:ends?|end|finish\w*) up\b"
 )
 _DENIED = re.compile(r"\b(?:not|never|no one|nobody|if|unless|or|but)\b")
@@ -43,7 +44,8 @@ _IS = re.compile(r"\b(?:is|are|was|were|has|have|had|looks?|seems?|used|should|i
 SURELY = 0.95  # probability of a wish of its kind from which any other words may stand in it
 _ASKS = re.compile(  # or tells
     r"\b(?:know|knows|whether|wonder|wondering|remember|recall|what|which|who|whose|why|when|where|how|said|says?|told|"
-    r"tells?|thought|heard|believed?|agree|calls?|called|imagine|think|(?<!the )picture|treated|seen|for all|i (?:want|need) is|"
+    r"tells?|thought|heard|believed?|agree|calls?|called|imagine|think|(?<!the )picture|treated|seen|for all|"
+    r"i (?:want|need) is|"
     r"yesterday|ago|used to|tomorrow|earlier|last (?:week|month|year|time|night))\b"
 )
 _FOR_GOOD = re.compile(

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from .....grammar.learned.marks import Span
-from .....grammar.learned.network import network, told
+from .....grammar.learned.network import networks, told
 
 TASK = "questions"
 
@@ -26,4 +26,4 @@ def marked(words: Sequence[str]) -> tuple[Span, ...]:
 
 def vocabulary() -> Collection[str]:
     """The words that have been seen often."""
-    return network().places.keys()
+    return networks().places.keys()
