@@ -160,7 +160,9 @@ def test_each_part_has_its_own_time() -> None:
     assert "when" not in removed and hidden["when"] == {"start": 1.0, "stop": 2.0}
     slowed, begun = planned("slow the robot down by half and start it at 1 s")
     assert "when" not in slowed and begun["when"] == {"start": 1.0}
-    assert PLANNER.plan("hide the shelf from 1 to 2 s and the bed from 2 to 3 s").verdict != "ok"
+    shelf, bed = planned("hide the shelf from 1 to 2 s and the bed from 2 to 3 s")
+    assert (shelf["target"], shelf["when"]) == ({"text": "shelf"}, {"start": 1.0, "stop": 2.0})
+    assert (bed["target"], bed["when"]) == ({"text": "bed"}, {"start": 2.0, "stop": 3.0})
 
 
 def test_what_is_closed_is_not_what_has_closed() -> None:

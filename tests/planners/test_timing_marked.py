@@ -21,13 +21,7 @@ def planned(text: str) -> list[dict[str, Any]]:
 
 
 KINDS = [
-    pytest.param(
-        "the swing is much too wild for me, calm it down",
-        "speed",
-        marks=pytest.mark.xfail(
-            strict=True, reason='the network tells "still"; no word says that, and nothing is done'
-        ),
-    ),
+    ("the swing is much too wild for me, calm it down", "speed"),
     ("nobody should see the ladder until the cat jumps", "hide"),
     ("let's have the gate remain wide open, no shutting", "stay"),
     ("could the train hold for two seconds at the platform", "pause"),
@@ -334,7 +328,7 @@ def test_operations_are_those_of_the_likeliest_kind(text: str) -> None:
     "text",
     [
         "let the ball roll to the wall in 2 s, I want it to explode there",
-        "when the robot has finished the first part, I want him to turn red for a second",
+        "flash the desk red each time a book lands",
     ],
 )
 def test_what_no_operation_tells_is_refused(text: str) -> None:

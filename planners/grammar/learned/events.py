@@ -15,6 +15,7 @@ NO_EVENT = "none"  # the kind of phrases that tell a time in numbers, or none
 LEAST = 0.5  # probability of a kind that is believed
 
 _ALONE = {"reaches": "stops", "leaves": "starts"}  # where no other thing is named
+_PRONOUNS = {"it", "he", "she", "they", "him", "her", "them"}
 _WHOSE = {"its": "it", "his": "he", "her": "she", "their": "they"}
 
 
@@ -44,6 +45,8 @@ def event_of(phrase: str) -> Event | None:
     named = [(tag, " ".join(words[a:b]).removesuffix(" 's")) for tag, a, b in found.spans]
     named = [(tag, _WHOSE.get(name, name)) for tag, name in named]
     said = {tag: {name for own, name in named if own == tag} for tag in ("x", "y")}
+    if len(said["x"] | said["y"]) > 1:  # "leaving with the robot, arriving with him"
+        said = {tag: names - _PRONOUNS if len(names) > 1 or tag == "y" else names for tag, names in said.items()}
     if any(len(names) > 1 for names in said.values()):
         return None
     x, y = ("".join(said[tag]) for tag in ("x", "y"))

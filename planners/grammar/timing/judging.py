@@ -54,6 +54,7 @@ _PLACED = re.compile(r" (?:beside|on|near|by|in|at|under|behind|next to|above|wi
 _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _EACH = {"order": "begin", "begin": "begin", "together": "begin", "open": "open", "close": "close", "hide": "hide"}
+_IN_TURN = {"open", "order"}
 _SEEN = ("delete", "opacity", "recolor")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 MARKED = 0.5  # probability of a kind from which what the marks hold is its command
@@ -123,12 +124,17 @@ class Judge:
         if any(asks_more(wording[start:stop], tag) for tag, start, stop in spans):
             return None
         for still in (False, True):
-            kind, chance = next(iter(likely(cleaned, still)), ("", 0.0))
-            if chance < least:
-                return None
+            kinds = likely(cleaned, still)
+            kind, chance = next(iter(kinds), ("", 0.0))
             if kind in _EACH and (parts := each_in_time(wording, spans, self._reader.thing)):
+                if sum(chance for own, chance in kinds if _EACH.get(own) == _EACH[kind]) < least:
+                    return None
                 own = [self._made_of(_EACH[kind], SURELY, words, marks) for words, marks in parts]
                 return None if None in own else tuple(op for ops in own for op in ops or ())
+            if {own for own, _ in kinds[:2]} == _IN_TURN:
+                chance = sum(chance for _, chance in kinds[:2])  # things that open one after the other
+            if chance < least:
+                return None
             if (found := self._made_of(kind, chance, wording, spans)) is not None:
                 return found
         return None
@@ -140,7 +146,8 @@ class Judge:
         held = slots(wording, spans, self._reader.thing, kind, self._does_move)
         if held is None:
             return None
-        if not (held.told or MOVING in held.names or self._goes_without_time(kind, chance, wording, spans)):
+        beside = kind == "move" and any(self._does_move(goal.query) for goal in held.goals)
+        if not (held.told or beside or MOVING in held.names or self._goes_without_time(kind, chance, wording, spans)):
             return None
         if not is_clear(kind, chance, held.asked) or is_ruled_out(kind, chance, held) or says_more(kind, held):
             return None

@@ -348,7 +348,13 @@ def _factor(slots: Slots) -> float | None:
     return value
 
 
+_SENT = re.compile(r"^(?:please |just )?(?:drive|move|push|pull|send|slide|roll|carry|bring|shift|walk|shove|take) \|")
+
+
 def _duration(slots: Slots) -> Iterator[Wanted]:
+    if slots.goals and _SENT.match(slots.rest) and not slots.moves(slots.queries[0]):
+        yield from _move(slots)  # "drive the truck over to the garage within four seconds"
+        return
     slots.pass_goals()
     moment = plainly(slots.moment)
     if moment.lasting is not None and not moment.taken and any(said.startswith("for ") for said in moment.said):
@@ -572,6 +578,8 @@ def _together(slots: Slots) -> Iterator[Wanted]:
     if (step := in_step(slots)) is not None:
         yield step
         return
+    if _IN_TURN.search(" ".join(slots.words)):
+        return  # "one by one"
     if not slots.moves(slots.queries[0]) and slots.goals:
         yield from _move(slots)
         return

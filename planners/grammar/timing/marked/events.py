@@ -19,6 +19,7 @@ _BEFORE = re.compile(r"^(?:right |just |only )*(?:until|till|til|before|by|up to
 _AFTER = re.compile(r"^(?:right |just |only |directly |straight )*(?:after|following|past|post|beyond)\b")
 _OVER = re.compile(r"\b(?:end|finish|close) of\b")  # "at the end of its first walk"
 _NOWHERE = re.compile(r"\b(?:comes?|came|coming) (?:over|by|near|close)$")  # to where is not told
+_EACH_TIME = re.compile(r"\b(?:each|every) time\b|\bwhenever\b")  # one event has one time
 _FULLY = re.compile(r"\b(?:full|fully|out|extended|wide|all the way|completely)\b")
 
 
@@ -73,7 +74,7 @@ def told_by_event(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, H
     """The time that words with a tag of time tell by what happens, as `times.told_by`; None if they tell none,
     or a thing in them is unknown."""
     event = event_of(phrase)
-    if event is None or _NOWHERE.search(phrase) is not None:
+    if event is None or _NOWHERE.search(phrase) is not None or _EACH_TIME.search(phrase) is not None:
         return None
     ends = tag == "to" or _BEFORE.match(phrase) is not None
     if event.kind in ("film_start", "film_end"):

@@ -62,7 +62,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
         return True
     if kind in ("hide", "remove") and _PLACES_IT.search(asked) is not None:
         return True  # "place three bottles on the table"
-    if (there := _THERE_IS.search(f"{asked} {idle}")) is not None and there["noun"] not in " ".join(things).split():
+    if (there := _THERE_IS.search(" ".join(slots.words))) is not None and there["noun"] not in " ".join(things).split():
         return True  # "on the sofa there sits a cat, could you make her black": the cat is meant
     if kind in STATIC and timeless and (chance < SURE or _ORDERED.match(asked)):
         return True

@@ -29,7 +29,7 @@ _DONE_BY = {  # the operations by which a wish of a kind is done; the other kind
 }  # fmt: skip
 _COURSED_BY = ("pace", "articulate", "order", "spin", "move", "follow")
 _CHANGED_BY = {  # changes of a motion by which a wish of a kind is done
-    "begin": ("begin", "later", "stop"), "speed": ("speed", "begin"), "duration": ("begin", "speed"),
+    "begin": ("begin", "later", "stop"), "speed": ("speed", "begin"), "duration": ("begin", "speed", "later"),
     "pause": ("stop",), "halt": ("stop", "part"), "still": ("stop",), "reverse": ("reverse", "mirror", "return"),
     "repeat": ("repeat", "back_and_forth"), "return": ("return", "reverse", "back_and_forth"),
     "longer": ("go_on", "repeat", "begin", "speed"), "stay": ("stop",), "amount": ("part", "stop"),

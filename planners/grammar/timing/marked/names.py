@@ -31,7 +31,7 @@ _BETWEEN = bag(
 _LONGEST = 5  # words of a name
 _UNKNOWN = 3  # words of a name with "the" whose noun is not known
 _ONE = re.compile(
-    r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+) one\b"
+    r"\b(?P<how>(?:the|that|this) (?!(?:first|last|next|other|moving|only) )[a-z]+|top|middle|bottom|upper|lower) one\b"
     r"(?! (?:and a (?:half|quarter)|full|whole|half|third|quarter|seconds?|secs?|s|m|cm|met(?:re|er)s?|times?|turns?|"
     r"by)\b)"
 )
@@ -58,7 +58,7 @@ def with_nouns(text: str) -> str:
             [word for word in part.split() if is_known(word) and word not in _NO_THINGS and word not in ("can", "back")]
             for part in (text[: found.start()], text[found.end() :])
         )
-        unnamed = "drawer" if found[0].split()[1] in _OF_DRAWERS else "one"
+        unnamed = "drawer" if found[0].split()[-2] in _OF_DRAWERS else "one"
         return f"{found[0].removesuffix(' one')} {singular((before[-1:] or after[:1] or [unnamed])[0])}"
 
     ranked = _RANKED.search(text)

@@ -300,8 +300,11 @@ def _named_elsewhere(
 
 
 def _joined(span: Span, words: Sequence[str], kind: str) -> Span:
-    """A mark; of a look the other thing that is joined with "and" has that look, too: "bed and shelf, both in blue"."""
+    """A mark; of a look the other thing that is joined with "and" has that look, too: "bed and shelf, both in blue".
+    "The left red" before "thing" goes on to that."""
     tag, start, stop = span
+    if tag == "x" and stop < len(words) and words[stop] in ("thing", "things"):
+        return tag, start, stop + 1
     joined = tag == "y" and kind in _LOOKS and start > 1 and words[start - 1] in ("and", "nor")
     return ("x", start, stop) if joined else span
 
@@ -315,7 +318,12 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
         (thing(name) or (Query(text="", colors=(name,)) if name in hues() else None), start, stop)
         for name, start, stop in names
     ]
-    told = [(query, start, stop) for query, start, stop in meant if query is not None and not query.last]
+    ranks = {stop for name, _, stop in names if set(name.split()) <= _PLACES_IN_TURN}  # "first bottom, then top"
+    told = [
+        (query, start, stop)
+        for query, start, stop in meant
+        if query is not None and not query.last and not (stop in ranks and kind == "open")
+    ]
     if kind == "open" and _IN_ORDER & set(words) and all(is_opened(query.text) for query, _, _ in told):
         return False
     joints = _JOINTS | _AGAIN if kind in _LOOKS else _JOINTS
@@ -444,6 +452,11 @@ _UP_TO_THEN = re.compile(r"\b(?:until|till|before)(?: ,)?$")
 _AT_A_SECOND = re.compile(r"^(?:just |right )?(?:in|at|on) (?:second|sec|t ?=) ?\d")
 
 
+_OF_SEVERAL = ("open", "order", "together", "move")
+_TOGETHER = re.compile(
+    r"^(?:(?:both|all|in|and|out|shuts?|opens?|close[sd]?|times|again|back) )*together\b(?! with\b)[a-z ]*$"
+)
+_PLACES_IN_TURN = bag("first then next last lastly finally and the one ones top middle bottom upper lower drawer , ;")
 _REVERTED = re.compile(  # ", and come back when it is closed again"
     r"\b(?:back|returns?|reappears?|again|visible|normal|usual|reverts?)\b.*?"
     r"\b(?P<then>(?:when|once|as soon as|at|after|upon) .+)$"
@@ -471,6 +484,8 @@ def _time(
             moment, phrase = both, rests["then"]
         if tag not in TIMES or not phrase or _KEEPING.match(phrase):
             continue
+        if kind in _OF_SEVERAL and (_TOGETHER.match(phrase) or set(phrase.split()) <= _PLACES_IN_TURN):
+            continue  # "first bottom, then middle"; "together and shuts together"
         for pattern, plain in _PLAINER:
             phrase = pattern.sub(plain, phrase)
         tag = _plainer_tag(tag, phrase, " ".join(words[max(0, span[1] - 4) : span[1]]), kind, moment, happening)

@@ -90,9 +90,10 @@ def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float, kind: 
         return True  # "my car is red, and not for a bit: always"
     if _RID_OF_IT.search(f"{asked} . {said}") and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"
-    if kind == "move" and chance >= SURE and _DENIED.search(asked) is None and _ASKS.search(said) is None:
-        return _ELSEWHERE.search(asked) is not None  # "the ball should roll to the lamp instead"
-    if chance >= CERTAINLY and _DENIED.search(asked) is None and _ASKS.search(said) is None and not _IS.search(asked):
+    plainly = _DENIED.search(asked) is None and _ASKS.search(said) is None
+    if kind == "move" and chance >= SURE and plainly and _ELSEWHERE.search(asked):
+        return True  # "the ball should roll to the lamp instead"
+    if chance >= CERTAINLY and plainly and not _IS.search(asked):
         return True  # "rug: purple, permanent"
-    plainly = chance >= SURELY and _DENIED.search(asked) is None and _ASKS.search(asked) is None
-    return (plainly or all(word in _BESIDE for word in left)) and _WISHES.search(asked) is not None
+    surely = chance >= SURELY and _DENIED.search(asked) is None and _ASKS.search(asked) is None
+    return (surely or all(word in _BESIDE for word in left)) and _WISHES.search(asked) is not None

@@ -219,6 +219,8 @@ def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     if _YES_OR_NO.search(said):
         found = {kind: chance for kind, chance in found.items() if kind.startswith("if_")}
     kind = max(found, key=found.__getitem__)
+    if kind == "where_ends" and _WHERE_IS.match(said):
+        return "where_at", found[kind] + found["where_at"]
     if kind in ("fast", "fast_most"):
         return ("fast_most" if _GREATEST.search(said) else "fast"), found["fast"] + found["fast_most"]
     return kind, found[kind]
@@ -253,6 +255,7 @@ _FILM = re.compile(
 )
 
 
+_WHERE_IS = re.compile(r"^where (?:is|are|was|were) ")
 _IS_SHUT = re.compile(r"\bis (?:the|that|my|our|every)\w*\b.*\b(?:shut|closed)\b")
 
 
