@@ -59,7 +59,9 @@ _SEEN = ("delete", "opacity", "recolor")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 MARKED = 0.5  # probability of a kind from which what the marks hold is its command
 _LONGEST = 45  # words of an instruction with one wish
-_ALL_ELSE = re.compile(r"\b(?:everything|all) (?:else|but)\b|\b(?:remove|delete|hide) the rest\b")
+_ALL_ELSE = re.compile(
+    r"\b(?:everything|all) (?:else(?! (?:being|stays|remains|is to|as))|but)\b|\b(?:remove|delete|hide) the rest\b"
+)
 _ALWAYS = re.compile(
     r"\b(?:throughout|always|all the time|(?:whole|entire|full) "
     r"(?!seconds?\b|secs?\b|turns?\b|rounds?\b)\w+|at all times|at any (?:time|point)|all through|for ever|forever|"

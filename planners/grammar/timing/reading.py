@@ -466,7 +466,7 @@ class TimeReader:
                     target, until = settled(target, happening.until)
                 if happening.from_start:
                     during, until = None, during
-                ends = all(isinstance(end, float) for end in (moment.start, moment.stop))
+                ends = len(moment.said) != 1 and all(isinstance(end, float) for end in (moment.start, moment.stop))
                 exact = moment.start is not None and (ends or any(map(_AT_A_TIME.match, moment.said)))
                 if during is not None and during.part in ("from", "after") and exact:
                     during = None  # "once it has opened, shut it at 3 s" is no 3 s later

@@ -56,6 +56,7 @@ _SYNONYMS = tuple(
         (r"(?:over|in) the course of the(?= (?:last|first))", "in the"),
         (r"the initial(?= [a-z0-9.]+ sec)", "the first"),
         (r"thereafter", "afterwards"),
+        (r"in (?:lieu|place) of", "instead of"),
         (r"(?:all|all along|all through) the (?=film|clip|video|movie)", "for the whole "),
         (rf"(?P<lead>at|by|for|in|to|from|after|up|until|around) like (?={_NUMBER}\b)", r"\g<lead> "),
         (r"(?P<rank>first|last) second and a half", r"\g<rank> 1.5 seconds"),

@@ -95,6 +95,7 @@ _TRAVELS = re.compile(
 _HALF = re.compile(
     r"\b(?:half ?way|half(?: of)? (?:the|its|his|her|that|this)(?: \w+)? (?:way|fall|drop|walk|swing)|midway|half)\b"
 )
+_NO_FURTHER = re.compile(r"\b(?:no|not) (?:further|farther|more|wider|longer) than\b")
 _LESS_FAR = re.compile(r"\b(?:less|more|further|farther|wider|extra|additional|another|shorter|longer)\b")
 _SHUTS = re.compile(r"\b(?:clos\w+|shut\w*|(?:go|going|goes|slid\w+|mov\w+|com\w+) back|return\w*|back in)\b")
 
@@ -152,6 +153,10 @@ def _remove(slots: Slots) -> Iterator[Wanted]:
 def _move(slots: Slots) -> Iterator[Wanted]:
     if slots.tell(_OTHERWISE) or _TO_A_HEIGHT.search(slots.said):
         return
+    step, whole = slots.happening, " ".join(slots.words)
+    begins = step is not None and (step.during.state, step.during.part) == ("moving", "from")
+    if step is not None and begins and step.during.of not in (None, *slots.queries) and _BOTH_THERE.search(whole):
+        slots.happening = replace(step, during=step.during.model_copy(update={"part": "while"}))
     if (beside := _beside_another(slots)) is not None:
         yield beside
         return
@@ -175,6 +180,9 @@ def _move(slots: Slots) -> Iterator[Wanted]:
         yield Wanted(f"move {slots.whom} {ways[0]}{how}", slots.moment, slots.happening)
 
 
+_BOTH_THERE = re.compile(  # "sets off when the robot does, and they both get there together"
+    r"\b(?:both|together)\b.*\b(?:arriv\w+|there|reach\w*)\b|\b(?:arriv\w+|there|reach\w*)\b.*\b(?:both|together)\b"
+)
 _ARRIVES = re.compile(
     r"\b(?:arriv\w+|there|reach\w*|gets? (?:to|in)|finish\w*|lands?|parks?|ends? (?:up )?together|both|sync\w*|same "
     r"times|side by side|comes? in)\b"
@@ -390,6 +398,8 @@ def _pause(slots: Slots) -> Iterator[Wanted]:
             rest = replace(pace(whose_of(slots), "stop"), during=_HALFWAY)
             yield Wanted(rest, moment, None)
         return
+    if isinstance(moment.stop, float) and moment.start is None and slots.happening is None:
+        moment = replace(moment, start=0.0)  # "for the first second"
     both = moment.stop is not None and (moment.start is not None or slots.happening is not None)
     if moment.lasting is not None or both or _has_ends(slots.happening):
         yield paced(slots, "stop", moment)
@@ -447,7 +457,7 @@ def _longer(slots: Slots) -> Iterator[Wanted]:
 
 def _amount(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    if _LESS_FAR.search(slots.said) and not _NOT.search(slots.rest):
+    if _LESS_FAR.search(_NO_FURTHER.sub(" ", slots.said)) and not _NOT.search(slots.rest):
         return  # "5 cm more": from how far it goes now
     if (how := _how_far(slots)) is None:
         return

@@ -49,7 +49,7 @@ _STATES = {
     "falls": _begins("falling"), "falling": _State("falling"), "lands": _ends("falling"),
     "turns": _begins("turning"), "turning": _State("turning"), "turned": _ends("turning"),
     "reaches": _begins("touches"), "leaves": _ends("on"), "on": _State("on"),
-    "first_of": _begins("moving"), "last_of": _ends("moving"), "in_step": _State("moving", since="while"),
+    "first_of": _begins("moving"), "last_of": _ends("moving"), "in_step": _State("moving"),
 }  # fmt: skip
 _RANKS = {"first_of": "first", "last_of": "last"}
 _ITS_OWN = (

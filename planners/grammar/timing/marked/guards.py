@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from .....gaussians import late_re as re
 from ...learned.seen import hues
 from ...vocabulary.nouns import EVERYWHERE, is_opened
@@ -18,7 +20,7 @@ _THERE_AND_BACK = re.compile(
     r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and (?!(?:be |is |arrive|get|reach|stop|stay|done|there))"
 )
 _THERE_IS = re.compile(
-    r"\bthere (?:is|sits|stands|lies|hangs|lives) an? (?:[a-z]+ )?(?P<noun>[a-z]+)\b.*\b(?:her|him|it)\b"
+    r"\bthere (?:sits|stands|lies|hangs|lives) an? (?:[a-z]+ )?(?P<noun>[a-z]+)\b.*\b(?:her|him|it)\b"
 )
 _ORDERED = re.compile(r"(?:delete|remove|erase|hide|paint|make|move|turn|put|recolou?r)\b")  # how they are ordered
 _DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|every|everything|it|him|her|them)$")
@@ -58,7 +60,15 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
         if first.isalpha() and not is_any_word(first) and _DETERMINED.match(then):
             return True  # a verb that is no word may ask for anything
     timeless = not slots.told and not slots.moment.always
-    if timeless and kind in STATIC and any(word.isalpha() and not is_any_word(word) for word in slots.rest.split()):
+    left = slots.rest.split()
+    if (
+        timeless
+        and kind in STATIC
+        and any(
+            verb.isalpha() and not is_any_word(verb) and (then == "|" or _DETERMINED.match(then))
+            for verb, then in pairwise(left)
+        )
+    ):
         return True
     if kind in ("hide", "remove") and _PLACES_IT.search(asked) is not None:
         return True  # "place three bottles on the table"

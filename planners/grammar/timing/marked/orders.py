@@ -96,7 +96,10 @@ def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterato
         whole = [mark for mark in marks if not set(words[mark[0] : mark[1]]) <= _RANKS_OF_PLACE | {"the", "one"}]
         places = ((at, at + 1) for at, word in enumerate(words) if word in _RANKS_OF_PLACE)
         marks = whole + [own for own in places if not any(start <= own[0] < stop for start, stop in whole)]
-        words = [f"the {word} {noun}" if word in _RANKS_OF_PLACE else word for word in words]
+        words = [
+            f"the {word} {noun}" if word in _RANKS_OF_PLACE and singular(then) != noun else word
+            for word, then in pairwise([*words, ""])
+        ]
     marks.sort()
     found = [(thing(" ".join(words[start:stop])), start, stop) for start, stop in marks]
     nouns = [query.text for query, _, _ in found if query is not None and query.text not in ("", "one", "ones")]

@@ -9,6 +9,7 @@ from itertools import islice, pairwise
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
+from .....tools.when import During
 from ...learned.events import event_of
 from ...learned.marks import Span
 from ...learned.seen import hues
@@ -454,6 +455,7 @@ _AT_A_SECOND = re.compile(r"^(?:just |right )?(?:in|at|on) (?:second|sec|t ?=) ?
 
 _OF_SEVERAL = ("open", "order", "together", "move")
 _TOGETHER = re.compile(
+    r"^one (?:after|behind) (?:the )?(?:other|another)$|^one by one$|^in turn$|"
     r"^(?:(?:both|all|in|and|out|shuts?|opens?|close[sd]?|times|again|back) )*together\b(?! with\b)[a-z ]*$"
 )
 _PLACES_IN_TURN = bag("first then next last lastly finally and the one ones top middle bottom upper lower drawer , ;")
@@ -559,9 +561,11 @@ def _told(
         said: all of the words.
         happening: what happens at the time that is told so far.
     """
-    if happening is not None and (likewise := _LIKEWISE.match(phrase)) is not None:
-        other = thing(likewise["who"])
-        return None if other is None else (None, _as_well(happening, other, tag, phrase))
+    if (likewise := _LIKEWISE.match(phrase)) is not None and (other := thing(likewise["who"])) is not None:
+        if happening is not None:
+            return None, _as_well(happening, other, tag, phrase)
+        if phrase.split()[-1] in ("does", "do"):
+            return None, Happening(During(state="moving", of=other, part="until" if tag == "to" else "from"), phrase)
     for plainer in dict.fromkeys((phrase, _ONLY.sub("", phrase))):
         told = told_by(tag, plainer, thing)
         if told is not None:
