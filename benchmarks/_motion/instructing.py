@@ -328,7 +328,7 @@ def _reaching(expect: dict[str, Any], course: Course, earlier: Course, spans: li
     way = course.centers(course.grid()) - course.centers(np.array([0.0]))
     if "distance_m" in expect:
         far = float((way @ course.up).max() if expect.get("toward") == "up" else np.linalg.norm(way, axis=1).max())
-        if abs(far / expect["distance_m"] - 1) > 0.15:
+        if abs(far - expect["distance_m"]) > max(0.15 * expect["distance_m"], _MOVED):
             return f"it moves by {far:.2f} m"
     for key in ("toward", "at_end"):
         if expect.get(key) in (None, "up", "open", "left", "right"):

@@ -199,6 +199,8 @@ def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -
     if not may_be_timed(cleaned):
         return _wished(cleaned, previous)
     movement = scene.movement if scene is not None else _unknown
+    if _judge(TimeReader(_operations, _thing), scene).contradicts_itself(cleaned):
+        raise Refusal("this asks for two things that cannot both be", cleaned[:200], verdict="impossible")
     asked, kept = without_kept(cleaned)
     try:
         outcome = _in_time(asked, previous, scene)
@@ -242,8 +244,6 @@ def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _
     """
     reader = TimeReader(_operations, _thing)
     judge = _judge(reader, scene)
-    if judge.contradicts_itself(cleaned):
-        raise Refusal("this asks for two things that cannot both be", cleaned[:200], verdict="impossible")
     try:
         outcome = _timed(reader, cleaned, previous)
     except Refusal as refusal:

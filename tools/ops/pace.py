@@ -244,6 +244,10 @@ class Pace(TargetedOp):
         if self.change == "repeat" and spans and math.isfinite(spans[0][0]):  # once more, from then on
             first = max(spans[0][0], high + _NO_TIME)
             end = first + _NO_TIME + high - low
+            until = whole if self.when is not None and self.when.stop == "end" else spans[0][1]
+            if first < until < end and all(map(is_turning, own)):  # what turns round and round may stop anywhere
+                last = low + until - first - _NO_TIME
+                return Warp((low, high, first, first + _NO_TIME, until), (low, high, high, low, last), 0.0, 0.0), until
             return Warp((low, high, first, first + _NO_TIME, end), (low, high, high, low, high), 0.0, 0.0), end
         if self.change == "part":
             until = self._until(scene, own, group, span)

@@ -82,6 +82,11 @@ _BOTH_WAYS = re.compile(  # "completely shut and simultaneously extended"
     rf"\b(?:{_SHUT} and (?:\w+ )?{_OUT}|{_OUT} and (?:\w+ )?{_SHUT}),? (?:\w+ ){{0,3}}"
     r"(?:at the same time|simultaneously|at once)\b"
 )
+_NEVER_LEAVES = re.compile(  # "walks all the way to the bed without ever leaving its spot"
+    r"\b(?:walks?|rolls?|drives?|goes|moves?|slides?|travels?|runs?)\b.*\bwithout (?:ever |once |even )?"
+    r"(?:leaving (?:its|his|her|the) (?:spot|place|position)|moving|budging|stirring)\b"
+)
+_THROUGHOUT_OR_NOT = ("recolor", "hide", "spin", "duration", "speed")  # kinds of which "throughout" is no other time
 _AT_REST = r"(?:still|shut|closed|motionless|not move|not be moving|stays? put|perfectly still|at rest)"
 _MOVES = r"(?:spin\w*|mov(?:e|es|ing)|roll\w*|walk\w*|turn\w*|open\w*|fall\w*|run\w*|rotat\w*)"
 _BOTH_AT_ONCE = re.compile(
@@ -195,7 +200,7 @@ class Judge:
         """Whether something is to be so all the time, and otherwise at a time or as well: "keep it shut throughout, and
         have it open at 2 s"."""
         said = with_nouns(in_words(cleaned))
-        if _BOTH_WAYS.search(said) is not None:
+        if _BOTH_WAYS.search(said) is not None or _NEVER_LEAVES.search(said) is not None:
             return True
         if _ALWAYS.search(said) is None:
             return _BOTH_AT_ONCE.search(said) is not None
@@ -211,7 +216,7 @@ class Judge:
             return False
         others = any(not own and not _EDGE.search(when) for own, (_, when) in zip(always, told, strict=True))
         if any(always) and (others or sum(always) > 1 or _AS_WELL.search(said)):
-            return likely(cleaned)[:1] == [] or likely(cleaned)[0][0] not in ("recolor", "hide", "spin")
+            return likely(cleaned)[:1] == [] or likely(cleaned)[0][0] not in _THROUGHOUT_OR_NOT
         return _BOTH_AT_ONCE.search(said) is not None
 
     def wished(self, cleaned: str) -> tuple[Fields, ...] | None:

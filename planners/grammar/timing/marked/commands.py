@@ -13,7 +13,7 @@ from ...learned.seen import hues
 from ...vocabulary.nouns import is_opened
 from ..clauses import ALL_OF_IT
 from ..command import Command, pace
-from ..happenings import Happening
+from ..happenings import IT, Happening
 from ..moments import Moment
 from .orders import in_order, listed
 from .slots import Slots
@@ -194,14 +194,15 @@ def _beside_another(slots: Slots) -> Wanted | None:
     too, and both arrive together"; None for others."""
     others = [goal for goal in slots.goals if goal.way != "from"]
     movers = [goal for goal in others if slots.moves(goal.query)]
-    if len(others) != 2 or len(movers) != 1 or slots.told or slots.moves(slots.queries[0]):
+    ends = slots.moment.start is None and slots.happening is None  # "... and arrives at 3 s"
+    if len(others) != 2 or len(movers) != 1 or not ends or slots.moves(slots.queries[0]):
         return None
     place = next(goal for goal in others if goal is not movers[0])
     slots.pass_goals()
     words = " ".join(slots.words)
-    part: Part = "while" if _ARRIVES.search(words) else "from"
+    part: Part = "while" if _ARRIVES.search(words) and not slots.told else "from"
     happening = Happening(During(state="moving", of=movers[0].query, part=part), f"as {movers[0].name} does")
-    return Wanted(f"move {slots.whom} to {place.name}", Moment(), happening)
+    return Wanted(f"move {slots.whom} to {place.name}", plainly(slots.moment), happening)
 
 
 _TO_A_HEIGHT = re.compile(r"\bto (?:\d[\d.]*|half a|one|two|three) ?(?:m|cm|met\w+|centimet\w+)\b")
@@ -246,6 +247,10 @@ def _reverse(slots: Slots) -> Iterator[Wanted]:
 
 def _repeat(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
+    if slots.moment.always and slots.moment.start is not None:  # "again from 4.5 until the end"
+        moment = replace(plainly(slots.moment), stop="end", always=False)
+        yield Wanted(pace(whose_of(slots), "repeat", times=1), moment, None)
+        return
     again = slots.one("times", "turns")
     if slots.told:
         yield paced(slots, "repeat", times=1)
@@ -281,11 +286,11 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
         return
     if not slots.told:
         return
-    if is_opened(_noun(slots)) and _SHUTS.search(slots.rest) and moment.start is not None:
-        yield now(slots, f"close {slots.whom}")
-        return
     if moment.stop is not None and moment.start is None and slots.happening is None and moment.lasting is None:
         moment = replace(moment, start=moment.stop, stop=None)  # "it waits until 2 s"
+    if is_opened(_noun(slots)) and _SHUTS.search(slots.rest) and moment.start is not None:
+        yield Wanted(f"close {slots.whom}", moment, slots.happening)
+        return
     if moment.lasting is not None:
         moment = replace(moment, taken=True)
     faster = slots.one("times", "%")
@@ -390,6 +395,15 @@ _WIDE = {"state": "fully_open", "part": "from"}
 def _pause(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     moment = replace(plainly(slots.moment), taken=False)
+    if (
+        moment.always
+        and moment.lasting is not None
+        and _has_stopped(slots)
+        and _GOES_AGAIN.search(" ".join(slots.words))
+    ):
+        again = Moment(start=moment.lasting, stop="end")  # "after it stops, half a second's peace, then on to the end"
+        yield paced(slots, "repeat", again, times=1)
+        return
     if moment.lasting is None and (seconds := slots.one("s")) is not None:
         moment = replace(moment, lasting=seconds.value)
     if moment.lasting is not None and moment.start is None and slots.happening is None and moment.stop is None:
@@ -403,6 +417,19 @@ def _pause(slots: Slots) -> Iterator[Wanted]:
     both = moment.stop is not None and (moment.start is not None or slots.happening is not None)
     if moment.lasting is not None or both or _has_ends(slots.happening):
         yield paced(slots, "stop", moment)
+
+
+_GOES_AGAIN = re.compile(r"\b(?:again|restart\w*|resum\w*|back on|another (?:go|run)|once more)\b")
+
+
+def _has_stopped(slots: Slots) -> bool:
+    """Whether the time is from when what is meant has stopped."""
+    during = None if slots.happening is None else slots.happening.during
+    return (
+        during is not None
+        and (during.state, during.part) == ("moving", "after")
+        and (during.of in (None, IT, *slots.queries))
+    )
 
 
 def _has_ends(happening: Happening | None) -> bool:
@@ -457,7 +484,7 @@ def _longer(slots: Slots) -> Iterator[Wanted]:
 
 def _amount(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    if _LESS_FAR.search(_NO_FURTHER.sub(" ", slots.said)) and not _NOT.search(slots.rest):
+    if _LESS_FAR.search(_NO_FURTHER.sub(" ", slots.said.replace("any more", " "))) and not _NOT.search(slots.rest):
         return  # "5 cm more": from how far it goes now
     if (how := _how_far(slots)) is None:
         return
@@ -490,7 +517,16 @@ _IN_TURN = re.compile(
 )
 
 
+_HELD = re.compile(r"\b(?:hold|wait|rest|pause|break|breather|hang\w*|stay\w*|linger\w*)\b")
+
+
 def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
+    moment = slots.moment
+    held = verb == "close" and moment.start is None and slots.happening is None and _HELD.search(slots.rest) is not None
+    if held and moment.lasting is not None:  # "give the open door a one second hold, then swing it shut, closed by 4.5"
+        opened = Happening(During(state="fully_open", part="from"), "once it is open")
+        yield Wanted(f"close {slots.whom}", Moment(start=moment.lasting, stop=moment.stop), opened)
+        return
     if verb == "open" and (order := listed(slots.words, slots.spans, slots.thing)) and len(order) > 1:
         yield from in_turn(order, slots)
         return

@@ -8,6 +8,7 @@ from .....gaussians import late_re as re
 from ...learned.seen import hues
 from ...vocabulary.nouns import EVERYWHERE, is_opened
 from ..clauses import AUXILIARIES
+from ..happenings import IT
 from ..verbs import SENSES, has_form
 from ..whens import HELD_BACK
 from .kinds import STATIC, SURE, is_any_word
@@ -54,7 +55,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     things, asked, idle = slots.things, slots.asked, slots.idle
     if not things or (slots.queries and slots.queries[0].text.split(" ")[-1] in EVERYWHERE):
         return True
-    aside = (" ".join(slots.words[start:stop]) for tag, start, stop in slots.spans if tag in ("off", "not", "keep"))
+    aside = (" ".join(slots.words[start:stop]) for tag, start, stop in slots.spans if tag in ("off", "not"))
     for said in (asked, *aside):
         first, then = (*_GREETING.sub("", _JOINED.sub("", said)).split(" "), "")[:2]
         if first.isalpha() and not is_any_word(first) and _DETERMINED.match(then):
@@ -63,7 +64,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     left = slots.rest.split()
     if (
         timeless
-        and kind in STATIC
+        and kind in ("hide", "remove", "move")
         and any(
             verb.isalpha() and not is_any_word(verb) and (then == "|" or _DETERMINED.match(then))
             for verb, then in pairwise(left)
@@ -110,6 +111,7 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
 }
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
+_WHY_NOT = re.compile(r"\bwhy (?:not|do not we|do not you)\b")
 _THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
 _BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")
 _SAME_SPEED = re.compile(  # "at unchanged speed"
@@ -145,7 +147,9 @@ _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
 
 def says_more(kind: str, slots: Slots) -> bool:
     """Whether a word without a mark tells of another wish: "one second earlier, and slower"."""
-    idle, left = slots.idle, slots.rest
+    idle, left = slots.idle, _WHY_NOT.sub(" ", slots.rest)
+    if kind == "open" and slots.happening is not None and slots.happening.during.of not in (None, IT, *slots.queries):
+        left = _BACK_IN.sub(" ", left)  # as another one does
     if kind not in ("recolor", "hide") and "then" in idle and hues() & set(idle.split()):
         return True  # "stop at 2 s, then roll it red again"
     if (then := _THEN.search(idle)) is not None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from .....gaussians import late_re as re
 from .....gaussians.world.words import singular
 from ...tagging.words import bag
-from ...vocabulary.nouns import EVERYWHERE, is_known
+from ...vocabulary.nouns import EVERYWHERE, is_known, is_opened
 from ...vocabulary.quantities import NUMBERS
 from ..manner import Thing
 
@@ -36,6 +36,7 @@ _ONE = re.compile(
     r"by)\b)"
 )
 _OF_DRAWERS = ("top", "middle", "bottom", "upper", "lower")  # of what "one" is then said
+_NO_NOUNS = bag("can back top middle bottom upper lower mirror match")
 _RANKED = re.compile(  # "from when the first book falls until the last one is down"
     r"\bthe (?:first|last|second|third) (?P<noun>[a-z]+)\b.*\bthe (?:first|last|second|third) (?P<one>one)\b"
 )
@@ -55,9 +56,11 @@ def with_nouns(text: str) -> str:
 
     def noun(found: re.Match[str]) -> str:
         before, after = (
-            [word for word in part.split() if is_known(word) and word not in _NO_THINGS and word not in ("can", "back")]
+            [word for word in part.split() if is_known(word) and word not in _NO_THINGS and word not in _NO_NOUNS]
             for part in (text[: found.start()], text[found.end() :])
         )
+        if found[0].split()[-2] in _OF_DRAWERS and (own := [w for w in (*before, *after) if is_opened(singular(w))]):
+            before = own
         unnamed = "drawer" if found[0].split()[-2] in _OF_DRAWERS else "one"
         return f"{found[0].removesuffix(' one')} {singular((before[-1:] or after[:1] or [unnamed])[0])}"
 

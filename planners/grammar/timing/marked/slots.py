@@ -204,7 +204,10 @@ class Slots:
         )
 
 
-_UNLESS = re.compile(r"\b(?:except|unless|apart from|only if)\b|\bif (?:it|he|she|they|the)\b")
+_UNLESS = re.compile(
+    r"\b(?:except|unless|apart from|only if)\b|"
+    r"(?<!wonder )(?<!see )(?<!know )(?<!ask )(?<!check )\bif (?:it|he|she|they|the)\b"
+)
 _ASKED_OF = re.compile(
     r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b|"
     r"\b(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b"
@@ -258,6 +261,9 @@ def slots(
     names, queries = _things(map(text, named), thing)
     if not names:
         names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
+    painted = None if names else _painted(map(text, (span for span in spans if span[0] == "as")), thing)
+    if painted is not None:
+        names, queries = (painted[0],), (painted[1],)  # "I would like a pink bed"
     of = None if time[1] is None else time[1].during.of
     if not names and of is not None and of.text and kind not in _LOOKS:  # "once the blue volume falls, its fall ..."
         own = re.search(rf"\bthe (?:[a-z]+ )?{re.escape(of.text)}\b", time[1].said if time[1] is not None else "")
@@ -270,7 +276,7 @@ def slots(
         names, queries = (goals[0].name,), (goals[0].query,)
     goals = tuple(goal for goal in goals if not goal.query.last and goal.query not in queries)
     shades = [span for span in spans if span[0] == "as"]
-    wanted = [span for span in shades if len(shades) == 1 or words[span[1] - 1] not in _FORMER]
+    wanted = [span for span in shades if len(shades) == 1 or not _is_former(words[: span[1]])]
     colors = dict.fromkeys(_color(text(span)) for span in wanted)
     marked = {at for _, start, stop in spans for at in range(start, stop)}
     left = [word for at, word in enumerate(words) if at not in marked]
@@ -295,7 +301,9 @@ def _named_elsewhere(
         bare = " ".join("," if at in taken else word for at, word in enumerate(words))
         if found := names_in(bare, thing)[:1] or tuple(m[0] for m in islice(_A_THING.finditer(bare), 1)):
             return found
-    elif named := [name for tag, a, b in spans if tag == "off" for name in names_in(" ".join(words[a:b]), thing)]:
+    elif named := [
+        name for tag, a, b in spans if tag in ("off", "not") for name in names_in(" ".join(words[a:b]), thing)
+    ]:
         return tuple(dict.fromkeys(named)) if len(set(named)) == 1 else ()  # "reroute the ball, it should ..."
     return () if happening is None else names_in(happening.said, thing)[:1]
 
@@ -356,6 +364,21 @@ def _is_number(word: str, then: str) -> bool:
 
 def _tells_number(word: str) -> bool:
     return word[0].isdigit() or word in NUMBERS
+
+
+def _painted(shades: Iterator[str], thing: Thing) -> tuple[str, Query] | None:
+    """What a colour is said of, behind it in one mark, and its name; None if nothing is."""
+    for said in shades:
+        noun = said.split()[-1]
+        if is_known(noun) and noun not in hues() and set(said.split()[:-1]) & hues():
+            query = thing(f"the {noun}")
+            return None if query is None else (f"the {noun}", query)
+    return None
+
+
+def _is_former(before: Sequence[str]) -> bool:
+    """Whether words before a colour tell that something has it now: "swap its brown for", "and reverts to"."""
+    return before[-1] in _FORMER or re.search(r"\b(?:back|reverts?|returns?) (?:in)?to$", " ".join(before)) is not None
 
 
 def _counts(then: str) -> bool:
@@ -449,6 +472,7 @@ def _as_well(happening: Happening, other: Query, tag: str, phrase: str) -> Happe
     return Happening(happening.during.model_copy(update={"of": other, "part": part}), phrase)
 
 
+_STAYS_OPEN = re.compile(r"^(?:until|till) (?:\d|one\b|two\b|three\b|four\b|five\b|half\b)")
 _UP_TO_THEN = re.compile(r"\b(?:until|till|before)(?: ,)?$")
 _AT_A_SECOND = re.compile(r"^(?:just |right )?(?:in|at|on) (?:second|sec|t ?=) ?\d")
 
@@ -477,7 +501,8 @@ def _time(
         tag, phrase = span[0], text(span)
         if tag == "by" and _AT_A_TIME.match(phrase):
             tag = "from"
-        if tag == "not" and kind in _ENDED and (reverted := _REVERTED.search(phrase)) is not None:
+        lasts = happening is not None and happening.during.part == "while"
+        if tag == "not" and kind in _ENDED and not lasts and (reverted := _REVERTED.search(phrase)) is not None:
             tag, phrase = "to", reverted["then"]
         if tag == "from" and (rests := _RESTS.match(phrase)) is not None:
             lasting = told_by("for", rests["lasting"], thing)
@@ -544,6 +569,8 @@ def _plainer_tag(tag: str, phrase: str, before: str, kind: str, moment: Moment, 
     numbers = isinstance(moment.start, float) or _A_NUMBER.search(phrase) is None
     if tag == "from" and begun and ((kind in _ENDED and numbers) or _ARRIVES.search(before)):
         tag = "to"
+    if kind == "close" and tag == "to" and _STAYS_OPEN.match(phrase):
+        return "from"  # "leave it open till four, then close it"
     if tag == "from" and (UNTIL.match(phrase) or _UP_TO_THEN.search(before)):
         tag = "to"
     if tag == "in" and _AT_A_SECOND.match(phrase) and kind not in _LOOKS:

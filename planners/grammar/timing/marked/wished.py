@@ -18,6 +18,7 @@ _WISHES = re.compile(
     r"(?:^|[,.;:!] |\b(?:please|just|and|so|then|now|kindly|maybe) )(?:please |just |kindly )?"
     rf"(?:{_ORDERS})\b|"
     r"\b(?:can|could|would|will) (?:you|we|somebody|someone|anybody|anyone)\b|^(?:,|so|and)? ?(?:can|could|may|might) |"
+    r"\b(?:could|can) (?:really )?(?:do with|use)\b|\bdeserves?\b|"
     r"\b(?:i|we) (?:would|should) (?:\w+ ){0,2}?(?:like|love|prefer|want|go for|rather have)\b|"
     r"\b(?:i|we) (?:\w+ )?(?:want|wish|need|prefer)\b|^would (?:love|like|prefer)\b|"
     r"\b(?:should|must|ought to|needs? to|has to|have to|wants to|is to|are to) "
