@@ -54,6 +54,7 @@ _PLACED = re.compile(r" (?:beside|on|near|by|in|at|under|behind|next to|above|wi
 _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _EACH = {"order": "begin", "begin": "begin", "together": "begin", "open": "open", "close": "close", "hide": "hide"}
+_PACED_KINDS = ("duration", "speed", "begin", "pause")
 _IN_TURN = {"open", "order"}
 _SEEN = ("delete", "opacity", "recolor")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
@@ -259,6 +260,15 @@ class Judge:
             and self._moves(ops[0]["target"])
         ):
             return chance >= least  # "it must stay on the shelf" puts nothing there
+        if (
+            op == "move"
+            and kind in _PACED_KINDS
+            and self._does_move(ops[0]["target"])
+            and not {"toward", "place"} & set(ops[0])
+        ):
+            return chance >= least  # "let it drift down, taking two seconds" moves nothing otherwise
+        if (kind, change) == ("close", "begin") and _is_of_opened(ops[0]) and when.during is None:
+            return chance >= least  # the closing alone
         if (kind, change) == ("stay", "open"):  # where it opens and closes by itself
             return self._moves is not None and self._moves(ops[0]["target"]) is True and chance >= least
         if told is None and op not in (*_LOOKS_OR_THINGS, "pace", "articulate"):

@@ -525,7 +525,8 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     held = verb == "close" and moment.start is None and slots.happening is None and _HELD.search(slots.rest) is not None
     if held and moment.lasting is not None:  # "give the open door a one second hold, then swing it shut, closed by 4.5"
         opened = Happening(During(state="fully_open", part="from"), "once it is open")
-        yield Wanted(f"close {slots.whom}", Moment(start=moment.lasting, stop=moment.stop), opened)
+        ends = Moment(start=moment.lasting, stop=moment.stop, said=("then",))
+        yield Wanted(f"close {slots.whom}", ends, opened)
         return
     if verb == "open" and (order := listed(slots.words, slots.spans, slots.thing)) and len(order) > 1:
         yield from in_turn(order, slots)
@@ -549,6 +550,8 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
         return
     how = _how_far(slots) if slots.amounts else None
     moment = slots.moment if slots.moment.lasting is None else replace(slots.moment, taken=True)
+    if moment.always and moment.start is not None:
+        moment = replace(moment, stop="end", always=False)  # "at four, so that it is shut as the film ends"
     command = f"{verb} {slots.whom}" if how is None or verb == "close" else f"open {slots.whom} {how}"
     yield Wanted(command, plainly(moment), slots.happening)
 

@@ -25,6 +25,7 @@ _DONE_BY = {  # the operations by which a wish of a kind is done; the other kind
     "recolor": ("recolor", "restyle"), "hide": ("opacity", "delete"), "remove": ("delete", "opacity"),
     "move": ("move", "follow", "orbit", "rotate", "pace", "order", "delete"),
     "spin": ("spin", "orbit", "rotate", "pace"),
+    "pause": ("pace",), "halt": ("pace", "articulate"),
     "amount": ("articulate", "pace", "move"), "open": ("articulate", "pace"), "close": ("articulate", "pace"),
 }  # fmt: skip
 _COURSED_BY = ("pace", "articulate", "order", "spin", "move", "follow")

@@ -92,9 +92,10 @@ def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterato
     marks = [(start, stop) for tag, start, stop in spans if tag in ("x", "y")]
     held = {at for start, stop in marks for at in range(start, stop)}
     marks += [(at - 1, at + 1) for at in range(1, len(words)) if at not in held and _is_bare_color(words, at)]
-    if noun := next((noun for noun in map(singular, words) if is_opened(noun) and f"{noun}s" in words), ""):
+    if noun := next((noun for noun in map(singular, words) if is_opened(noun)), ""):
         whole = [mark for mark in marks if not set(words[mark[0] : mark[1]]) <= _RANKS_OF_PLACE | {"the", "one"}]
-        places = ((at, at + 1) for at, word in enumerate(words) if word in _RANKS_OF_PLACE)
+        ranked = (at for at, word in enumerate(words) if word in _RANKS_OF_PLACE)
+        places = ((at, at + 1) for at in ranked if at in held or f"{noun}s" in words)
         marks = whole + [own for own in places if not any(start <= own[0] < stop for start, stop in whole)]
         words = [
             f"the {word} {noun}" if word in _RANKS_OF_PLACE and singular(then) != noun else word

@@ -33,6 +33,7 @@ _EVENTS = (
 )
 _OF_EVENT = re.compile(rf"^(?:the |its |his |her |a )?(?:\w+ )?{_EVENTS} (?:of|by|for) ")
 _ITS_EVENT = re.compile(rf"(?: 's?)?(?: (?:whole|entire|full|complete|outward|return|own|\w+ward))? {_EVENTS}$")
+_STATE = re.compile(r"\b(?:open|opened|closed|shut|opening|closing) (?=[a-z])")  # before the name of what opens
 _JUST_EVENT = re.compile(rf"^(?:the |its |his |her |their |this |that |whole |entire |\w+ing )*{_EVENTS}$")
 _TRIM = " ,.;:!?'\""
 _PLACES = re.compile(
@@ -259,11 +260,11 @@ def slots(
     if kind not in (*_LOOKS, "order") and any(goal.query.last for goal in goals):
         return None
     names, queries = _things(map(text, named), thing)
-    if not names:
-        names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
     painted = None if names else _painted(map(text, (span for span in spans if span[0] == "as")), thing)
     if painted is not None:
         names, queries = (painted[0],), (painted[1],)  # "I would like a pink bed"
+    if not names:
+        names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
     of = None if time[1] is None else time[1].during.of
     if not names and of is not None and of.text and kind not in _LOOKS:  # "once the blue volume falls, its fall ..."
         own = re.search(rf"\bthe (?:[a-z]+ )?{re.escape(of.text)}\b", time[1].said if time[1] is not None else "")
@@ -413,7 +414,7 @@ def _things(said: Iterator[str], thing: Thing) -> tuple[tuple[str, ...], tuple[Q
             continue
         bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
         bare = re.sub(r" 's?$", "", bare)
-        bare = with_moving(bare)
+        bare = _STATE.sub("", with_moving(bare)) if is_opened(bare) else with_moving(bare)
         query = thing(bare)
         if query is None and (shorter := _RANKS.sub("", bare)) != bare:
             bare = shorter
@@ -567,7 +568,7 @@ def _plainer_tag(tag: str, phrase: str, before: str, kind: str, moment: Moment, 
         happening is not None and happening.during.part not in ("until", "until_end")
     )
     numbers = isinstance(moment.start, float) or _A_NUMBER.search(phrase) is None
-    if tag == "from" and begun and ((kind in _ENDED and numbers) or _ARRIVES.search(before)):
+    if tag == "from" and begun and kind != "repeat" and ((kind in _ENDED and numbers) or _ARRIVES.search(before)):
         tag = "to"
     if kind == "close" and tag == "to" and _STAYS_OPEN.match(phrase):
         return "from"  # "leave it open till four, then close it"

@@ -22,7 +22,8 @@ _AS_ONE = re.compile(
     r"accompan\w+|follow\w*|alongside|simultaneous\w*|join\w*|both|does)\b"
 )
 _STAYS = re.compile(
-    r"\b(?:stays?|remains?|leave|left|keeps?|holds?) (?:\w+ )?(?:open|out)\b|\bnot (?:close|shut|go back)\b"
+    r"\b(?:stays?|remains?|leave|left|keeps?|holds?) (?:\w+ )?(?:open|out)\b|\bnot (?:close|shut|go back)\b|"
+    r"\bwhen (?:that|it|the [a-z ]+?) (?:slides? out|opens|comes? out)\b"
 )
 _OPENS_ALONE = re.compile(r"\b(?:open|opens|opening|slides? out|comes? out|pops? out)\b")
 _CLOSES = re.compile(
