@@ -31,7 +31,7 @@ from .reading.time.everyday import everyday
 from .reading.time.frames import UNIT, plain
 from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
-from .reading.time.supposed.plainly import SURE, is_of_a_leg, supposed
+from .reading.time.supposed.plainly import LEAST, SURE, goes_first, supposed
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
 from .telling import absent, absent_text, evidence
@@ -121,8 +121,9 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     names = _names(survey)
     moved = _of_motion(asked, survey)
     if moved is not None and moved.answer.answer is not None:
-        nothing = moved.answer.answer == () or is_of_a_leg(text)  # or nothing of that name
-        return (nothing and _read_as(supposed(text, names, SURE), survey, timeline)) or moved
+        first = goes_first(text)
+        nothing = moved.answer.answer == () or first  # or nothing of that name
+        return (nothing and _read_as(supposed(text, names, LEAST if first else SURE), survey, timeline)) or moved
     for made in (_shared, _compared, _of_two):
         if (made_of := made(words, survey, timeline)) is not None:
             return made_of

@@ -106,7 +106,7 @@ def _times(kind: str, said: tuple[str, ...]) -> Iterator[str]:
         yield ""  # it is asked of the whole film
         return
     yield everyday(_ROUGHLY.sub("", plain))
-    if told:
+    if told and not re.search(r"\d", plain):
         yield told
 
 
@@ -123,6 +123,7 @@ _WHOLE_FILM = re.compile(  # a time that is all of the film
     r"in total|altogether|in all|"
     r"at any (?:point|time|moment)|at all|all told|at some (?:point|time|moment)|from (?:start|beginning|"
     r"first) to (?:finish|end|last)|the (?:whole|entire|full) (?:while|time)|"
+    r"(?:during|in|over|from) 0(?: ?s)? (?:to |- ?)?5 ?s(?:ec\w*)?|(?:when|once) its (?:all )?(?:over|done)|"
     r"(?:during|in|over|throughout|within|for|across|through) (?:[a-z]+ ){0,4}(?:film|clip|video|movie|footage|"
     r"recording|recorded|filmed|take)|"
     r"(?:by|in|at|before) the (?:very )?end|finally|eventually|in the end|at last|when (?:it|all|"
@@ -172,12 +173,19 @@ _ALL_OF_IT = re.compile(  # of a movement
     r"finish(?:ing)?|end|"
     r"(?:full |final |a )?(?:stop|rest|halt|standstill))$"
 )
+_TILL_IT_STOPS = re.compile(
+    r"^(?:before|until|till) (?:it|he|she) (?:gave up|gives up|lay still|lies still|stop\w*|"
+    r"c[oa]mes? to (?:a |its )?\w+|"
+    r"settle\w*|died|dies|quits?|was done|is done)\b"
+)
 _AT_MOST = re.compile(r"^(?:once|when|after|at|in|by) (?!.*\d)(?!.*\bseconds?\b)")  # as far as it goes then
 
 
 def _plain_time(kind: str, said: str) -> str:
     """The words for a time in plain words; "" for all of the film, where that says nothing."""
-    said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", said)
+    said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", re.sub(r"^(?:given|assuming) (?=t\b|\d)", "at ", said))
+    if kind in ("turns", "far", "often") and _TILL_IT_STOPS.match(said):
+        return ""
     if _ALL_OF_IT.match(said) or (kind in ("far_opens", "far_turns") and _AT_MOST.match(said)):
         return ""
     if kind == "long_on" and said.startswith(("before it ", "until it ")):
@@ -218,6 +226,8 @@ def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
         found = {"if_shut" if kind == "if_closes" else kind: found[kind] for kind in found if kind != "if_shut"}
     if _YES_OR_NO.search(said):
         found = {kind: chance for kind, chance in found.items() if kind.startswith("if_")}
+    if _SUMMED.search(said):
+        found["far"] = found.get("far", 0.0) + found.pop("far_opens", 0.0)
     kind = max(found, key=found.__getitem__)
     if kind == "where_ends" and _WHERE_IS.match(said):
         return "where_at", found[kind] + found["where_at"]
@@ -235,9 +245,14 @@ _LEGS = {"second": "after it has turned", "last": "after it has turned", "final"
 _OF_A_LEG = bag("fast fast_most far long_moves way")
 
 
-def is_of_a_leg(text: str) -> bool:
-    """Whether a question is about one stretch of a way."""
-    return _LEG.search(" ".join(word.text for word in split(clean(text)))) is not None
+def goes_first(text: str) -> bool:
+    """Whether a question is about one stretch of a way, or about the moment of a first movement, of which other readers
+    tell the whole."""
+    said = " ".join(word.text for word in split(clean(text)))
+    return _LEG.search(said) is not None or _FIRST_MOVE.match(said) is not None
+
+
+_FIRST_MOVE = re.compile(r"^(?:the )?(?:time ?stamp|time|frame|moment|instant) of (?:the )?(?:first|initial) ")
 
 
 def _without_leg(words: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
@@ -267,7 +282,8 @@ def _asks_why(kind: str, said: str) -> bool:
 
 
 _CAUSES = re.compile(
-    r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|\bcolou?rs?\b"
+    r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|"
+    r"(?<!\bby )\bcolou?rs?\b"
 )
 _FEELS = re.compile(
     r"\b(?:is|was|were|are|be|been|feel|feels|felt|feeling|get|gets|got) (?:the |it |he |she |they )?(?:[a-z]+ ){0,3}?"
@@ -297,9 +313,7 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
         inside |= set(range(start, stop))
     rest = " ".join(word for at, word in enumerate(words) if at not in inside)
     events = [name for name in found["x"] if _AN_EVENT.match(name)]
-    found["x"] = [
-        name for name in found["x"] if name not in events and name not in ("ones", "the ones", "the one", "one")
-    ]
+    found["x"] = [name for name in found["x"] if name not in events and not _ONES.match(name)]
     rest = " ".join((rest, *events))
     if not found["x"]:  # "one of the toys was in a sulk, which was it?"
         plain = (word for aside in found["off"] for word in aside.split())
@@ -329,6 +343,7 @@ _AN_EVENT = re.compile(
 _TIMED = re.compile(
     r"\b(?:when|while|until|till|once|after|before|during)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b"
 )
+_ONES = re.compile(r"^(?:the |that |this |which )?ones?$")
 _BLINKED = re.compile(r"^(?:i|we) [a-z ]+? (?P<time>at \d+(?:\.\d+)?(?: ?s(?:ec(?:ond)?s?)?)?)$")
 _ONE = re.compile(r"\bone$")
 
@@ -363,7 +378,7 @@ def _joined(names: tuple[str, ...]) -> str:
 
 def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
-    rest, allowed = _WHAT_SECOND.sub("when", said.rest).split(), _ALLOWED.get(kind, frozenset())
+    rest, allowed = _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub("when", said.rest)).split(), _ALLOWED.get(kind, frozenset())
     if kind in ("what_moves", "what_still"):
         whose = said.x in _ANYTHING or _is_kind(said.x) or _APART.search(said.rest) is not None
         if not whose or said.y:
@@ -395,6 +410,7 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
 
 
 _WHAT_SECOND = re.compile(r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b")
+_IN_A_ROOM = re.compile(r"\b(?:in|of|inside) (?:the|this|that|our) (?:[a-z]+ )?room\b")
 _APART = re.compile(r"\b(?:besides|apart from|except|excepting|other than|aside from|but)\b")
 _RANKED = bag("order visits long_moves long_opens long_closes far apart long_falls")
 _COUNTED = bag("order does visits how_many what_still what_shut what_up what_open what_on what_fell what_moves")
@@ -427,7 +443,8 @@ _ALLOWED: Mapping[str, frozenset[str]] = {
     "when_reaches": bag("first"), "when_falls": bag("first"), "where_starts": bag("first initial"),
     "turns": bag("every each"), "often": bag("every each"), "fast_most": bag("most"), "gap": _ORDERS | {"between"},
     "long_still": bag("before first only"), "long_reach": bag("before until"), "if_to_end": bag("until"),
-    "what_still": bag("only else other"), "what_moves": bag("else other"), "how_many": bag("every each other"),
+    "what_still": bag("only else other"), "what_moves": bag("only else other"),
+    "does": _ORDERS | bag("one another"), "how_many": bag("every each other"),
 }  # fmt: skip
 
 # -- one plain question for each kind ----------------------------------------------------------------------------------
@@ -514,7 +531,15 @@ def _moves(said: Said) -> Iterator[str]:
     yield f"does {said.x or 'anything'} move"
 
 
+_RANKED_AS = {
+    "first": re.compile(r"\b(?:first|earliest|soonest|begins?|starts?|leads?|before|opens)\b"),
+    "last": re.compile(r"\b(?:last|latest|final\w*|longest|longer|after|closes|ends?(?! up\b))\b"),
+}
+
+
 def _ordered(said: Said, rank: str) -> Iterator[str]:
+    if _RANKED_AS[rank].search(f"{said.x} {said.rest}") is None:
+        return
     deed = _deed(said.rest, "move")
     noun = "thing" if not said.x or " and " in said.x or said.x in _PRONOUNS else _one_of(said.x)
     yield f"which {noun} {_s(deed)} {rank}"
@@ -534,8 +559,14 @@ _ARE_THERE = re.compile(
 _MOVING = re.compile(r"\b(?:mov\w*|motion|go|goes|roll\w*|walk\w*|spin\w*|slid\w*)\b")
 
 
+_LEFT_UP = re.compile(r"\b(?:left|still|remain\w*|stay\w*) (?:up|on the (?:shelf|board|high))\b")
+
+
 def _counted(said: Said) -> Iterator[str]:
     deed = _deed(said.rest, "move")
+    if _LEFT_UP.search(said.rest) and said.x and said.x not in _PRONOUNS:
+        yield f"how many {_PLURAL.sub('', said.x)} have not fallen"
+        return
     if (
         deed == "fall"
         and re.match(r"^(?:at|by|after) \d", said.time)
@@ -569,7 +600,7 @@ def _turns(said: Said) -> Iterator[str]:
 
 
 def _fast(said: Said) -> Iterator[str]:
-    if said.x:
+    if said.x and said.unit not in ("seconds", "second", "s", "sec"):
         yield f"how fast does {said.x} move in {said.unit}" if said.unit else f"what is the average speed of {said.x}"
 
 
@@ -579,7 +610,10 @@ def _long(said: Said) -> Iterator[str]:
         yield f"how long does {said.x} {deed if deed in ('turn', 'fall') else 'move'}"
 
 
-_FULLY = re.compile(r"\b(?:fully|full|completely|wholly|all the way|entirely|maximum|widest|furthest)\b")
+_FULLY = re.compile(
+    r"\b(?:right out|(?:its|the) furthest|full extension|fully|full|completely|wholly|"
+    r"all the way|entirely|maximum|widest|furthest)\b"
+)
 
 
 _HALFWAY = re.compile(r"\b(?:half|half ?way|mid ?point|middle)\b")
@@ -650,7 +684,8 @@ def _long_open(said: Said) -> Iterator[str]:
 
 
 _SUMMED = re.compile(
-    r"\b(?:total|altogether|cumulative|sum|summed|added|add|combined|both ways|there and back|out and back|overall)\b"
+    r"\b(?:strokes both|both (?:strokes|directions)|total|altogether|cumulative|sum|summed|"
+    r"added|add|combined|both ways|there and back|out and back|overall)\b"
 )
 
 
@@ -677,11 +712,13 @@ _RESTS = re.compile(r"\b(?:pause|break|rest|hold|wait|stay|dwell)\b")
 
 _EVENT_OF = re.compile(  # "the onset of the red book 's fall", "the red book 's landing", "that of the blue one 's"
     r"^(?:(?:the |its )?(?P<first>[a-z]+(?: point)?|that) of )?(?P<who>(?:the )?[a-z ]+?)(?: 's)?"
-    r"(?: (?P<deed>fall|drop|landing|impact|start|onset|departure|release|trigger|drop trigger|stop|end|opening|"
+    r"(?: (?:starting|beginning|begins|starts) to)?"
+    r"(?: (?P<deed>starting|falling|landing|stopping|fall up|fall|drop|landing|impact|start|onset|departure|"
+    r"release|trigger|drop trigger|stop|end|opening|"
     r"closing))?$"
 )
-_BEGINS = re.compile(r"\b(?:start|onset|departure|release|trigger|beginning)\b")
-_ENDS = re.compile(r"\b(?:end|stop|landing|impact|touchdown)\b")
+_BEGINS = re.compile(r"\b(?:starting|start|onset|departure|release|trigger|beginning)\b")
+_ENDS = re.compile(r"\b(?:stopping|end|stop|landing|impact|touchdown)\b")
 
 
 def _event_in(said: str, names: Collection[str], noun: str) -> tuple[str, str] | None:
