@@ -228,6 +228,9 @@ def _moves(expect: dict[str, Any], name: str, effect: _Effect) -> str:
     stays = expect.get("angle_deg") == 0 and expect.get("start") is None and not rests  # "keep it shut"
     if expect.get("factor") == 0 or stays:
         return f"it moves from {spans[0][0]:.2f} s" if spans else ""
+    timed = any(expect.get(key) is not None for key in ("start", "stop", "duration_s", "frozen"))
+    if not spans and expect["kind"] == "path" and expect.get("at_end") and not timed:  # put there once and for all
+        return _reaching(expect, course, earlier, spans, effect)
     if not spans:
         return "" if expect.get("frozen", [1])[0] == 0 else "it does not move"
     tests = (_timing, _pacing, _turning, _reaching)

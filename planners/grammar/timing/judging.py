@@ -49,7 +49,9 @@ _THROUGHOUT = re.compile(r"\b(?:throughout|all the (?:way|time)|(?:whole|entire)
 _PACED = (*COURSES, "amount")
 _LOOKS_OR_THINGS = ("insert", "recolor", "rotate", "scale")
 _REPEATS = re.compile(r"(?:please )?(?:repeat|replay)\b", re.IGNORECASE)
-_SWITCHED_OFF = re.compile(r"\b(?:turn|switch|shut)(?:ed|s)? (?:\w+ ){0,4}off\b", re.IGNORECASE)
+_SWITCHED_OFF = re.compile(
+    r"\b(?:cut|conk|give|gave)\w* out\b|\b(?:turn|switch|shut)(?:ed|s)? (?:\w+ ){0,4}off\b", re.IGNORECASE
+)
 _PLACED = re.compile(r" (?:beside|on|near|by|in|at|under|behind|next to|above|with|of|from) ")
 _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
@@ -76,12 +78,12 @@ _SHUT, _OUT = (
     r"(?:shut|closed|pushed in)",
     r"(?:open|opened|extended|out|pulled out|ajar|wide)",
 )
+_AT_ONCE = r"(?:(?:at|in) (?:the )?same time|simultaneously|at once)"
 _BOTH_WAYS = re.compile(  # "completely shut and simultaneously extended"
-    rf"\b{_SHUT} (?:and|but|yet) (?:simultaneously|also|at the same time|at once|both|likewise) {_OUT}\b|"
-    rf"\b{_OUT} (?:and|but|yet) (?:simultaneously|also|at the same time|at once|both|likewise) {_SHUT}\b|"
+    rf"\b{_SHUT} (?:and|but|yet) (?:also|both|likewise|{_AT_ONCE}) (?:\w+ly )?{_OUT}\b|"
+    rf"\b{_OUT} (?:and|but|yet) (?:also|both|likewise|{_AT_ONCE}) (?:\w+ly )?{_SHUT}\b|"
     rf"\bboth (?:\w+ )?(?:{_SHUT} and (?:\w+ )?{_OUT}|{_OUT} and (?:\w+ )?{_SHUT})\b|"
-    rf"\b(?:{_SHUT} and (?:\w+ )?{_OUT}|{_OUT} and (?:\w+ )?{_SHUT}),? (?:\w+ ){{0,3}}"
-    r"(?:at the same time|simultaneously|at once)\b"
+    rf"\b(?:{_SHUT} and (?:\w+ )?{_OUT}|{_OUT} and (?:\w+ )?{_SHUT}),? (?:\w+ ){{0,3}}{_AT_ONCE}\b"
 )
 _NEVER_LEAVES = re.compile(  # "walks all the way to the bed without ever leaving its spot"
     r"\b(?:walks?|rolls?|drives?|goes|moves?|slides?|travels?|runs?)\b.*\bwithout (?:ever |once |even )?"
@@ -293,7 +295,7 @@ class Judge:
         if len(ops) != 1 or ops[0].get("target") is None or ops[0]["target"].also:
             return False
         moving = ops[0]["target"].moving is True and ops[0]["target"].pick == "all"
-        if not ops[0]["target"].text and (not moving or _ALL.search(cleaned)):
+        if not ops[0]["target"].text and not ops[0]["target"].colors and (not moving or _ALL.search(cleaned)):
             return False
         words = with_nouns(in_words(cleaned)).split(" ")
         target, others = ops[0]["target"].text, list[bool]()
@@ -303,7 +305,8 @@ class Judge:
                 own = _PLACED.split(" ".join(words[start:stop]))[0].split()
                 others.append(stop - start > 1 and target.split(" ")[-1] not in own)
             elif query.text and not query.last:
-                others.append(query.text != target)
+                colors = ops[0]["target"].colors
+                others.append(query.text != target if target else bool(query.colors) and query.colors != colors)
         return bool(others) and all(others)
 
     def misses_a_thing(self, cleaned: str, ops: Sequence[Fields]) -> bool:

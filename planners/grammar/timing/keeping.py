@@ -40,12 +40,14 @@ _A_COMMAND = re.compile(  # "keep the sofa and remove everything else", "leave t
     r"(?!.*\b(?:as|same|still|unchanged|untouched|alone|otherwise|identical|like|usual|now)\b)"
 )
 _SUBJECTS = {  # what stays, and the words for it
-    "start": r"start\w*|begin\w*|onset|setting off|sets? off|departure|leav(?:es|ing)|kick\w*|set(?:ting)? out|"
+    "start": r"(?:step|head|mov|push)\w* off|start\w*|begin\w*|onset|setting off|sets? off|departure|leav(?:es|ing)|"
+    r"kick\w*|set(?:ting)? out|"
     r"letting go|take ?off|(?:tips?|takes?|goes|go|heads?) off|comes? out|falls?|drops?|opens?|timings?|times|"
     r"schedule|moment|cue|entrance|slots?",
     "stop": r"ends?|until|till|out ?point|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|"
     r"arriv\w*|"
-    r"(?<!set )(?<!sets )(?<!tips )(?<!takes )(?<!goes )(?<!kicks )(?<!setting )off|done|"
+    r"(?<!set )(?<!sets )(?<!tips )(?<!takes )(?<!goes )(?<!kicks )(?<!setting )"
+    r"(?<!stepping )(?<!heading )(?<!moving )off|done|"
     r"timings?|times|schedule|slots?",
     "speed": r"speeds?|pace|rate|tempo|velocity|rpm|fast|quick|slow|takes?|taking|duration|long|length|last|lasting|"
     r"cycle time|turns? a second",

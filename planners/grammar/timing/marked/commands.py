@@ -48,7 +48,8 @@ _EARLIER = re.compile(r"\b(?:minus|earlier|sooner|early|ahead|forward|advanc\w+|
 _STRICTLY_LATER = re.compile(r"\b(?:later|delay\w*|postpon\w+|longer)\b")
 _TOO = re.compile(r"\btoo (?:\w+ )?(?P<what>late|early|soon)\b")
 _UP = re.compile(
-    r"\b(?:up|upwards?|lift\w*|rais\w+|ris\w+|levitat\w+|float\w*|hover\w*|hoist\w*|higher|ascend\w*|into the air|"
+    r"\b(?:up(?! (?:next|to|beside|at|against|by|on)\b)|upwards?|lift\w*|rais\w+|ris\w+|levitat\w+|float\w*|"
+    r"hover\w*|hoist\w*|higher|ascend\w*|into the air|"
     r"off the ground|soar\w*|elevat\w+|jack|climb\w*)\b"
 )
 _DOWN = re.compile(r"\b(?:down|downwards?|lower\w*|sink\w*|sank|descend\w*)\b")
@@ -267,6 +268,8 @@ def _return(slots: Slots) -> Iterator[Wanted]:
     moment = plainly(slots.moment)
     if moment.always and any(tag == "to" for tag, _, _ in slots.spans):
         moment = replace(moment, stop="end", always=False)  # it is back by the end
+    elif moment.start == "end":
+        moment = replace(moment, start=None, stop="end")
     yield paced(slots, "return", moment)
 
 
@@ -517,11 +520,15 @@ _IN_TURN = re.compile(
 )
 
 
+_SHUT_TILL = re.compile(r"\b(?:shut|closed) (?:till|until)\b")
 _HELD = re.compile(r"\b(?:hold|wait|rest|pause|break|breather|hang\w*|stay\w*|linger\w*)\b")
 
 
 def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     moment = slots.moment
+    if verb == "close" and isinstance(moment.stop, float) and _SHUT_TILL.search(" ".join(slots.words)):
+        yield paced(slots, "begin", Moment(start=moment.stop))  # "hold the door shut till 2 s"
+        return
     held = verb == "close" and moment.start is None and slots.happening is None and _HELD.search(slots.rest) is not None
     if held and moment.lasting is not None:  # "give the open door a one second hold, then swing it shut, closed by 4.5"
         opened = Happening(During(state="fully_open", part="from"), "once it is open")

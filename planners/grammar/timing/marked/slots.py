@@ -265,12 +265,14 @@ def slots(
         names, queries = (painted[0],), (painted[1],)  # "I would like a pink bed"
     if not names:
         names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
+    if not names and any(
+        thing(text(span)) is None and text(span) not in (*hues(), "its", "his", "her") for span in named
+    ):
+        return None  # what it is about is not understood
     of = None if time[1] is None else time[1].during.of
     if not names and of is not None and of.text and kind not in _LOOKS:  # "once the blue volume falls, its fall ..."
         own = re.search(rf"\bthe (?:[a-z]+ )?{re.escape(of.text)}\b", time[1].said if time[1] is not None else "")
         names, queries = ((own[0],), (of,)) if own is not None else ((), ())
-    if not names and any(thing(text(span)) is None and text(span) not in hues() for span in named):
-        return None  # what it is about is not understood
     if not names and kind in (*COURSES, "open", "close") and moves(ALL_MOVING):
         names, queries = (MOVING,), (ALL_MOVING,)
     if not names and len(goals) == 1 and kind in _LOOKS:  # "a coat of paint on the bed"
@@ -345,6 +347,10 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
 _IN_ORDER = bag("first then next last finally lastly followed")
 _JOINTS = bag("and , or nor neither plus & both the as well with along")
 _AGAIN = bag("lose remove delete hide take get rid of away out too also then drop bin scrap ditch to see")  # of a look
+_BEHIND_NAMES = bag(
+    "on in at under beside behind below above from near by to next of with and , ' 's that which who there here over "
+    "along round left right up down now too as"
+)
 _FORMER = bag("than of 's from not that")  # before the colour that something had: "swap its brown for green"
 _EVERYTHING = re.compile(r"^(?:everything|all) (?:else|but)\b|\b(?:the rest|the others?)$")
 
@@ -424,8 +430,11 @@ def _things(said: Iterator[str], thing: Thing) -> tuple[tuple[str, ...], tuple[Q
             query = thing(bare)
         if query is None:
             inner = names_in(bare, thing)
-            bare = inner[0] if inner else bare
-            query = thing(bare) if inner else None
+            whole = (
+                bool(inner) and (bare.partition(inner[0])[2].split() or ["on"])[0] in _BEHIND_NAMES
+            )  # no "toy train"
+            bare = inner[0] if whole else bare
+            query = thing(bare) if whole else None
         if query is None or query.last or query in found.values():
             continue
         found[re.sub(r"^(?:this|that|a|an|our|my|your) ", "the ", bare)] = query
@@ -570,7 +579,7 @@ def _plainer_tag(tag: str, phrase: str, before: str, kind: str, moment: Moment, 
     numbers = isinstance(moment.start, float) or _A_NUMBER.search(phrase) is None
     if tag == "from" and begun and kind != "repeat" and ((kind in _ENDED and numbers) or _ARRIVES.search(before)):
         tag = "to"
-    if kind == "close" and tag == "to" and _STAYS_OPEN.match(phrase):
+    if kind == "close" and tag == "to" and _STAYS_OPEN.match(phrase) and re.search(r"\b(?:open|out)\b", before):
         return "from"  # "leave it open till four, then close it"
     if tag == "from" and (UNTIL.match(phrase) or _UP_TO_THEN.search(before)):
         tag = "to"
