@@ -5,9 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
 import torch
 
 from scenewright.agent.session.session import Session
+from scenewright.benchmarks._motion.rooms import moving_room
+from scenewright.gaussians.errors import ScenewrightError
 from scenewright.gaussians.files import load
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.motion.at import at
@@ -47,3 +50,15 @@ def test_a_wish_for_what_stands_still_is_none_about_its_motion(boxes: Scene, enc
     wish = "I'd rather nobody saw the left red thing until the green thing has stopped"
     (op,) = session.plan(wish).ops
     assert op.op == "opacity"
+
+
+def test_a_plan_that_fails_in_its_scene_is_tried_as_its_kind_of_wish() -> None:
+    """Rules read "the coat rack with it" as one thing made of two."""
+    session = Session(moving_room("door", 0.1))
+    session.do("Take the bench away, and the coat rack with it. I like bare walls.")
+    for name in ("bench", "coat rack"):
+        assert not session.select(name).chosen
+    scene = session.scene
+    with pytest.raises(ScenewrightError, match="piano"):
+        session.do("take the piano away, and the doormat with it")  # neither way; the first error is told
+    assert session.scene is scene

@@ -73,3 +73,25 @@ def test_kinds_and_marks_are_told() -> None:
     assert kinds_of(words)[0][0] == "far"
     found = {tag: " ".join(words[a:b]) for tag, a, b in marked(words)}
     assert found["x"] == "the cat" and found["t"] == "before it sits down"
+
+
+@pytest.mark.parametrize(
+    ("text", "plainly"),
+    [
+        ("What interval elapsed between the onset of the red book's fall and that of the blue book's?",
+         "how much time is there between the red book falling and the blue book falling"),
+        ("What was the robot's average speed during its first leg, in m/s?",
+         "how fast does the robot move in m / s before it turns"),
+        ("Over the five seconds recorded, the fan is at rest for how long?", "how long does the fan stand still"),
+        ("how many times did the old fan go round before it gave up?", "how many turns does the fan make"),
+    ],
+)  # fmt: skip
+def test_gaps_legs_and_whole_films(text: str, plainly: str) -> None:
+    assert supposed(text, NAMES | {"red", "blue"})[:1] == (plainly,)
+
+
+@pytest.mark.parametrize(
+    "text", ["was the blue book frightened when it fell?", "how's the robot feeling once he's done, happy or tired?"]
+)
+def test_what_is_felt_is_not_asked_about(text: str) -> None:
+    assert supposed(text, NAMES) == ()

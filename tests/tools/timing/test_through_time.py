@@ -364,6 +364,17 @@ def test_what_turns_already_turns_at_the_time_that_is_said(
     assert later - at_first == pytest.approx(math.pi / 2)  # still once a second
 
 
+@pytest.mark.parametrize(("stop", "end"), [("end", 5.0), (4.8, 4.8), (None, 8.5)])
+def test_what_turns_again_stops_when_that_is_said(
+    corner: Scene, context: Context, stop: float | str | None, end: float
+) -> None:
+    when = {"start": 4.5} | ({"stop": stop} if stop is not None else {})
+    data = {"op": "pace", "target": A_CHAIR, "change": "repeat", "times": 1, "when": when}
+    made = done(_turning(corner), data, context).scene
+    assert movements(course_of(made, CHAIR)) == [pytest.approx(span, abs=0.02) for span in ((0.0, 4.0), (4.5, end))]
+    assert made.motion is not None and made.motion.stop == pytest.approx(max(5.0, end), abs=0.01)
+
+
 def test_going_there_and_back_makes_a_short_scene_longer(moving: Scene, context: Context) -> None:
     made = done(moving, {"op": "pace", "target": A_CHAIR, "change": "back_and_forth"}, context).scene
     assert made.motion is not None and made.motion.stop == pytest.approx(5.0)  # it goes from 1 to 3 s
