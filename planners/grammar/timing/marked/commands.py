@@ -16,7 +16,7 @@ from ..command import Command, pace
 from ..happenings import IT, Happening
 from ..moments import Moment
 from .orders import in_order, listed
-from .slots import Slots
+from .slots import ALL_MOVING, Slots
 from .steps import in_step, in_turn
 from .wanted import Wanted, now, paced, plainly, whose_of
 
@@ -171,7 +171,9 @@ def _move(slots: Slots) -> Iterator[Wanted]:
     ways = [way for way, words in _WAYS.items() if words.search(slots.said)]
     if goal is not None and not (len(ways) == 1 and length is not None and goal.way == ""):
         how = f" by {length.value:g} m" if length is not None else ""
-        if length is None and not slots.told and not slots.moves(slots.queries[0]):
+        new = any(tag == "x" and slots.words[start] in ("a", "an") for tag, start, _ in slots.spans)  # is put in
+        film = slots.moves(ALL_MOVING) and not slots.moves(slots.queries[0])
+        if length is None and not slots.told and film and not new:
             text = f"move {slots.whom} {'onto' if goal.way == 'on' else 'next to'} {goal.name}"
             yield Wanted(Command(kind="look", text=text), Moment(), None)
         place = f"towards {goal.name}" if length is not None else f"{'onto' if goal.way == 'on' else 'to'} {goal.name}"
