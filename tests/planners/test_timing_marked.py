@@ -158,6 +158,11 @@ def test_the_contrary_is_not_done(text: str) -> None:
     assert planned(text) == []
 
 
+def test_what_is_kept_is_not_removed() -> None:
+    (op,) = planned("Keep the crib and the rocking chair, nothing else.")
+    assert op["op"] == "isolate" and op["target"]["text"] == "crib"
+
+
 def test_to_stop_at_the_end_goes_without_saying() -> None:
     assert planned("let the door swing to 45 degrees then stop") == planned("let the door swing to 45 degrees") != []
     assert planned("freeze everything at 2.5") == planned("stop everything at 2.5 s") != []

@@ -38,6 +38,10 @@ _ADDABLE = ("pause", "spin", "repeat", "halt")
 _PLACES_IT = re.compile(
     r"\b(?:place|put|lay|hang|install|set)s? (?!\| ?(?:away|aside|out)\b)(?!.*\b(?:away|aside|out)\b)"
 )
+_KEEPS_IT = re.compile(
+    r"^(?:please |just |only )*(?:keep|leave) (?!.*\b(?:hidden|out|invisible|away|off|unseen|gone)\b)|"
+    r"\bnothing (?:else|but)\b"
+)
 _LIT = re.compile(r"\b(?:off|out|on)$")
 _A_LIGHT = re.compile(r"\b(?:lamps?|lights?|lanterns?|candles?|bulbs?)$")
 _EXCEPT = re.compile(r"(?<!\bat )\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
@@ -71,8 +75,8 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
         )
     ):
         return True
-    if kind in ("hide", "remove") and _PLACES_IT.search(asked) is not None:
-        return True  # "place three bottles on the table"
+    if kind in ("hide", "remove") and (_PLACES_IT.search(asked) or _KEEPS_IT.search(f"{asked} {idle}")):
+        return True  # "place three bottles on the table", "keep the crib, nothing else"
     if (there := _THERE_IS.search(" ".join(slots.words))) is not None and there["noun"] not in " ".join(things).split():
         return True  # "on the sofa there sits a cat, could you make her black": the cat is meant
     if kind in STATIC and timeless and (chance < SURE or _ORDERED.match(asked)):
