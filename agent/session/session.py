@@ -448,7 +448,8 @@ class Session:
 
     def _planned_again(self, plan: EditPlan, error: JudgedError) -> EditPlan | None:
         """Another plan of a language model for an instruction whose first plan was judged a failure; None if the model
-        gives the same one again, or none. The grammar reads words in one way only and is not asked again."""
+        gives the same one again, or none. The grammar is not asked again: what it would do otherwise is tried where a
+        plan cannot be carried out (`_done_otherwise`), and not where an eye dislikes the result."""
         if plan.usage is None:
             return None
         try:

@@ -42,7 +42,7 @@ from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
 from .timing.ending import with_end
 from .timing.judging import Judge
-from .timing.keeping import held, without_kept
+from .timing.keeping import Kept, held, without_kept
 from .timing.marked.kinds import SURE
 from .timing.reading import TimeReader, is_misread, may_be_timed
 from .timing.spoken import written
@@ -198,18 +198,19 @@ def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):
         return _wished(cleaned, previous)
-    movement = scene.movement if scene is not None else _unknown
-    if _judge(TimeReader(_operations, _thing), scene).contradicts_itself(cleaned):
+    reader = TimeReader(_operations, _thing)
+    judge = _judge(reader, scene)
+    if judge.contradicts_itself(cleaned):
         raise Refusal("this asks for two things that cannot both be", cleaned[:200], verdict="impossible")
     asked, kept = without_kept(cleaned)
     try:
-        outcome = _in_time(asked, previous, scene)
+        outcome = _in_time(asked, previous, scene, reader, judge)
     except Refusal:
         if not kept:
             raise
         asked, kept = cleaned, ()  # what seems to stay as it is may be what is asked for
-        outcome = _in_time(asked, previous, scene)
-    return replace(outcome, ops=held(with_end(asked.lower(), outcome.ops, movement), kept, movement))
+        outcome = _in_time(asked, previous, scene, reader, judge)
+    return replace(outcome, ops=_as_kept(outcome.ops, asked, kept, scene))
 
 
 def _most_likely(cleaned: str, scene: Observation | None) -> Sequence[Fields]:
@@ -219,12 +220,25 @@ def _most_likely(cleaned: str, scene: Observation | None) -> Sequence[Fields]:
         Refusal: that would change what it says is to stay.
     """
     cleaned = written(cleaned)
-    movement = scene.movement if scene is not None else _unknown
     judge = _judge(TimeReader(_operations, _thing), scene)
     if not may_be_timed(cleaned):
         return judge.wished(cleaned) or ()
     asked, kept = without_kept(cleaned)
-    return held(with_end(asked.lower(), judge.likeliest(asked) or (), movement), kept, movement)
+    return _as_kept(judge.likeliest(asked) or (), asked, kept, scene)
+
+
+def _as_kept(ops: Sequence[Fields], asked: str, kept: Sequence[Kept], scene: Observation | None) -> tuple[Fields, ...]:
+    """Operations with the end that an instruction asks for, and with which everything stays that is to stay.
+
+    Args:
+        asked: the instruction without the words that say what stays.
+        kept: what these say.
+
+    Raises:
+        Refusal: they change just what is to stay.
+    """
+    movement = scene.movement if scene is not None else _unknown
+    return held(with_end(asked.lower(), ops, movement), kept, movement)
 
 
 def _judge(reader: TimeReader, scene: Observation | None) -> Judge:
@@ -236,14 +250,14 @@ def _unknown(query: Query) -> None:
     """How something moves where there is no scene."""
 
 
-def _in_time(cleaned: str, previous: str | None, scene: Observation | None) -> _Outcome:
+def _in_time(
+    cleaned: str, previous: str | None, scene: Observation | None, reader: TimeReader, judge: Judge
+) -> _Outcome:
     """As `_read_whole`, of an instruction that may be about time or motion.
 
     Raises:
         Refusal: as `_read_whole`.
     """
-    reader = TimeReader(_operations, _thing)
-    judge = _judge(reader, scene)
     try:
         outcome = _timed(reader, cleaned, previous)
     except Refusal as refusal:

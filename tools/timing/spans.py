@@ -310,14 +310,21 @@ _SEVERAL = ("wall", "walls", "floor", "ground", "ceiling")
 
 
 def _meant(scene: Scene, query: Query, context: Context) -> Selection:
-    several = query.text in _SEVERAL and query.pick == "one" and not query.relations
-    return moving_one(scene, query.model_copy(update={"pick": "all"}) if several else query, context).require()
+    all_of_it = query.model_copy(update={"pick": "all"}) if _is_several(query) else query
+    return moving_one(scene, all_of_it, context).require()
+
+
+def _is_several(query: Query) -> bool:
+    """Whether a query for one thing means several: "the wall"."""
+    return query.text in _SEVERAL and query.pick == "one" and not query.relations
 
 
 def _anchor(scene: Scene, query: Query, context: Context, during: During, target: Selection) -> Selection:
     """What a query for another thing means; of several the one with which it is ever so: "when the book leaves the
     shelf" is about the shelf on which it stands."""
     found = context.resolve(scene, query)
+    if found.verdict != "ambiguous" and not _is_several(query):
+        return found.require()
     if found.verdict != "ambiguous" or query.pick != "one" or len(during.anchors) > 1 or during.state == "closest":
         return _meant(scene, query, context)
     fits = list[Selection]()

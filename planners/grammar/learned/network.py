@@ -142,6 +142,14 @@ class Networks:
         """The row of each word."""
         return self.members[0].places
 
+    @cached_property
+    def _moves(self) -> dict[str, F32]:
+        """For each task the mean of the scores from one label to the next."""
+        names = [name for name in self.members[0].weights if name.startswith("moves.")]
+        return {
+            name.removeprefix("moves."): np.mean([own.weights[name] for own in self.members], axis=0) for name in names
+        }
+
     def told(self, task: str, words: Sequence[str]) -> Told:
         """The kind of a sentence and its marks.
 
@@ -154,8 +162,7 @@ class Networks:
         chances, labels = (
             np.mean(own, axis=0) for own in zip(*(m.scores(task, words) for m in self.members), strict=True)
         )
-        moves = np.mean([member.weights[f"moves.{task}"] for member in self.members], axis=0)
-        lists = self.members[0].lists
+        lists, moves = self.members[0].lists, self._moves[task]
         names = lists[f"kinds.{task}"]
         kinds = tuple((names[i], float(chances[i])) for i in np.argsort(-chances, kind="stable"))
         return Told(kinds, tuple(spans_of(likeliest(labels, moves, lists[f"labels.{task}"]))))

@@ -164,11 +164,7 @@ class Judge:
         for wanted in commands(kind, held):
             with suppress(Refusal, UserError, ValidationError):
                 found = self._ops(wanted)
-                if (
-                    found
-                    and not leaves_out(wording, found, held.said_twice(self._facts(held)))
-                    and not self.is_still(found)
-                ):
+                if found and not self._loses(found, wording, held) and not self.is_still(found):
                     return of_one_movement(" ".join(wording), found)
         return None
 
@@ -180,6 +176,11 @@ class Judge:
 
     def _does_move(self, query: Query) -> bool:
         return self._moves is not None and self._moves(query) is True
+
+    def _loses(self, ops: Sequence[Fields], wording: Sequence[str], held: Slots) -> bool:
+        """Whether operations leave out what an instruction tells, and does not tell twice or of how it is now: only
+        where they seem to, the scene is asked how that is."""
+        return leaves_out(wording, ops) and leaves_out(wording, ops, held.said_twice(self._facts(held)))
 
     def _facts(self, held: Slots) -> tuple[float, ...]:
         """The seconds at which the first thing of an instruction begins and ends to move, and how long that takes."""

@@ -17,7 +17,7 @@ from ..happenings import IT, Happening
 from ..moments import Moment
 from .orders import in_order, listed
 from .slots import ALL_MOVING, Slots
-from .steps import in_step, in_turn
+from .steps import gap_of, in_step, in_turn
 from .wanted import Wanted, now, paced, plainly, whose_of
 
 _SLOWER = re.compile(
@@ -157,7 +157,7 @@ def _move(slots: Slots) -> Iterator[Wanted]:
     step, whole = slots.happening, " ".join(slots.words)
     begins = step is not None and (step.during.state, step.during.part) == ("moving", "from")
     if step is not None and begins and step.during.of not in (None, *slots.queries) and _BOTH_THERE.search(whole):
-        slots.happening = replace(step, during=step.during.model_copy(update={"part": "while"}))
+        slots = replace(slots, happening=replace(step, during=step.during.model_copy(update={"part": "while"})))
     if (beside := _beside_another(slots)) is not None:
         yield beside
         return
@@ -586,7 +586,7 @@ def _order(slots: Slots) -> Iterator[Wanted]:
     if order and all(is_opened(query.text) for query in order) and not all(map(slots.moves, order)):
         yield from in_turn(order, slots)
         return
-    gap = _gap(slots)
+    gap = gap_of(slots)
     if slots.told and (gap is None or slots.moment.start is not None or slots.happening is not None):
         return
     if order:
@@ -597,17 +597,6 @@ def _order(slots: Slots) -> Iterator[Wanted]:
         yield Wanted(pace(whose_of(slots), "begin"), Moment(), Happening(after, f"after {other.name}"))
     elif slots.tell(_REVERSED) and len(slots.names) == 1 and not slots.goals:
         yield Wanted(f"let {slots.names[0]} move in reverse order", Moment(), None)
-
-
-_BETWEEN = re.compile(r"\b(?:between|apart|gaps?|intervals?|distance|spaced|stagger\w*|each|delay)\b")
-
-
-def _gap(slots: Slots) -> float | None:
-    """The seconds from one thing of an order to the next; None if they are not told."""
-    if _BETWEEN.search(" ".join(slots.words)) is None:
-        return None
-    seconds = slots.one("s")
-    return seconds.value if seconds is not None else slots.moment.lasting
 
 
 def _listed(slots: Slots) -> tuple[Query, ...]:

@@ -52,13 +52,8 @@ _STATES = {
     "first_of": _begins("moving"), "last_of": _ends("moving"), "in_step": _State("moving"),
 }  # fmt: skip
 _RANKS = {"first_of": "first", "last_of": "last"}
-_ITS_OWN = (
-    "film_start",
-    "film_end",
-    "first_leg",
-    "last_leg",
-    "in_step",
-)  # kinds that no rule reads, or takes for something else
+# Kinds that no rule reads, or takes for something else.
+_ITS_OWN = ("film_start", "film_end", "first_leg", "last_leg", "in_step")
 _SURELY = 0.7  # probability from which they go before what rules read
 _CERTAINLY = 0.95  # probability from which any kind does
 

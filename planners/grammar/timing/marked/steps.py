@@ -16,7 +16,9 @@ from ..moments import Moment
 from .slots import Slots
 from .wanted import Wanted
 
-_GAP = re.compile(r"\b(?:between|apart|gaps?|intervals?|distance|spaced|stagger\w*|each|after|later|behind)\b")
+_APART = r"between|apart|gaps?|intervals?|distance|spaced|stagger\w*|each"
+SPACED = re.compile(rf"\b(?:{_APART}|delay)\b")  # words by which seconds are those from one thing to the next
+_LATER = re.compile(rf"\b(?:{_APART}|after|later|behind)\b")  # of things that open
 _AS_ONE = re.compile(
     r"\b(?:same|together|with|as|like|sync\w*|step|unison|tandem|parallel|copy|copies|copying|mirror\w*|match\w*|"
     r"accompan\w+|follow\w*|alongside|simultaneous\w*|join\w*|both|does)\b"
@@ -37,17 +39,21 @@ def _opened(query: Query, moment: Moment, happening: Happening | None, change: s
     return Wanted(command, moment, happening)
 
 
+def gap_of(slots: Slots, words: re.Pattern[str] = SPACED) -> float | None:
+    """The seconds from one thing of several to the next; None if none of some words says that there are any."""
+    if words.search(" ".join(slots.words)) is None:
+        return None
+    seconds = slots.one("s")
+    return seconds.value if seconds is not None else slots.moment.lasting
+
+
 def in_turn(things: Sequence[Query], slots: Slots) -> Iterator[Wanted]:
     """Things that open one after the other, in their order: each when the one before is open, or so many seconds after
     that began; what opens by itself begins then."""
     if not all(is_opened(query.text) for query in things) or slots.happening is not None:
         return
     slots.pass_goals()
-    gap: float | None = None
-    if _GAP.search(" ".join(slots.words)) is not None:
-        seconds = slots.one("s")
-        gap = seconds.value if seconds is not None else slots.moment.lasting
-    start = slots.moment.start
+    gap, start = gap_of(slots, _LATER), slots.moment.start
     steps = list[Wanted]()
     for at, query in enumerate(things):
         moves, moment, happening = slots.moves(query), Moment(), None
@@ -80,9 +86,8 @@ def in_step(slots: Slots) -> Wanted | None:
         Happening(During(state=state, of=other), f"as it is {state}") for state in ("opening", "closing")
     )
     length = slots.one("m")
-    opened = _opened(query, Moment(), opening)
-    if length is not None:
-        opened = _opened(query, Moment(), opening, distance={"value": length.value})
+    how_far: dict[str, Any] = {} if length is None else {"distance": {"value": length.value}}
+    opened = _opened(query, Moment(), opening, **how_far)
     if _STAYS.search(words) or not _CLOSES.search(_OPENS_ALONE.sub(" ", words)):
         return opened
     return replace(opened, also=(_opened(query, Moment(), closing, "close"),))

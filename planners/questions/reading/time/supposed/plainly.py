@@ -713,9 +713,8 @@ _RESTS = re.compile(r"\b(?:pause|break|rest|hold|wait|stay|dwell)\b")
 _EVENT_OF = re.compile(  # "the onset of the red book 's fall", "the red book 's landing", "that of the blue one 's"
     r"^(?:(?:the |its )?(?P<first>[a-z]+(?: point)?|that) of )?(?P<who>(?:the )?[a-z ]+?)(?: 's)?"
     r"(?: (?:starting|beginning|begins|starts) to)?"
-    r"(?: (?P<deed>starting|falling|landing|stopping|fall up|fall|drop|landing|impact|start|onset|departure|"
-    r"release|trigger|drop trigger|stop|end|opening|"
-    r"closing))?$"
+    r"(?: (?P<deed>starting|falling|landing|stopping|fall up|fall|drop|impact|start|onset|departure|"
+    r"release|trigger|drop trigger|stop|end|opening|closing))?$"
 )
 _BEGINS = re.compile(r"\b(?:starting|start|onset|departure|release|trigger|beginning)\b")
 _ENDS = re.compile(r"\b(?:stopping|end|stop|landing|impact|touchdown)\b")
@@ -731,11 +730,16 @@ def _event_in(said: str, names: Collection[str], noun: str) -> tuple[str, str] |
         who[-1] = noun
     if is_color_word(who[-1]):
         who.append(noun)
-    if not who or (singular(who[-1]) not in names and who[-1] != "one") or who == ["one"]:
+    if (singular(who[-1]) not in names and who[-1] != "one") or who == ["one"]:
         return None
     falls = _deed(f"{told} {said}", "") in ("fall", "land")
-    deed = "landing" if _ENDS.search(told) and falls else "stopping" if _ENDS.search(told) else ""
-    return f"the {' '.join(who)}", deed or ("falling" if falls else "starting" if _BEGINS.search(told) else "")
+    if _ENDS.search(told):
+        deed = "landing" if falls else "stopping"
+    elif falls:
+        deed = "falling"
+    else:
+        deed = "starting" if _BEGINS.search(told) else ""
+    return f"the {' '.join(who)}", deed
 
 
 def _gap(said: Said) -> Iterator[str]:
