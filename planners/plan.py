@@ -5,6 +5,7 @@ A plan holds queries, not ids, so that it can be carried out on another scene.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, Protocol, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -155,12 +156,13 @@ class EditPlan(BaseModel):
 
 
 class Movement(NamedTuple):
-    """How something moves in a scene: its first start and its last stop, seconds, and whether it only turns round and
-    round, so that its speed does not tell when it stops."""
+    """How something moves in a scene: its first start and its last stop, seconds, whether it only turns round and
+    round, so that its speed does not tell when it stops, and the end of the scene."""
 
     start: float
     stop: float
     turns: bool
+    end: float = math.inf
 
 
 class Observation(Protocol):

@@ -21,11 +21,11 @@ from torch import Tensor
 from ..gaussians.camera import Camera
 from ..gaussians.language.query.query import Query
 from ..gaussians.language.query.selection import Selection, mask_of
-from ..gaussians.scene import Frame, Scene
+from ..gaussians.scene import Scene
 from ..gaussians.world import relations
-from ..gaussians.world.lengths import Unit, in_metres
 from .alternatives import NOT_GIVEN, either, given
 from .docstrings import described
+from .lengths import Length
 from .receipt import Check, Pixels, Receipt, SelectionSummary
 from .when import When
 
@@ -52,35 +52,6 @@ _RELATIVE = [k.name for k in _KINDS if not k.default and k.anchors == 1]
 _PAIRED = [k.name for k in _KINDS if k.anchors == 2]
 _ABSOLUTE = [k.name for k in _KINDS if k.default and k.name != "on"]
 _OFFSET = ("on", "against")
-
-
-class Length(BaseModel):
-    """A length with its unit. "units" are the scene's own units; the others are converted by the scene's scale."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
-
-    value: Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]
-    unit: Unit = "m"
-
-    def in_units(self, frame: Frame) -> float:
-        """This length in scene units; one unit counts as one metre where the scale is unknown (see `assumption`)."""
-        if self.unit == "units":
-            return self.value
-        return in_metres(self.value, self.unit) / (frame.metres_per_unit or 1.0)
-
-    def times(self, factor: float) -> Length:
-        """This length `factor` times, at most the longest that there is."""
-        return Length(value=min(self.value * factor, 10_000.0), unit=self.unit)
-
-    def assumption(self, frame: Frame) -> tuple[str, ...]:
-        """The assumptions that converting it took, as notes for the receipt; empty if there were none."""
-        if self.unit == "units" or frame.metres_per_unit is not None:
-            return ()
-        return (f"the scene's scale is unknown: {self.describe()} was read with one scene unit as one metre",)
-
-    def describe(self) -> str:
-        """ "40 cm"."""
-        return f"{self.value:g} {self.unit}"
 
 
 class Placement(BaseModel):

@@ -8,7 +8,8 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from ..gaussians.language.query.query import Query
 from ..gaussians.world.relations import named, names
-from .alternatives import either, given
+from .alternatives import NOT_GIVEN, either, given
+from .lengths import Length
 
 Part = Literal["while", "unless", "from", "until", "after", "until_end"]
 # States that say nothing of another thing.
@@ -32,6 +33,7 @@ _PARTS: dict[Part, str] = {
     "after": "after {}", "until_end": "as long as {}",
 }  # fmt: skip
 
+_NO_AMOUNT = {name: NOT_GIVEN for name in ("share", "degrees", "distance")}
 Seconds = Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)]
 
 
@@ -41,7 +43,8 @@ class During(BaseModel):
 
     `part`: while or unless it is so, from when it first is on, until then, after it was, or until it no longer is.
     "open" is not being where it is at the start, "opening" and "closing" going away from there and back, "fully_open"
-    as far from there as it comes, "halfway" the second half of a movement;
+    as far from there as it comes, "halfway" the second half of a movement, or what is left of it when it has gone a
+    `share` of it, turned by `degrees` or gone a `distance`;
     "closest" the moment of being nearest to the middle of another thing.
     """
 
@@ -50,8 +53,9 @@ class During(BaseModel):
         extra="forbid",
         defer_build=True,
         json_schema_extra=either(
-            {"state": given(enum=list(ALONE)), "anchors": {"maxItems": 0}},
-            {"state": given(enum=[s for s in STATES if s not in ALONE]), "anchors": given(minItems=1)},
+            {"state": given(enum=["halfway"]), "anchors": {"maxItems": 0}},
+            {"state": given(enum=[s for s in ALONE if s != "halfway"]), "anchors": {"maxItems": 0}, **_NO_AMOUNT},
+            {"state": given(enum=[s for s in STATES if s not in ALONE]), "anchors": given(minItems=1), **_NO_AMOUNT},
         ),
     )
 
@@ -59,6 +63,9 @@ class During(BaseModel):
     anchors: Annotated[tuple[Query, ...], Field(max_length=2)] = ()
     of: Query | None = None  # whose state it is; None: that of the target
     part: Part = "while"
+    share: Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)] | None = None
+    degrees: Annotated[float, Field(gt=0, le=360, allow_inf_nan=False)] | None = None
+    distance: Length | None = None
 
     @model_validator(mode="after")
     def _anchored(self) -> Self:
@@ -67,14 +74,27 @@ class During(BaseModel):
         wanted = 0 if self.state in ALONE else 1
         if len(self.anchors) < wanted or (self.anchors and not wanted):
             raise ValueError(f'"{self.state}" takes {"what it is about" if wanted else "no anchor"}')
+        amounts = sum(amount is not None for amount in (self.share, self.degrees, self.distance))
+        if amounts > (self.state == "halfway"):
+            raise ValueError("a share, degrees or a distance go with the state halfway, one of them at most")
         return self
 
     def describe(self) -> str:
         """ "while it is on the rug"."""
         who = "it" if self.of is None else self.of.describe()
         whom = " and ".join(q.describe() for q in self.anchors)
+        if (gone := self._gone()) is not None:
+            return _PARTS[self.part].format(f"{who} {gone}")
         said = _STATED[self.state] if self.state in _STATED else named(self.state).says(whom)
         return _PARTS[self.part].format(f"{who} {said} {whom if self.state in _STATED else ''}".strip())
+
+    def _gone(self) -> str | None:
+        """How far it has gone, in words; None if that is not told, or half its way."""
+        if self.degrees is not None:
+            return f"has turned by {self.degrees:g} degrees"
+        if self.distance is not None:
+            return f"has gone {self.distance.describe()}"
+        return None if self.share is None else f"has gone {self.share:.0%} of its way"
 
 
 class When(BaseModel):

@@ -59,7 +59,7 @@ def movement_of(scene: Scene, selection: Selection) -> Movement | None:
     tracks, inside = divided(scene.motion, selection.ids.cpu().numpy())
     own = [track for track, belongs in zip(tracks, inside, strict=True) if belongs]
     span = movement(own, scene.motion.start, scene.motion.stop)
-    return None if span is None else Movement(*span, all(is_turning(track) for track in own))
+    return None if span is None else Movement(*span, all(is_turning(track) for track in own), scene.motion.stop)
 
 
 def picture_of(scene: Scene, camera: Camera) -> bytes:

@@ -337,7 +337,7 @@ def _reaching(expect: dict[str, Any], course: Course, earlier: Course, spans: li
         if expect.get(key) in (None, "up", "open", "left", "right"):
             continue
         pair = events.Encounter.of(effect.after, course.group, [effect.group(expect[key])])
-        first, gap = (float(g) for g in pair.gaps(np.array([0.0, effect.end])))
+        first, gap = (float(g) for g in pair.gaps(np.array([expect.get("start") or 0.0, effect.end])))
         if "distance_m" in expect:  # only so far
             if gap >= first:
                 return f"it does not come nearer to the {expect[key]}"

@@ -27,20 +27,25 @@ I64 = NDArray[np.int64]
 _SAME = 1e-3  # seconds
 
 
+_UNLISTED = {"first": NOT_GIVEN, "last": NOT_GIVEN}
+
+
 class Order(TargetedOp):
     """Change the order in which the things that the target means begin to move; how each moves stays.
 
     "reversed": the last becomes the first ("swap the two", "in the opposite order"); the times at which one of them
-    begins stay. "listed": first what `first` names first. "together": all begin with the earliest, or at `when`. `gap`:
+    begins stay. "listed": first what `first` names first, and last what `last` names, which begins last of all.
+    "together": all begin with the earliest, or at `when`. `gap`:
     seconds from one to the next. What the target means and does not move is left out.
     """
 
     model_config = ConfigDict(
         json_schema_extra=either(
             {"order": given(enum=["listed"]), "first": given()},
-            {"order": {"enum": ["reversed"]}, "first": NOT_GIVEN},
-            {"order": given(enum=["together"]), "first": NOT_GIVEN, "gap": NOT_GIVEN},
-            {"order": given(enum=["kept"]), "first": NOT_GIVEN, "gap": given()},
+            {"order": given(enum=["listed"]), "last": given()},
+            {"order": {"enum": ["reversed"]}, **_UNLISTED},
+            {"order": given(enum=["together"]), "gap": NOT_GIVEN, **_UNLISTED},
+            {"order": given(enum=["kept"]), "gap": given(), **_UNLISTED},
         )
     )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
@@ -51,12 +56,13 @@ class Order(TargetedOp):
     op: Literal["order"] = "order"
     order: Literal["reversed", "listed", "together", "kept"] = "reversed"
     first: Annotated[tuple[Query, ...], Field(min_length=1, max_length=8)] | None = None
+    last: Query | None = None
     gap: Annotated[float, Field(gt=0, le=3600, allow_inf_nan=False)] | None = None
 
     @model_validator(mode="after")
     def _listed(self) -> Self:
-        if (self.order == "listed") != bool(self.first):
-            raise ValueError('"first" goes with the order "listed", and that needs it')
+        if (self.order == "listed") != bool(self.first or self.last):
+            raise ValueError('"first" and "last" go with the order "listed", and that needs one of them')
         if (self.order == "together" and self.gap is not None) or (self.order == "kept" and self.gap is None):
             raise ValueError("what begins together has no gap, and what keeps its order needs one")
         return self
@@ -113,14 +119,15 @@ class Order(TargetedOp):
         if self.order != "listed":
             return things[::-1] if self.order == "reversed" else things
         left, placed = list(things), list[tuple[int, I64, float]]()
-        for query in self.first or ():
+        last = () if self.last is None else (self.last,)
+        for query in (*(self.first or ()), *last):
             ids = context.resolve(scene, query).require().ids.cpu().numpy()
             found = [t for t in left if np.isin(t[1], ids).any()]
             if len(found) != 1:
                 raise InstructionError(f"{query.describe()} is not one of the things whose order changes")
             placed.append(found[0])
             left = [t for t in left if t is not found[0]]
-        return [*placed, *left]
+        return [*placed[: len(placed) - len(last)], *left, *placed[len(placed) - len(last) :]]
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         lost = len(moving_ids(before.motion)) - len(moving_ids(outcome.scene.motion))

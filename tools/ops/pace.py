@@ -22,6 +22,7 @@ from ..checks import count_matches
 from ..operation import Context, Length, Outcome, TargetedOp
 from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_most
+from ..timing.bending import bent, upright_turns
 from ..timing.retiming import Warp, divided, moved, movement, playing, with_tracks
 from ..timing.spans import Span, spans_of
 from ..when import During, When
@@ -35,10 +36,11 @@ _ON_THE_SPOT = 0.05  # metres: what goes less far takes no turn on its way
 _BESIDE = 0.02  # seconds between two movements that are not one
 _MOVEMENTS = ("opening", "closing", "falling", "turning")  # of which a thing may have several
 _WHILE_MOVING = When(during=During(state="moving"))
+_NO_TURN = 0.1  # radians
 _STRAIGHT = 0.05  # of its way: what strays less to its sides goes straight on
 
 
-_HOW_MUCH = ("factor", "seconds", "share", "distance", "times")
+_HOW_MUCH = ("factor", "seconds", "share", "distance", "times", "degrees")
 
 
 def _but(field: str) -> dict[str, Any]:
@@ -56,7 +58,8 @@ class Pace(TargetedOp):
     "return": it goes back the way it came. "go_on": it keeps its last speed until the end of `when`. "part": it goes
     only a `share` of its way, or a `distance`, and stands still there. "repeat": it does the same again and again,
     "back_and_forth": there and back, `times` times or until the end of the scene. "mirror": it turns right where it
-    turned left. Everything is the whole scene, which then gets longer or shorter.
+    turned left. "turn": on its way it turns by `degrees` in all, to the side to which it does, and goes on from there.
+    Everything is the whole scene, which then gets longer or shorter.
     """
 
     model_config = ConfigDict(
@@ -66,6 +69,7 @@ class Pace(TargetedOp):
             {"change": {"enum": ["part"]}, "share": given(), **_but("share")},
             {"change": {"enum": ["part"]}, "distance": given(), **_but("distance")},
             {"change": {"enum": ["repeat", "back_and_forth"]}, **_but("times")},
+            {"change": {"enum": ["turn"]}, "degrees": given(), **_but("degrees")},
             {"change": {"enum": ["stop", "begin", "reverse", "return", "go_on", "mirror"]}, **_but("")},
         )
     )
@@ -76,13 +80,25 @@ class Pace(TargetedOp):
     makes_motion: ClassVar[bool] = True
     op: Literal["pace"] = "pace"
     change: Literal[
-        "stop", "begin", "speed", "later", "reverse", "return", "go_on", "part", "repeat", "back_and_forth", "mirror"
+        "stop",
+        "begin",
+        "speed",
+        "later",
+        "reverse",
+        "return",
+        "go_on",
+        "part",
+        "repeat",
+        "back_and_forth",
+        "mirror",
+        "turn",
     ]
     factor: Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)] | None = None
     seconds: Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)] | None = None
     share: Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)] | None = None
     distance: Length | None = None
     times: Annotated[int, Field(ge=1, le=100)] | None = None
+    degrees: Annotated[float, Field(gt=0, le=360, allow_inf_nan=False)] | None = None
 
     @model_validator(mode="after")
     def _says_how_much(self) -> Self:
@@ -90,7 +106,7 @@ class Pace(TargetedOp):
             raise ValueError("part needs either a share or a distance, and nothing else has one")
         if self.times is not None and self.change not in ("repeat", "back_and_forth"):
             raise ValueError("times goes with repeat and back_and_forth")
-        for name, change in (("factor", "speed"), ("seconds", "later")):
+        for name, change in (("factor", "speed"), ("seconds", "later"), ("degrees", "turn")):
             if (getattr(self, name) is not None) != (self.change == change):
                 raise ValueError(f"{name} goes with {change}, and {change} needs it")
         return self
@@ -146,6 +162,10 @@ class Pace(TargetedOp):
                 continue
             if self.change == "mirror":
                 for i, track in zip(held, self._mirrored(scene, own, group, span), strict=True):
+                    made[i] = track
+                continue
+            if self.degrees is not None:
+                for i, track in zip(held, self._bent(scene, own, group, span), strict=True):
                     made[i] = track
                 continue
             if self._of_one_movement:
@@ -296,6 +316,19 @@ class Pace(TargetedOp):
             raise InstructionError(f"{self.target.describe()} goes straight on and takes no turn")
         return [_reflected(track, side, way[0]) for track in own]
 
+    def _bent(self, scene: Scene, own: list[Track], group: I64, span: Span) -> list[Track]:
+        """Tracks with another turn on the way."""
+        assert self.degrees is not None
+        up, times = scene.frame.up_vector, np.linspace(span[0], span[1], 400)
+        turning = [track for track in own if abs(float(upright_turns(track, times, up)[-1])) > _NO_TURN]
+        level = [_level_way(track, times, up) for track in own if track not in turning]
+        if len(turning) != 1 or _level_way(turning[0], times, up) * (scene.frame.metres_per_unit or 1.0) < _ON_THE_SPOT:
+            raise InstructionError(f"{self.target.describe()} takes no turn on its way: say where it is to go")
+        if any(way > _STRAIGHT * _level_way(turning[0], times, up) for way in level):
+            raise InstructionError(f"{self.target.describe()} goes its way on several tracks, and none of them is bent")
+        middle = _way_of(scene, [], group, times[:1])[0]
+        return [bent(t, math.radians(self.degrees), up, middle, times) if t in turning else t for t in own]
+
     def _stopped(self, motion: Motion, spans: list[Span], low: float, high: float) -> tuple[Warp, float]:
         """It stands still in the spans, and goes on behind each of them; what stands still anyway does not get late."""
         if not spans:
@@ -369,6 +402,14 @@ def _way_of(scene: Scene, own: list[Track], group: I64, times: F64) -> F64:
     middle = scene.cloud.means[rows].double().mean(dim=0).cpu().numpy()
     turns, shifts = chained(own, times)
     return np.asarray(turns @ middle + shifts)
+
+
+def _level_way(track: Track, times: F64, up: F64) -> float:
+    """How far a track carries its pivot along the floor, scene units."""
+    turns, shifts = poses(track, times)
+    way = turns @ track.pivot + shifts
+    level = way - way[:1] - ((way - way[:1]) @ up)[:, None] * up
+    return float(np.linalg.norm(level, axis=1).max())
 
 
 def _reflected(track: Track, side: F64, point: F64) -> Track:

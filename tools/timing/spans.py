@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
-from ...gaussians.scene import Scene
+from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.relation_geometry import viewer_stand
 from ..operation import Context
 from ..when import During, When
@@ -179,7 +179,7 @@ def _happening(during: During, scene: Scene, target: Selection, context: Context
     def of(group: int) -> list[Span]:
         if during.state in ("falling", "turning", "open", "opening", "closing", "fully_open", "halfway"):
             course = course_of(scene, group)
-            return falls(course, unit) if during.state == "falling" else _own(course, during.state, unit)
+            return falls(course, unit) if during.state == "falling" else _own(course, during, scene.frame)
         if during.state == "touches":  # "the wall" may be several
             return [s for anchor in anchors[0] for s in _touching(scene, group, anchor, unit)]
         if len(anchors) == 1:
@@ -223,18 +223,19 @@ def _snapped(time: float, edges: list[float]) -> float:
     return nearest if abs(nearest - time) <= _ROUGH else time
 
 
-def _own(course: Course, state: str, unit: float) -> list[Span]:
+def _own(course: Course, during: During, frame: Frame) -> list[Span]:
     """When a thing turns (about the vertical, if it ever does), or is away from where it is at the start, or goes away
     or comes back."""
     from ...gaussians.motion.events import movements
     from ...gaussians.motion.holding import spans
 
-    times = course.grid()
+    times, state, unit = course.grid(), during.state, 1.0 / (frame.metres_per_unit or 1.0)
     if state == "turning":
         upright = spans(lambda t: np.abs(course.turns(t) @ course.up), times, _TURNS)
         return upright or spans(lambda t: np.linalg.norm(course.turns(t), axis=1), times, _TURNS)
     if state == "halfway":
-        return [(_half(course, span), span[1]) for span in movements(course, unit)]
+        begun = ((_gone(course, span, during, frame), span[1]) for span in movements(course, unit))
+        return [(start, stop) for start, stop in begun if start is not None]
     first = course.centers(np.array([course.start]))
     if state in ("opening", "closing"):
         return _going(course, first, 1.0 if state == "opening" else -1.0, unit)
@@ -246,11 +247,21 @@ def _own(course: Course, state: str, unit: float) -> list[Span]:
     return spans(lambda t: np.linalg.norm(course.centers(t) - first, axis=1), times, _AWAY * unit)
 
 
-def _half(course: Course, span: Span) -> float:
-    """When a thing has gone half the way of a movement, or turned by half its angle."""
+def _gone(course: Course, span: Span, during: During, frame: Frame) -> float | None:
+    """When a thing has gone half a movement, or turned by half its angle, or as much as is told; None if it never
+    does."""
     times = course.grid(span)
-    gone = np.cumsum(course.rates(times))
-    return float(times[int(np.searchsorted(gone, gone[-1] / 2))])
+    if during.degrees is not None:
+        rates, wanted = np.linalg.norm(course.turns(times), axis=1), math.radians(during.degrees)
+    elif during.distance is not None:
+        rates, wanted = np.linalg.norm(course.velocities(times), axis=1), during.distance.in_units(frame)
+    else:
+        rates, wanted = course.rates(times), math.nan
+    steps = (rates[1:] + rates[:-1]) / 2 * np.diff(times)
+    gone = np.concatenate([[0.0], np.cumsum(steps)])
+    if math.isnan(wanted):
+        wanted = float(gone[-1]) * (0.5 if during.share is None else during.share)
+    return float(np.interp(wanted, gone, times)) if wanted < gone[-1] else None
 
 
 def _going(course: Course, first: NDArray[np.float64], sign: float, unit: float) -> list[Span]:

@@ -37,7 +37,7 @@ class Event:
 
 def event_of(phrase: str) -> Event | None:
     """What happens at the time that a phrase tells; None if that is not likely enough, or nothing happens."""
-    words = tuple(word.text for word in split(clean(phrase)))
+    words = tuple(word.text for word in split(clean(phrase.replace(" 's ", "'s "))))
     found = told(TASK, words)
     kind, chance = next(iter(found.kinds), (NO_EVENT, 0.0))
     if kind == NO_EVENT or chance < LEAST:

@@ -29,6 +29,7 @@ FILE = Path(__file__).with_name("networks.npz")
 ROWS = 8192  # of the table of pieces
 LAYERS = 2
 WAYS = ("forwards", "backwards")
+MOST_WAYS, BEHIND = 6, 3.0  # ways to mark a sentence that are told, and how much lower they score than the likeliest
 UNKNOWN = 0  # row of a word that was seen too rarely
 _RUNS = (3, 4, 5)  # letters of a piece
 
@@ -39,11 +40,16 @@ class Told:
 
     Attributes:
         kinds: with their probabilities, the likeliest first.
-        spans: the marks in its words.
+        ways: the marks in its words, in likely ways, the likeliest first.
     """
 
     kinds: tuple[tuple[str, float], ...]
-    spans: tuple[Span, ...]
+    ways: tuple[tuple[Span, ...], ...]
+
+    @property
+    def spans(self) -> tuple[Span, ...]:
+        """The likeliest marks."""
+        return self.ways[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,14 +164,16 @@ class Networks:
             words: lower-case words and marks of punctuation.
         """
         if not words:
-            return Told((), ())
+            return Told((), ((),))
         chances, labels = (
             np.mean(own, axis=0) for own in zip(*(m.scores(task, words) for m in self.members), strict=True)
         )
         lists, moves = self.members[0].lists, self._moves[task]
         names = lists[f"kinds.{task}"]
         kinds = tuple((names[i], float(chances[i])) for i in np.argsort(-chances, kind="stable"))
-        return Told(kinds, tuple(spans_of(likeliest(labels, moves, lists[f"labels.{task}"]))))
+        rows = likeliest(labels, moves, lists[f"labels.{task}"], MOST_WAYS)
+        ways = tuple(tuple(spans_of(row)) for row, score in rows if score > rows[0][1] - BEHIND)
+        return Told(kinds, tuple(dict.fromkeys(ways)))
 
 
 def _times(values: F32, weights: F32) -> F32:

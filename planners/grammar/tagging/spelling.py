@@ -123,17 +123,22 @@ def is_word(text: str) -> bool:
 
 def is_common(text: str) -> bool:
     """Whether a word is so common in captions of pictures that it is meant as it stands: "team" is not teal."""
-    return text in _captions()
+    return text in _captions(_COMMON)
+
+
+def is_captioned(text: str) -> bool:
+    """Whether a word stands in captions of pictures at all."""
+    return text in _captions(None)
 
 
 @cache
-def _captions() -> frozenset[str]:
-    """The most common words of the captions that CLIP learned from: the first merges of its byte-pair encoding."""
+def _captions(most: int | None) -> frozenset[str]:
+    """Words of the captions that CLIP learned from: those of the first merges of its byte-pair encoding, or of all."""
     spec = find_spec("open_clip")
     if spec is None or not spec.submodule_search_locations:
         return frozenset()
     with gzip.open(Path(spec.submodule_search_locations[0]) / "bpe_simple_vocab_16e6.txt.gz", "rt") as file:
-        merges = ["".join(line.split()) for line in islice(file, 1, 1 + _COMMON)]
+        merges = ["".join(line.split()) for line in islice(file, 1, None if most is None else 1 + most)]
     return frozenset(word.removesuffix("</w>") for word in merges if word.endswith("</w>"))
 
 

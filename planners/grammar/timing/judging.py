@@ -12,6 +12,7 @@ from ....gaussians.errors import UserError
 from ....gaussians.language.query.query import Query
 from ....tools.registry import OPS
 from ....tools.when import When
+from ...plan import Movement
 from ..learned.marks import Span
 from ..parsing import Refusal
 from ..tagging.words import bag
@@ -22,7 +23,7 @@ from .ending import MovementOf
 from .happenings import IT
 from .marked.commands import commands
 from .marked.guards import is_ruled_out, says_more
-from .marked.kinds import COURSES, LEAST, STATIC, SURE, is_changed_by, is_clear, is_done_by, likely, marked
+from .marked.kinds import COURSES, LEAST, STATIC, SURE, is_changed_by, is_clear, is_done_by, likely, marked, marked_ways
 from .marked.lost import leaves_out
 from .marked.names import MOVING, with_nouns
 from .marked.orders import each_in_time
@@ -130,7 +131,26 @@ class Judge:
         wording = with_nouns(spelt_right(spelt_out(in_words(cleaned)), LONG_WORDS)).split(" ")
         if len(wording) > _LONGEST or _ALL_ELSE.search(" ".join(wording)):
             return None
-        spans = marked(wording)
+        first, *others = marked_ways(wording)
+        if (found := self._marked_so(cleaned, wording, first, least)) is not None:
+            return found
+        named = self._named_by(wording, first)
+        for spans in others:
+            if not named <= self._named_by(wording, spans):
+                continue  # a thing that is named stays
+            if (found := self._marked_so(cleaned, wording, spans, max(least, SURE))) is not None:
+                return found
+        return None
+
+    def _named_by(self, wording: Sequence[str], spans: Sequence[Span]) -> set[Query]:
+        """The things that marks name."""
+        named = {self._reader.thing(" ".join(wording[start:stop])) for tag, start, stop in spans if tag == "x"}
+        return {query for query in named if query is not None and not query.last}
+
+    def _marked_so(
+        self, cleaned: str, wording: Sequence[str], spans: Sequence[Span], least: float
+    ) -> tuple[Fields, ...] | None:
+        """As `_marked`, with these marks."""
         if any(asks_more(wording[start:stop], tag) for tag, start, stop in spans):
             return None
         for still in (False, True):
@@ -153,7 +173,7 @@ class Judge:
         self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]
     ) -> tuple[Fields, ...] | None:
         """The first operations that a kind makes of marks, that leave nothing out, and that something moves for."""
-        held = slots(wording, spans, self._reader.thing, kind, self._does_move)
+        held = slots(wording, spans, self._reader.thing, kind, self._does_move, self._moves_how)
         if held is None:
             return None
         beside = kind == "move" and any(self._does_move(goal.query) for goal in held.goals)
@@ -177,15 +197,21 @@ class Judge:
     def _does_move(self, query: Query) -> bool:
         return self._moves is not None and self._moves(query) is True
 
+    def _moves_how(self, query: Query) -> Movement | None:
+        return None if self._movement is None else self._movement(query)
+
     def _loses(self, ops: Sequence[Fields], wording: Sequence[str], held: Slots) -> bool:
         """Whether operations leave out what an instruction tells, and does not tell twice or of how it is now: only
         where they seem to, the scene is asked how that is."""
-        return leaves_out(wording, ops) and leaves_out(wording, ops, held.said_twice(self._facts(held)))
+        return leaves_out(wording, ops, spans=held.spans) and leaves_out(
+            wording, ops, held.said_twice(self._facts(held)), held.spans
+        )
 
     def _facts(self, held: Slots) -> tuple[float, ...]:
-        """The seconds at which the first thing of an instruction begins and ends to move, and how long that takes."""
-        moves = self._movement(held.queries[0]) if self._movement is not None else None
-        return () if moves is None else (moves.start, moves.stop, moves.stop - moves.start)
+        """The seconds at which the first thing of an instruction begins and ends to move, how long that takes, and the
+        end of the scene."""
+        moves = self._moves_how(held.queries[0])
+        return () if moves is None else (moves.start, moves.stop, moves.stop - moves.start, moves.end)
 
     def _ops(self, wanted: Wanted) -> tuple[Fields, ...] | None:
         """The operations of a command, in words or as it is, at its time, and of those that go with it; None if one of
@@ -255,7 +281,17 @@ class Judge:
             return True  # a door turns on its hinge only
         told = moments.TIMED.search(cleaned) or _THROUGHOUT.search(cleaned) or ops[0].get("when")
         op, change = str(ops[0]["op"]), ops[0].get("change")
-        kind, chance = next(iter(likely(cleaned)), ("", 0.0))
+        kinds = likely(cleaned)
+        kind, chance = next(iter(kinds), ("", 0.0))
+        coursed = sum(own for course, own in kinds if course in COURSES) >= _SURELY
+        if op in _SEEN and coursed and self._does_move(ops[0]["target"]):
+            return True  # "the fan is to cut out at 2 s" hides nothing
+        if (
+            (kind, change) == ("begin", "stop")
+            and when.during is not None
+            and (when.stop, when.lasting) == (None, None)
+        ):
+            return chance >= SURE  # "make it wait, and it falls a second after ..."
         if (
             op == "move"
             and kind in ("still", "stay", "halt")

@@ -63,9 +63,10 @@ _HEDGE = (
 )
 _NUMBER = rf"(?:{_DIGITS}|{_WORD})"
 _DURATION = (
-    rf"(?:{_NUMBER} and (?:a )?half {_UNIT}|{_NUMBER} {_UNIT} and a half|(?:{_NUMBER} and )?(?:a "
+    rf"(?:{_NUMBER} and (?:a )?half {_UNIT}|{_NUMBER} {_UNIT} and (?:a )?(?:half|quarter)|(?:{_NUMBER} and )?(?:a "
     rf")?half (?:a |of a )?{_UNIT}|"
     rf"(?:three )?quarters? (?:of )?a {_UNIT}|(?:a |one )?(?:third|fifth|tenth) (?:of )?a {_UNIT}|"
+    rf"(?:{_ONES}) (?:thirds|quarters|fifths|tenths|hundredths) of (?:an? |one )?{_UNIT}|"
     rf"a quarter (?:of )?a {_UNIT}|(?:{_NUMBER}) (?:full |whole "
     rf")?{_UNIT}|half a {_UNIT})"
 )
@@ -108,6 +109,8 @@ _QUICKLY = r"(?:quickly|rapidly|swiftly|in no time)"
 _HEDGED = re.compile(rf"^{_HEDGE}")
 _UNITED = re.compile(rf" ?(?:full |whole )?{_UNIT}.*$")
 _SPAN = re.compile(rf"^{_HEDGE}{_DURATION}$")
+_SHARES = {"thirds": 3, "quarters": 4, "fifths": 5, "tenths": 10, "hundredths": 100}
+_PARTS = re.compile(rf"^(?P<count>{_ONES}) (?P<share>{'|'.join(_SHARES)}) of\b")
 _AT_TIME = re.compile(rf"{_UNIT}|\b(?:t|sec|time|start|beginning|end|middle|halfway)\b")
 
 
@@ -116,8 +119,12 @@ def _value(text: str) -> float | None:
     text = re.sub(r"^second(?= and a half$)", "one second", _HEDGED.sub("", text.strip()))
     text = re.sub(r"^(?:the )?(?:t|time|seconds?|sec)\b(?: ?= ?| )(?=\w)", "", text)
     text = re.sub(r" (?:mark|point)$", "", text)
+    if (shares := _PARTS.match(text)) is not None:
+        return NUMBERS[shares["count"]] / _SHARES[shares["share"]]
     half = 0.0
-    if re.search(r" and (?:a )?half\b", text):
+    if re.search(r" and (?:a )?quarter\b", text):
+        half, text = 0.25, re.sub(r" and (?:a )?quarter\b", "", text)
+    elif re.search(r" and (?:a )?half\b", text):
         half, text = 0.5, re.sub(r" and (?:a )?half\b(?: (?:a|of a))?", "", text)
     if re.match(r"^(?:a )?half\b", text):
         return 0.5 + half

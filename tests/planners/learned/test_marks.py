@@ -13,8 +13,8 @@ from scenewright.planners.grammar.learned.marks import labels_of, likeliest, spa
 LABELS = ("O", "B-x", "I-x", "B-t", "I-t")
 
 
-def by_trying(scores: NDArray[np.float32], moves: NDArray[np.float32]) -> list[str]:
-    """The likeliest row by trying every one: the reference."""
+def by_trying(scores: NDArray[np.float32], moves: NDArray[np.float32], count: int) -> list[list[str]]:
+    """The likeliest rows by trying every one: the reference."""
 
     def value(row: tuple[int, ...]) -> float:
         labels = [LABELS[i] for i in row]
@@ -25,16 +25,22 @@ def by_trying(scores: NDArray[np.float32], moves: NDArray[np.float32]) -> list[s
             float(own[i]) for own, i in zip(scores, row, strict=True)
         )
 
-    best = max(itertools.product(range(len(LABELS)), repeat=len(scores)), key=value)
-    return [LABELS[i] for i in best]
+    best = sorted(itertools.product(range(len(LABELS)), repeat=len(scores)), key=value, reverse=True)
+    return [[LABELS[i] for i in row] for row in best[:count]]
 
 
+@pytest.mark.parametrize("count", [1, 4])
 @pytest.mark.parametrize("seed", range(6))
-def test_the_likeliest_row_is_found(seed: int) -> None:
+def test_the_likeliest_rows_are_found(seed: int, count: int) -> None:
     random = np.random.default_rng(seed)
     scores = random.normal(size=(5, len(LABELS))).astype(np.float32)
     moves = random.normal(size=(len(LABELS), len(LABELS))).astype(np.float32)
-    assert likeliest(scores, moves, LABELS) == by_trying(scores, moves)
+    assert [row for row, _ in likeliest(scores, moves, LABELS, count)] == by_trying(scores, moves, count)
+
+
+def test_no_more_rows_are_told_than_there_are() -> None:
+    rows = likeliest(np.zeros((1, 3), np.float32), np.zeros((3, 3), np.float32), ("O", "B-x", "I-x"), 5)
+    assert sorted(row[0] for row, _ in rows) == ["B-x", "O"]
 
 
 def test_marks_and_labels_are_the_same() -> None:

@@ -9,12 +9,12 @@ from .....gaussians import late_re as re
 from ...vocabulary.quantities import NUMBERS
 from ..moments import DURATION, seconds_of
 
-Unit = Literal["s", "m", "deg", "turns", "turns/s", "times", "%"]
+Unit = Literal["s", "m", "deg", "turns", "turns/s", "times", "%", ""]  # the last: a number alone
 
 _WORD = "|".join(sorted((word for word in NUMBERS if word.isalpha()), key=len, reverse=True))
 _N = (
     r"(?:\d+(?:\.\d+)?|three quarters(?: of an?)?|(?:an? )?quarter(?: of an?)?|(?:an? |one )?half(?: an?)?|"
-    rf"(?:an? |one )?third(?: of an?)?|(?:{_WORD})(?: (?:{_WORD}))?(?: and a half)?|an?)"
+    rf"(?:an? |one |two )?thirds?(?: of an?)?|(?:{_WORD})(?: (?:{_WORD}))?(?: and a half)?|an?)"
 )
 _FULL = r"(?: (?:full|whole|complete|entire|quick|slow|single|proper|more|further))*"
 _ROUNDS = r"(?:turns?|revolutions?|revs?|rotations?|rounds?|spins?|circles?|twirls?|pirouettes?|laps?|times|cycles?)"
@@ -24,28 +24,45 @@ _OFTEN = {"once": 1.0, "twice": 2.0, "thrice": 3.0}
 _TABLE: tuple[tuple[Unit, str], ...] = (  # tried in their order
     ("turns/s", rf"(?P<n>{_N}){_FULL} {_ROUNDS}{_EACH}(?:(?P<per>{_N}) )?{_SECOND}"),
     ("turns/s", rf"(?P<often>once|twice|thrice){_EACH}(?:(?P<per>{_N}) )?{_SECOND}"),
+    ("turns/s", rf"(?P<n>{_N}) ?(?:hz|hertz|rps)"),
     ("turns/s", rf"(?P<rpm>{_N}) ?(?:rpm|{_ROUNDS} (?:per|a) minute)"),
     ("turns/s", rf"(?P<deg>{_N}) ?(?:degrees?|deg|°){_EACH}{_SECOND}"),
+    ("turns/s", rf"(?P<n>{_N}) (?:per|each|every) {_SECOND}"),
     ("deg", rf"(?P<n>{_N})(?: (?:full|whole|more))? ?(?:degrees?|deg|°)"),
     ("deg", r"(?P<right>right angle)"),
-    ("m", rf"(?P<n>{_N}){_FULL} ?(?P<unit>mm|cm|m|(?:milli|centi)?met(?:re|er)s?)"),
+    ("m", rf"(?P<n>{_N}){_FULL} ?(?P<unit>mm|cm|m|(?:milli|centi)?met(?:re|er)s?|feet|foot|ft|inch(?:es)?)"),
     ("s", rf"(?P<s>{DURATION})"),
     ("turns", rf"(?P<n>{_N}){_FULL} (?!times){_ROUNDS}(?: (?:around|round))?"),
     ("turns", rf"(?P<often>once|twice|thrice|{_N} times)(?: (?:around|round|about)|(?= its| itself| on its))"),
     ("%", rf"(?P<n>{_N}) ?(?:%|percent|per cent)"),
     ("times", rf"(?P<n>{_N}) ?(?:x|times|fold)"),
+    ("times", r"x ?(?P<n>\d+(?:\.\d+)?)"),
     (
         "times",
-        r"(?P<factor>twice|double[ds]?|two fold|twofold|triple[ds]?|thrice|quadruple|halve[ds]?|half|quarter|third)",
+        r"(?P<factor>twice|double[ds]?|two fold|twofold|triple[ds]?|thrice|quadruple|halve[ds]?|half|"
+        r"(?:two|three) (?:thirds|quarters)|quarter|third)",
     ),
     ("times", rf"factor (?:of )?(?P<n>{_N})"),
 )
 _PATTERNS = tuple((unit, re.compile(rf"(?<![\w.]){pattern}(?![\w.]*\d|\w)")) for unit, pattern in _TABLE)
 _FACTORS = {  # by how the word begins
-    "twice": 2.0, "doub": 2.0, "twof": 2.0, "two": 2.0, "trip": 3.0, "thri": 3.0, "quad": 4.0, "hal": 0.5,
-    "quar": 0.25, "third": 1 / 3,
+    "twice": 2.0, "doub": 2.0, "twof": 2.0, "two fold": 2.0, "trip": 3.0, "thri": 3.0, "quad": 4.0, "hal": 0.5,
+    "quar": 0.25, "third": 1 / 3, "two thirds": 2 / 3, "three quarters": 0.75,
 }  # fmt: skip
-_METRES = {"mm": 0.001, "cm": 0.01, "milli": 0.001, "centi": 0.01}
+_AGAIN = re.compile(
+    r"\b(?:again|once more|anew|afresh|(?:another|one more|a second|second) (?:time|go|round|run|pass))\b|^another$"
+)
+_TIMES_MORE = re.compile(
+    rf"\b(?P<n>{_WORD}|\d+|twice)(?: times| reps| goes)? more(?: times)?\b|\banother (?P<m>{_WORD}|\d+) times\b"
+)
+_GOES = re.compile(
+    rf"\b(?:x ?(?P<x>\d+)|(?P<n>{_WORD}|\d+) (?:reps?|repeats?|goes|passes|runs|takes|plays|loops|bows|helpings))\b"
+)
+_ALONE = re.compile(
+    rf"^(?:(?:by|to|at|just|only|about|around|like|say|some|exactly|not|more|than|a|mere|maybe|max|maximum|up) )*"
+    rf"(?P<n>\d+(?:\.\d+)?|(?:{_WORD})(?: (?:{_WORD}))?)(?: (?:max|only|or so|tops|at most|instead))?$"
+)
+_METRES = {"mm": 0.001, "cm": 0.01, "milli": 0.001, "centi": 0.01, "f": 0.3048, "inch": 0.0254}
 
 
 @dataclass(frozen=True)
@@ -62,6 +79,20 @@ def amount(phrase: str) -> Amount | None:
     for unit, pattern in _PATTERNS:
         if (found := pattern.search(phrase)) is not None and (value := _value(unit, found)) is not None:
             return Amount(value, unit, found[0])
+    if (alone := _ALONE.match(phrase)) is not None and (value := number(alone["n"])) is not None:
+        return Amount(value, "", alone["n"])
+    return None
+
+
+def repeats(phrase: str) -> Amount | None:
+    """How often something is done in all: "once more" is twice; None if that is not told."""
+    if (more := _TIMES_MORE.search(phrase)) is not None:
+        value = 2.0 if more["n"] == "twice" else number(more["n"] or more["m"])
+        return None if value is None else Amount(value + 1, "times", more[0])
+    if (again := _AGAIN.search(phrase)) is not None:
+        return Amount(2.0, "times", again[0])
+    if (goes := _GOES.search(phrase)) is not None and (value := number(goes["x"] or goes["n"])) is not None:
+        return Amount(value, "times", goes[0])
     return None
 
 
@@ -98,7 +129,7 @@ def number(said: str) -> float | None:
     if said in ("a", "an"):
         return 1.0
     said = re.sub(r"^(?:an?|one) (?=half|quarter|third)", "", said)
-    parts = {"half": 0.5, "quarter": 0.25, "third": 1 / 3, "three quarters": 0.75}
+    parts = {"half": 0.5, "quarter": 0.25, "third": 1 / 3, "two thirds": 2 / 3, "three quarters": 0.75}
     if said in parts:
         return parts[said]
     words = said.split()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
@@ -15,7 +16,9 @@ from ..clauses import ALL_OF_IT
 from ..command import Command, pace
 from ..happenings import IT, Happening
 from ..moments import Moment
-from .orders import in_order, listed
+from .amounts import amount
+from .guards import ASKED_AS_NOT
+from .orders import OTHERS, as_named, in_order, listed, rank_of
 from .slots import ALL_MOVING, Slots
 from .steps import gap_of, in_step, in_turn
 from .wanted import Wanted, now, paced, plainly, whose_of
@@ -42,9 +45,11 @@ _MORE = re.compile(r"\b(?:faster|quicker|increas\w+|rais\w+|more|up)\b")
 _LATER = re.compile(
     r"\b(?:plus|later|delay\w*|late|postpon\w+|hold\w*|held|waits?|waiting|longer|behind|lag\w*|defer\w*|push\w*|"
     r"hang\w*|"
-    r"back|pause\w*|linger\w*|stay\w*)\b"
+    r"back|pause\w*|linger\w*|stay\w*|put\b.{1,40} off|to the right|down the (?:time ?)?line)\b"
 )
-_EARLIER = re.compile(r"\b(?:minus|earlier|sooner|early|ahead|forward|advanc\w+|shorter|less)\b")
+_EARLIER = re.compile(
+    r"\b(?:minus|earlier|sooner|early|ahead|forwards?|advanc\w+|shorter|less|prepon\w+|to the (?:front|left))\b"
+)
 _STRICTLY_LATER = re.compile(r"\b(?:later|delay\w*|postpon\w+|longer)\b")
 _TOO = re.compile(r"\btoo (?:\w+ )?(?P<what>late|early|soon)\b")
 _UP = re.compile(
@@ -97,7 +102,10 @@ _HALF = re.compile(
     r"\b(?:half ?way|half(?: of)? (?:the|its|his|her|that|this)(?: \w+)? (?:way|fall|drop|walk|swing)|midway|half)\b"
 )
 _NO_FURTHER = re.compile(r"\b(?:no|not) (?:further|farther|more|wider|longer) than\b")
-_LESS_FAR = re.compile(r"\b(?:less|more|further|farther|wider|extra|additional|another|shorter|longer)\b")
+_LESS_FAR = re.compile(
+    r"\b(?:less|more(?! \w+(?:ful|ing|ic|al|ive|ous|ant|ent|able|ly)\b)|"
+    r"further|farther|wider|extra|additional|another|shorter|longer)\b"
+)
 _SHUTS = re.compile(r"\b(?:clos\w+|shut\w*|(?:go|going|goes|slid\w+|mov\w+|com\w+) back|return\w*|back in)\b")
 
 
@@ -108,7 +116,7 @@ def commands(kind: str, slots: Slots) -> Iterator[Wanted]:
         return
     if kind != "order" and _WHICH_ONE.search(slots.rest):
         return
-    if kind not in _NEGATIVE and _NOT.search(slots.rest):
+    if kind not in _NEGATIVE and _NOT.search(ASKED_AS_NOT.sub(" ", slots.rest)):
         return
     for wanted in made(slots):
         if not slots.unused():
@@ -255,8 +263,19 @@ def _repeat(slots: Slots) -> Iterator[Wanted]:
         yield Wanted(pace(whose_of(slots), "repeat", times=1), moment, None)
         return
     again = slots.one("times", "turns")
+    lasting = slots.moment.lasting
+    if (
+        lasting is not None
+        and again is not None
+        and again.value >= 2
+        and slots.moment.start is None
+        and slots.happening is None
+    ):
+        each = paced(slots, "begin", Moment(lasting=lasting, taken=True))
+        yield replace(each, also=(paced(slots, "repeat", Moment(), times=round(again.value) - 1),))
+        return
     if slots.told:
-        yield paced(slots, "repeat", times=1)
+        yield paced(slots, "repeat", times=1 if again is None or again.value < 2 else round(again.value) - 1)
     elif again is not None and again.value >= 2:
         yield paced(slots, "repeat", times=round(again.value) - 1)
     else:
@@ -292,18 +311,32 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
     if not slots.told:
         return
     if moment.stop is not None and moment.start is None and slots.happening is None and moment.lasting is None:
+        if not slots.tell(_LATER) and not any(tag == "to" for tag, _, _ in slots.spans):
+            return
         moment = replace(moment, start=moment.stop, stop=None)  # "it waits until 2 s"
-    if is_opened(_noun(slots)) and _SHUTS.search(slots.rest) and moment.start is not None:
+    if is_opened(_noun(slots)) and _SHUTS.search(slots.rest) and isinstance(slots.moment.start, float):
         yield Wanted(f"close {slots.whom}", moment, slots.happening)
+        return
+    if moment.lasting is not None and _BEFORE.search(slots.rest) and moment.start is None and slots.happening is None:
+        if (moves := slots.movement(slots.queries[0])) is not None:  # "a second of stillness before the fan begins"
+            slots.repeated |= set(moment.said)
+            yield paced(slots, "begin", Moment(start=round(moves.start + moment.lasting, 4)))
         return
     if moment.lasting is not None:
         moment = replace(moment, taken=True)
+    if slots.happening is not None and moment.empty and slots.happening.during.part in _ENDED_BY:
+        part = _ENDED_BY[slots.happening.during.part]  # "postpone it until the blue one has landed"
+        slots.happening = replace(slots.happening, during=slots.happening.during.model_copy(update={"part": part}))
     faster = slots.one("times", "%")
     if faster is not None and (factor := _factor(slots)) is not None:  # "at 2 s, but at double speed"
         speed = Wanted(pace(whose_of(slots), "speed", factor=round(factor, 4)), Moment(), None)
         yield replace(speed, also=(paced(slots, "begin", moment),))
         return
     yield paced(slots, "begin", moment)
+
+
+_BEFORE = re.compile(r"\b(?:before|until|till)\b")
+_ENDED_BY: dict[Part, Part] = {"until": "from", "until_end": "after"}
 
 
 def _noun(slots: Slots) -> str:
@@ -395,6 +428,7 @@ def _duration(slots: Slots) -> Iterator[Wanted]:
 
 _HALFWAY = {"state": "halfway", "part": "from"}
 _WIDE = {"state": "fully_open", "part": "from"}
+_CLOSING = {"state": "closing"}
 
 
 def _pause(slots: Slots) -> Iterator[Wanted]:
@@ -411,12 +445,13 @@ def _pause(slots: Slots) -> Iterator[Wanted]:
         return
     if moment.lasting is None and (seconds := slots.one("s")) is not None:
         moment = replace(moment, lasting=seconds.value)
-    if moment.lasting is not None and moment.start is None and slots.happening is None and moment.stop is None:
-        if slots.tell(_HALF):
-            slots.used |= {own.said for own in slots.amounts}
-            rest = replace(pace(whose_of(slots), "stop"), during=_HALFWAY)
-            yield Wanted(rest, moment, None)
-        return
+    begun = moment.start is not None or slots.happening is not None
+    if not begun and (moment.lasting is None) != (moment.stop is None):
+        if (where := _where(slots)) is not None:
+            yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), moment, None)
+            return
+        if moment.lasting is not None:
+            return
     if isinstance(moment.stop, float) and moment.start is None and slots.happening is None:
         moment = replace(moment, start=0.0)  # "for the first second"
     both = moment.stop is not None and (moment.start is not None or slots.happening is not None)
@@ -445,7 +480,7 @@ def _has_ends(happening: Happening | None) -> bool:
 def _halt(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     moment = plainly(slots.moment)
-    if (length := slots.one("m")) is not None and not slots.told:
+    if not is_opened(_noun(slots)) and not slots.told and (length := slots.one("m")) is not None:
         yield paced(slots, "part", Moment(), distance={"value": length.value})
         return
     if moment.lasting is not None:
@@ -453,11 +488,33 @@ def _halt(slots: Slots) -> Iterator[Wanted]:
     ended = moment.start is None and isinstance(moment.stop, float) and slots.happening is None
     if ended:  # "it only runs until 2 s"
         moment = replace(moment, start=moment.stop, stop=None)
-    if slots.told and (moment.start is not None or slots.happening is not None):
+    if slots.amounts and slots.happening is None and moment.start is None and not ended:
+        if (where := _where(slots)) is not None:  # "it jams at 40 degrees till the film ends"
+            yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), Moment(), None)
+    elif slots.told and (moment.start is not None or slots.happening is not None):
         yield paced(slots, "stop", replace(moment, stop=None) if moment.stop == "end" else moment)
-    elif slots.tell(_HALF):
+    elif (where := _where(slots)) is not None:
+        yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), Moment(), None)
+
+
+def _where(slots: Slots) -> dict[str, Any] | None:
+    """The time from when something has gone as far as is told, as fields: "at 40 degrees", "a third of the way down";
+    None if that is not told."""
+    if (angle := slots.one("deg")) is not None:
+        return {**_HALFWAY, "degrees": angle.value}
+    if (length := slots.one("m")) is not None:
+        return {**_HALFWAY, "distance": {"value": length.value}}
+    share = slots.one("times", "%")
+    part = None if share is None else share.value / 100 if share.unit == "%" else share.value
+    if part is not None and 0 < part < 1:
+        return {**_HALFWAY, "share": round(part, 4)} if part != _HALF_OF_IT else dict(_HALFWAY)
+    if slots.tell(_HALF):
         slots.used |= {own.said for own in slots.amounts}
-        yield Wanted(replace(pace(whose_of(slots), "stop"), during=_HALFWAY), Moment(), None)
+        return dict(_HALFWAY)
+    return None
+
+
+_HALF_OF_IT = 0.5
 
 
 def _still(slots: Slots) -> Iterator[Wanted]:
@@ -471,6 +528,12 @@ def _still(slots: Slots) -> Iterator[Wanted]:
 def _stay(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     if is_opened(_noun(slots)) and slots.moment.start != "end":
+        moves, moment = slots.movement(slots.queries[0]), slots.moment
+        if isinstance(moment.start, float) and slots.happening is None:
+            yield paced(slots, "stop", Moment(start=moment.start))
+            return
+        if moves is not None and isinstance(moment.stop, float) and moment.stop >= moves.end:
+            slots.repeated |= set(moment.said)
         yield Wanted(replace(pace(whose_of(slots), "stop"), during=_WIDE), Moment(), None)  # what opens by itself
         yield Wanted(f"keep {slots.whom} open", Moment(), None)
     else:
@@ -479,9 +542,28 @@ def _stay(slots: Slots) -> Iterator[Wanted]:
 
 def _longer(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    if slots.moment.lasting is None and slots.happening is None and not slots.amounts:
-        stop = slots.moment.stop if isinstance(slots.moment.stop, float) else None
+    if slots.happening is not None:
+        return
+    stop = slots.moment.stop if isinstance(slots.moment.stop, float) else None
+    if slots.moment.lasting is None and not slots.amounts:
         yield Wanted(pace(whose_of(slots), "go_on"), Moment(stop=stop), None)
+        return
+    moves, more = slots.movement(slots.queries[0]), slots.one("s")
+    seconds = slots.moment.lasting if more is None else more.value
+    if moves is None or seconds is None:
+        return  # only the scene tells when it stops now
+    words = " ".join(slots.words)
+    ends = round((moves.stop if more is not None or _EXTRA.search(words) else moves.start) + seconds, 4)
+    if ends <= moves.stop or (stop is not None and abs(stop - ends) > _AS_TOLD):
+        return
+    slots.repeated |= {said for said in slots.moment.said} | ({more.said} if more is not None else set())
+    yield Wanted(pace(whose_of(slots), "go_on"), Moment(stop=ends), None)
+
+
+_EXTRA = re.compile(
+    r"\b(?:extra|more|another|longer|further|additional|beyond|prolong\w*|extend\w*|extension|add\w*)\b"
+)
+_AS_TOLD = 0.06  # seconds by which two tellings of one time may differ
 
 
 # -- how far -----------------------------------------------------------------------------------------------------------
@@ -489,12 +571,22 @@ def _longer(slots: Slots) -> Iterator[Wanted]:
 
 def _amount(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    if _LESS_FAR.search(_NO_FURTHER.sub(" ", slots.said.replace("any more", " "))) and not _NOT.search(slots.rest):
+    further = _LESS_FAR.search(_NO_FURTHER.sub(" ", slots.said.replace("any more", " ")))
+    instead = any(tag == "not" and amount(" ".join(slots.words[a:b])) is not None for tag, a, b in slots.spans)
+    if further and not instead and not _NOT.search(slots.rest) and not _UP_TO.search(" ".join(slots.words)):
         return  # "5 cm more": from how far it goes now
+    if not is_opened(_noun(slots)) and (angle := slots.one("deg", "")) is not None:
+        if not slots.told and slots.moves(slots.queries[0]):
+            yield paced(slots, "turn", Moment(), degrees=angle.value)
+        return
     if (how := _how_far(slots)) is None:
         return
     slots.used |= {own.said for own in slots.amounts if own.unit in ("times", "%")}  # "half as far, 15 cm"
-    if is_opened(_noun(slots)):
+    if is_opened(_noun(slots)) and isinstance(how, float):
+        yield now(slots, Command(({"op": "articulate", "target": whose_of(slots), "change": "open", "share": how},)))
+    elif isinstance(how, float):
+        yield paced(slots, "part", share=how)
+    elif is_opened(_noun(slots)):
         yield now(slots, f"open {slots.whom} {how}")
     elif how.startswith("by") and how.endswith(" m"):
         yield now(slots, f"let {slots.whom} only move {how.removeprefix('by ')}")
@@ -502,8 +594,16 @@ def _amount(slots: Slots) -> Iterator[Wanted]:
         yield now(slots, f"let {slots.whom} go half the way")
 
 
-def _how_far(slots: Slots) -> str | None:
-    """How far something opens or goes, in words."""
+_UP_TO = re.compile(
+    r"\b(?:to|until|up to|reach\w*) (?:\w+ ){0,2}(?:\d|one|two|three|four|five|six|seven|eight|nine|ten|half)"
+)
+
+
+def _how_far(slots: Slots) -> str | float | None:
+    """How far something opens or goes, in words, or as a share of how far it does now."""
+    if (alone := slots.one("")) is not None:  # "knock its swing down to 55"
+        slides = _noun(slots).startswith("drawer")
+        return f"by {alone.value:g} cm" if slides else f"by {alone.value:g} degrees"
     if (angle := slots.one("deg")) is not None:
         return f"by {angle.value:g} degrees"
     if (length := slots.one("m")) is not None:
@@ -512,6 +612,9 @@ def _how_far(slots: Slots) -> str | None:
     if (share is not None and share.value in (0.5, 50.0)) or (share is None and slots.tell(_HALF)):
         return "halfway"
     if share is not None:
+        part = share.value / 100 if share.unit == "%" else share.value
+        if part < 1 and share.unit == "times" and not _LESS.search(slots.said):
+            return round(part, 4)
         slots.used.discard(share.said)  # "twice as quick"
     return None
 
@@ -553,7 +656,8 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     elif by is not None:
         sign = _sign(slots)
         if sign is not None and not slots.told:
-            yield Wanted(pace(whose_of(slots), "later", seconds=sign * by.value), Moment(), None)
+            shift = pace(whose_of(slots), "later", seconds=sign * by.value)
+            yield Wanted(replace(shift, during=_CLOSING) if verb == "close" else shift, Moment(), None)
         elif slots.happening is not None and slots.moment.empty:
             yield now(slots, f"{verb} {slots.whom}", start=by.value)
         return
@@ -561,7 +665,9 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     moment = slots.moment if slots.moment.lasting is None else replace(slots.moment, taken=True)
     if moment.always and moment.start is not None:
         moment = replace(moment, stop="end", always=False)  # "at four, so that it is shut as the film ends"
-    command = f"{verb} {slots.whom}" if how is None or verb == "close" else f"open {slots.whom} {how}"
+    command: str | Command = f"{verb} {slots.whom}" if how is None or verb == "close" else f"open {slots.whom} {how}"
+    if isinstance(how, float) and verb == "open":
+        command = Command(({"op": "articulate", "target": whose_of(slots), "change": "open", "share": how},))
     yield Wanted(command, plainly(moment), slots.happening)
 
 
@@ -569,11 +675,13 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
 
 _REVERSED = re.compile(
     r"\b(?:revers\w+|invert\w*|opposite|backwards?|other way (?:round|around)|flip\w*|contrary|inverse|"
-    r"turned (?:round|around)|swap\w*)\b"
+    r"turn(?:ed)? (?:\w+ )*?(?:round|around)|swap\w*|back to front|other way about|topsy \w+|upside down|"
+    r"last (?:one |in line )?(?:\w+ )?(?:lead\w*|first))\b"
 )
 _FIRST = re.compile(r"\b(?:first|firstly|begins?|starts?|leads?|leading|earliest)\b")
 _LAST = re.compile(r"\b(?:last|lastly|finally|latest|final)\b")
 _AFTER_IT = re.compile(r"\b(?:after|behind|following) \|")
+_SWAPS = re.compile(r"\b(?:swap\w*|exchang\w+|trad(?:e|es|ing)|switch\w*|permut\w+|interchang\w+)\b")
 _NO_ORDER = re.compile(
     r"\b(?:instead|rather|not|between|both|notice[sd]?|saw|see|sees|think|thought|said|says?|know|watched|heard|"
     r"fell)\b"
@@ -582,6 +690,7 @@ _NO_ORDER = re.compile(
 
 def _order(slots: Slots) -> Iterator[Wanted]:
     order = listed(slots.words, slots.spans, slots.thing) or _listed(slots)
+    goals = slots.goals
     slots.pass_goals()
     if order and all(is_opened(query.text) for query in order) and not all(map(slots.moves, order)):
         yield from in_turn(order, slots)
@@ -589,13 +698,22 @@ def _order(slots: Slots) -> Iterator[Wanted]:
     gap = gap_of(slots)
     if slots.told and (gap is None or slots.moment.start is not None or slots.happening is not None):
         return
-    if order:
+    both = tuple(dict.fromkeys((*slots.queries, *(goal.query for goal in goals))))
+    alone = len(slots.names) == 1 and all(OTHERS.search(goal.name) for goal in goals)
+    if _SWAPS.search(slots.rest) and len(both) == 2 and not slots.told:
+        pair = both[0].model_copy(update={"also": (both[1],)})
+        yield Wanted(Command(({"op": "order", "target": pair, "order": "reversed"},)), Moment(), None)
+    elif order:
         yield Wanted(in_order(order, gap), Moment(), None)
-    elif len(slots.names) == len(slots.goals) == 1 and _AFTER_IT.search(slots.rest):
-        other = slots.goals[0]
-        after = During(state="moving", of=other.query, part="after")
-        yield Wanted(pace(whose_of(slots), "begin"), Moment(), Happening(after, f"after {other.name}"))
-    elif slots.tell(_REVERSED) and len(slots.names) == 1 and not slots.goals:
+    elif alone and slots.queries[0].pick == "one" and (rank := rank_of(slots.rest)) is not None:
+        own: dict[str, Any] = {"first": slots.queries} if rank == "first" else {"last": slots.queries[0]}
+        yield Wanted(Command(({"op": "order", "target": ALL_MOVING, "order": "listed", **own},)), Moment(), None)
+    elif len(slots.names) == len(goals) == 1 and _AFTER_IT.search(slots.rest):
+        after = During(state="moving", of=goals[0].query, part="after")
+        yield Wanted(pace(whose_of(slots), "begin"), Moment(), Happening(after, f"after {goals[0].name}"))
+    elif named := as_named(slots):
+        yield Wanted(in_order(named, gap), Moment(), None)
+    elif slots.tell(_REVERSED) and len(slots.names) == 1 and not goals:
         yield Wanted(f"let {slots.names[0]} move in reverse order", Moment(), None)
 
 
@@ -630,13 +748,15 @@ def _together(slots: Slots) -> Iterator[Wanted]:
     if not slots.moves(slots.queries[0]) and slots.goals:
         yield from _move(slots)
         return
-    who = [*slots.names, *(goal.name for goal in slots.goals)]
+    others = [goal.query for goal in slots.goals if slots.moves(goal.query)]
     slots.pass_goals()
-    whose = slots.queries[0]
+    who = tuple(dict.fromkeys((*slots.queries, *others)))
     hasty = slots.moment.slowly or slots.moment.quickly or slots.tell(_SLOWER) or slots.tell(_HASTE)
-    several = len(who) > 1 or whose.pick == "all" or slots.names[0].endswith("s")
+    several = len(who) > 1 or who[0].pick != "one" or bool(who[0].also)
     if not hasty and several and (slots.happening is None or slots.happening.until is None):
-        yield Wanted(f"let {' and '.join(who)} start at the same time", plainly(slots.moment), slots.happening)
+        things = replace(slots, queries=who)
+        command = Command(({"op": "order", "target": whose_of(things), "order": "together"},))
+        yield Wanted(command, plainly(slots.moment), slots.happening)
 
 
 _KINDS: dict[str, Callable[[Slots], Iterator[Wanted]]] = {

@@ -18,7 +18,8 @@ from .slots import Slots
 _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
 _JOINED = re.compile(r"^(?:[,.;:!] |and |then |but )+")
 _THERE_AND_BACK = re.compile(
-    r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and (?!(?:be |is |arrive|get|reach|stop|stay|done|there))"
+    r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and "
+    r"(?!(?:be |is |arrive|get|reach|stop|stay|done|there|end|finish))"
 )
 _THERE_IS = re.compile(
     r"\bthere (?:sits|stands|lies|hangs|lives) an? (?:[a-z]+ )?(?P<noun>[a-z]+)\b.*\b(?:her|him|it)\b"
@@ -28,7 +29,9 @@ _DETERMINED = re.compile(r"(?:the|a|an|that|this|these|those|my|our|all|both|eve
 _PROHIBITED = re.compile(
     r"\b(?:do not|never|must not|should not) (?:delete|remove|move|paint|touch|hide|recolou?r|change)\b"
 )
-_UNWANTED = re.compile(r"\b(?:nobody|no one|none of us) (?:wants?|needs?|asked|asks|likes?)\b")
+_UNWANTED = re.compile(
+    r"\b(?:nobody|no one|none of us) (?:wants?|needs?|asked|asks|likes?)\b(?! (?:push|pull|touch|close|open)\b)"
+)
 _OTHER_EDITS = re.compile(
     r"\b(?:add|insert|duplicate|copy|replace|swap|exchange|trade|forget|never mind|cancel|undo)\b"
 )
@@ -102,20 +105,24 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
 _TELLING = {  # words that say something by themselves, and the kinds of wishes that say it
     r"slow|slower|fast|faster|quick|quicker|twice|double|half|speed": "speed duration spin repeat amount",
     r"slowly|quickly": "speed duration spin repeat amount move",
+    r"wide|wider": "amount open stay duration begin reverse",
     r"far(?! (?:too|better|nicer|more|less|from|prettier|cooler|slower|faster|quicker|longer|shorter|earlier|later))|"
-    r"farther|further|wide|wider": "amount",
-    r"earlier|sooner|later": "begin open order",
+    r"farther|further": "amount",
+    r"earlier|sooner|later": "begin open close order longer duration",
     r"backwards?|reverse|reversed": "reverse return order",
     r"back": "return reverse close stay still hide order repeat pause",
     r"again": "repeat return close open stay still halt hide recolor reverse pause",
     r"invisible|hides?|hidden|disappears?|vanish|vanishes|gone": "hide remove",
-    r"shows?|shown|reveals?|visible": "hide recolor",
-    r"shut|shuts|close|closes": "close stay still open begin order together speed",
+    r"shows?|shown|reveals?|visible": "hide recolor repeat",
+    r"shut|shuts|close|closes": "close stay still open begin order together speed reverse",
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
 }
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _WHY_NOT = re.compile(r"\bwhy (?:not|do not we|do not you)\b")
+ASKED_AS_NOT = re.compile(  # "couldn't we see it fall again?"
+    r"^(?:\W*\w+ ){0,2}?\W*(?:can|could|will|would|should|might) not (?=\||(?:we|you|i|it|he|she|they|there)\b)"
+)
 _THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
 _BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")
 _SAME_SPEED = re.compile(  # "at unchanged speed"
@@ -151,7 +158,7 @@ _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
 
 def says_more(kind: str, slots: Slots) -> bool:
     """Whether a word without a mark tells of another wish: "one second earlier, and slower"."""
-    idle, left = slots.idle, _WHY_NOT.sub(" ", slots.rest)
+    idle, left = slots.idle, ASKED_AS_NOT.sub(" ", _WHY_NOT.sub(" ", slots.rest))
     if kind == "open" and slots.happening is not None and slots.happening.during.of not in (None, IT, *slots.queries):
         left = _BACK_IN.sub(" ", left)  # as another one does
     if kind not in ("recolor", "hide") and "then" in idle and hues() & set(idle.split()):
@@ -182,4 +189,4 @@ def says_more(kind: str, slots: Slots) -> bool:
         return kind != "begin" or not waits  # "not at once, it waits", "do not open it till 3 s"
     manner = _MANNER.search(left)
     verb = None if manner is None else manner["verb"]
-    return verb is not None and verb not in AUXILIARIES and not has_form(verb, tuple(SENSES), "plain", "s")
+    return verb is not None and verb not in AUXILIARIES and not has_form(verb, tuple(SENSES), "plain", "s", "ing")

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from .....gaussians import late_re as re
 from ...learned.marks import Span
 from ...learned.network import networks, told
-from ...tagging.spelling import is_common, is_word
+from ...tagging.spelling import is_captioned, is_word
 from ...tagging.words import split
 from ...vocabulary.nouns import is_known
 from ..verbs import SENSES, has_form
@@ -114,12 +114,19 @@ def marked(words: Sequence[str]) -> tuple[Span, ...]:
     return told(TASK, tuple(words)).spans
 
 
+def marked_ways(words: Sequence[str]) -> tuple[tuple[Span, ...], ...]:
+    """As `marked`, in likely ways, the likeliest first."""
+    return told(TASK, tuple(words)).ways
+
+
 def is_any_word(word: str) -> bool:
-    """Whether a word stands in any of the vocabularies, or in the sentences that kinds were learned from."""
+    """Whether a word stands in any of the vocabularies, in captions of pictures, or in the sentences that kinds were
+    learned from; what is begun again is one, too: "reschedule"."""
     return (
         is_word(word)
         or is_known(word)
-        or is_common(word)
+        or is_captioned(word)
+        or (word.startswith("re") and is_captioned(word[2:]))
         or word in networks().places
         or has_form(word, tuple(SENSES), "plain", "s", "ing", "past")
     )

@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from .....gaussians import late_re as re
 from .....gaussians.world.words import singular
+from ...learned.marks import Span
 from ...learned.seen import hues
 from ...tagging.words import bag
 from ...vocabulary.nouns import is_known
@@ -19,46 +20,55 @@ from .kinds import marked
 CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
 
 
-def leaves_out(words: Sequence[str], ops: Sequence[Fields], free: Set[int] = frozenset()) -> bool:
+def leaves_out(
+    words: Sequence[str], ops: Sequence[Fields], free: Set[int] = frozenset(), spans: Sequence[Span] | None = None
+) -> bool:
     """Whether a number beside a time, or a colour, that an instruction tells stands in no operation.
 
     What is not wanted, and what comes back, may be left out.
 
     Args:
         free: where numbers stand that say nothing new.
+        spans: the marks in the words; None: the likeliest.
     """
-    if _loses_colors(words, ops):
+    spans = marked(words) if spans is None else spans
+    if _loses_colors(words, ops, spans):
         return True
     said = " ".join(words)
-    return (TIMED.search(said) or _A_SECOND.search(said)) is not None and _loses_numbers(words, ops, free)
+    return (TIMED.search(said) or _A_SECOND.search(said)) is not None and _loses_numbers(words, ops, free, spans)
 
 
-def _loses_colors(words: Sequence[str], ops: Sequence[Fields]) -> bool:
+def _loses_colors(words: Sequence[str], ops: Sequence[Fields], spans: Sequence[Span]) -> bool:
     """Whether a look is for a time, and another colour that is told stands nowhere: "red while it rolls, else blue"."""
     if not any(op["op"] == "recolor" and op.get("when") is not None for op in ops):
         return False
     held = set(re.findall(r"[a-z]+", str(ops)))
+    idle = {
+        at for tag, start, stop in spans if tag == "off" and _DISLIKES.search(" ".join(words[start:stop]))
+        for at in range(start, stop)
+    }  # fmt: skip
     for at, word in enumerate(words):
         around = {*words[max(0, at - 4) : at], *words[at + 1 : at + 3]}
         beside = held & hues() & {*words[max(0, at - 1) : at], *words[at + 1 : at + 2]}  # "mint green" is one colour
-        if word in hues() and word not in held and not beside and not around & _NOT_WANTED:
+        if word in hues() and at not in idle and word not in held and not beside and not around & _NOT_WANTED:
             return True
     return False
 
 
+_DISLIKES = re.compile(r"\b(?:hates?|dislikes?|ugly|boring|dreary|dull|sick|tired|enough)\b")  # "I hate brown"
 _NOT_WANTED = bag(
     "again back return returns revert reverts not no never instead than rather too from usual normal longer was rest "
     "without ugly"
 )
 
 
-def _loses_numbers(words: Sequence[str], ops: Sequence[Fields], free: Set[int]) -> bool:
+def _loses_numbers(words: Sequence[str], ops: Sequence[Fields], free: Set[int], spans: Sequence[Span]) -> bool:
     """Whether a number stands in no operation, and not among what is not wanted."""
     missing = set(_missing(words, ops)) - free
     if missing and "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
         missing -= set(range(words.index("not"), words.index("but", words.index("not"))))
     if missing:
-        unwanted = [(start, stop) for tag, start, stop in marked(words) if tag == "not"]
+        unwanted = [(start, stop) for tag, start, stop in spans if tag == "not"]
         missing -= {
             at for start, stop in unwanted if CONTRAST.search(" ".join(words[start:stop])) for at in range(start, stop)
         }
@@ -80,13 +90,24 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
         if told != 1 or (seconds and word in ("1", "one", "a")):
             rate = words[max(0, at - 1)] in ("every", "each", "per")
             among = exact if seconds and not rate else held
-            if not any(abs(told - value) < 0.01 or abs(told + 0.5 - value) < 0.01 for value in among):
+            halves = (0.0, 0.5) if "half" in words[at + 1 : at + 5] else (0.0,)
+            if not any(abs(told + half - value) < 0.01 for half in halves for value in among):
                 yield at
 
 
 _A_SECOND = re.compile(r"\b(?:every|each|per|a) (?:second|sec)\b")
 _AT = ("at", "by", "until", "till", "from", "before", "after")
-_NO_NUMBER = ("of", "ones", "quarters", "thirds", "quarter", "third")  # behind a part of something
+_NO_NUMBER = (
+    "of",
+    "ones",
+    "quarters",
+    "thirds",
+    "quarter",
+    "third",
+    "tenths",
+    "fifths",
+    "hundredths",
+)  # behind a part of something
 
 
 def _numbers(value: object) -> Iterator[float]:

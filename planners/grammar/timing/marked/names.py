@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .....gaussians import late_re as re
+from .....gaussians.language.query.query import Query
 from .....gaussians.world.words import singular
+from ...learned.marks import Span
+from ...learned.seen import hues
 from ...tagging.words import bag
 from ...vocabulary.nouns import EVERYWHERE, is_known, is_opened
 from ...vocabulary.quantities import NUMBERS
@@ -95,3 +98,33 @@ def _is_name(words: Sequence[str]) -> bool:
     if last in _NO_THINGS or last in NUMBERS:
         return False
     return is_known(last) or (words[0] == "the" and 1 < len(words) <= _UNKNOWN)
+
+
+_LIST = re.compile(r" , and | and | , ")
+
+
+def with_colors(thing: Thing, words: Sequence[str], spans: Sequence[Span]) -> Thing:
+    """A reader of names that also reads a colour alone, "once blue has landed": of the noun that the marks of an
+    instruction name, or else of what moves.
+
+    Args:
+        thing: reads other names.
+        words: those of the instruction.
+        spans: the marks in them.
+    """
+    marked = (words[start:stop] for tag, start, stop in spans if tag in ("x", "y"))
+    named = [word for own in marked for word in own if is_known(word) and word not in _NO_THINGS | hues()]
+    noun = singular(named[0]) if named and len(set(map(singular, named))) == 1 else ""
+
+    def read(name: str) -> Query | None:
+        bare = [word for word in name.split() if word not in ("the", "one", "'s")]
+        if not bare or not set(bare) <= hues():
+            several = [own for own in _LIST.split(name) if own]
+            if len(several) > 1 and all(set(own.split()) - {"the", "one"} <= hues() for own in several):
+                first, *others = (read(own) for own in several)
+                return None if first is None else first.model_copy(update={"also": tuple(o for o in others if o)})
+            return thing(name)
+        query = thing(f"the {' '.join(bare)} {noun or 'one'}")
+        return query if noun or query is None else query.model_copy(update={"moving": True})
+
+    return read

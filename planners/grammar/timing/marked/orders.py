@@ -15,6 +15,7 @@ from ...vocabulary.nouns import is_known, is_opened
 from ..command import Command
 from ..manner import Thing
 from ..verbs import SENSES, has_form
+from .slots import Slots
 
 _FIRST = re.compile(r"\b(?:first|to begin with|to start with)\b")
 _LAST = re.compile(r"\b(?:last|lastly|finally|at the end|in the end|to finish)\b")
@@ -66,6 +67,57 @@ def listed(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[Q
     place = {None: 1, "middle": 1, "first": 0, "last": 2}
     order = sorted(range(len(named)), key=lambda at: (place[ranks[at]], at))
     return tuple(queries[at] for at in order) if told else ()
+
+
+OTHERS = re.compile(
+    r"^(?:(?:both|all|each) )?(?:of )?(?:the |its |my )?(?:others?|rest)\b(?: (?:two|ones|books))?|^both$"
+)
+_LEADS = re.compile(
+    r"\b(?:first|lead(?:s|ing)?|ahead|open(?:s|ing)?|in front|fronts?|starts? (?:off|things|the show)|earliest|"
+    r"before (?:\||the others?|both|all)|head)\b"
+)
+_ENDS = re.compile(
+    r"\b(?:last|rear|finally|final(?:e|ly)?|finish\w*|ends?|ending|clos(?:es|e|ing)|tail|trails?|"
+    r"conclud\w+|winds? up|latest|after (?:\||the others?|both|all))\b"
+)
+_PRECEDES = re.compile(r"\b(?:before|ahead of|earlier than|sooner than|prior to|in front of|preced\w+|leads)\b")
+_FOLLOWS = re.compile(r"\b(?:after|behind|later than|follow\w*|succeed\w*)\b")
+
+
+def rank_of(rest: str) -> str | None:
+    """Whether words around the one thing that is named say that it is "first" or "last"; None if neither, or both."""
+    first, last = (pattern.search(rest) is not None for pattern in (_LEADS, _ENDS))
+    return None if first == last else "first" if first else "last"
+
+
+def as_named(slots: Slots) -> tuple[Query, ...]:
+    """The order in which several things are named, if no words beside them tell another one; none of others.
+
+    Args:
+        slots: whose `rest` has a bar for each name.
+    """
+    marked = [
+        (slots.thing(" ".join(slots.words[a:b]).strip(" ,.")), a) for tag, a, b in slots.spans if tag in ("x", "y")
+    ]
+    named = [query for query, _ in marked]
+    if len(named) < 2 or len(set(named)) != len(named) or len(named) > _MOST:
+        return ()
+    if any(query is None or query.last or query.pick not in _SINGLE for query in named):
+        return ()
+    queries = tuple(query for query in named if query is not None)
+    parts = slots.rest.split("|")
+    if len(parts) != len(named) + 1 or any(map(_TELLS.search, parts)) or any(map(_is_past, parts)):
+        return ()
+    if len(named) == 2:
+        if _PRECEDES.search(parts[1]):
+            return queries
+        if _FOLLOWS.search(parts[1]):
+            return queries[::-1]
+        return queries if _LEADS.search(parts[1]) or _ENDS.search(parts[2]) else ()
+    begun, over = " ".join(parts[:2]), " ".join(parts[-2:])
+    if _ENDS.search(begun) or _LEADS.search(over) or any(map(_PRECEDES.search, parts[1:-1])):
+        return ()
+    return queries
 
 
 def _is_past(said: str) -> bool:

@@ -48,6 +48,7 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ),
     ("for", rf"^of (?={_SECONDS})", ""),
     ("for", r" 's$", ""),
+    ("from", rf"^in (?={_SECONDS}$)", "at "),
     ("in", r"^long as\b", "as long as"),
     ("in", r"^in (?=(?:along|together|step|sync|tandem|time|unison) )", ""),
     ("in", r"^(?:just |only )+(?=for|during|while|in|on)", ""),
@@ -131,7 +132,8 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ),
     (
         "in",
-        rf"^(?:for |over |during )?all (?:of )?(?:the )?{_NUMBER} seconds(?: of (?:it|the {_FILM}|this))?$",
+        rf"^(?:for |over |during |within )?(?:all|these)(?: of)?(?: the)? {_NUMBER} (?:seconds|secs)"
+        rf"(?: of (?:it|the {_FILM}|this))?$",
         _ALWAYS,
     ),
     ("for", rf"^(?:for )?(?:just )?(?:briefly|an? (?:short |brief |wee |quick )?(?:{_BRIEFLY}))$", "for 1 seconds"),

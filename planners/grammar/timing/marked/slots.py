@@ -9,6 +9,7 @@ from itertools import islice, pairwise
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
+from .....gaussians.world.words import singular
 from .....tools.when import During
 from ...learned.events import event_of
 from ...learned.marks import Span
@@ -16,22 +17,27 @@ from ...learned.seen import hues
 from ...tagging.words import bag
 from ...vocabulary.nouns import is_known, is_opened
 from ...vocabulary.quantities import NUMBERS
+from ..ending import MovementOf
 from ..happenings import IT, Happening
 from ..manner import Thing
 from ..moments import DURATION, Moment, seconds_of
-from .amounts import Amount, amount
+from .amounts import Amount, amount, repeats
 from .events import is_told_by_event, told_by_event
 from .kinds import COURSES
-from .names import MOVING, with_moving
+from .names import MOVING, with_colors, with_moving
 from .names import named as names_in
+from .numbered import numbered
 from .times import LASTS, LEADING, TIMES, UNTIL, delayed, joined, told_by
 
 _EVENTS = (
     r"(?:falls?|falling|drops?|movements?|motions?|rolls?|rolling|walks?|walking|turns?|turning|rotations?|spins?|"
     r"spinning|swings?|swinging|slides?|sliding|openings?|closings?|opening|closing|return|run|way|path|trip|journey|"
-    r"route|ride|speed|pace|rate|start|stop|descent|animation|sequence|order|action|travel|stroke|course)"
+    r"route|ride|speed|pace|rate|start|stop|descent|animation|sequence|order|action|travel|stroke|course|routine|cycle|"
+    r"business|performance|act|extension|retraction|departure|arrival|march|journeys?|rotation|plunge)"
 )
 _OF_EVENT = re.compile(rf"^(?:the |its |his |her |a )?(?:\w+ )?{_EVENTS} (?:of|by|for) ")
+_WHOLE_OF = re.compile(r"(?<=\w) (?:leaf|blades?|front|panel)$")  # a part of it that moves as it does
+_PARTS = {"leaf": "door", "blade": "fan", "rotor": "fan", "propeller": "fan"}  # what moves as the whole does
 _ITS_EVENT = re.compile(rf"(?: 's?)?(?: (?:whole|entire|full|complete|outward|return|own|\w+ward))? {_EVENTS}$")
 _STATE = re.compile(r"\b(?:open|opened|closed|shut|opening|closing) (?=[a-z])")  # before the name of what opens
 _JUST_EVENT = re.compile(rf"^(?:the |its |his |her |their |this |that |whole |entire |\w+ing )*{_EVENTS}$")
@@ -109,9 +115,10 @@ class Slots:
         said: all words that ask for something: those without a mark, and of things, goals and amounts.
         spans: the marks.
         thing: reads a name.
-        moves: tells whether what is named moves in the scene.
+        moves, movement: tell whether what is named moves in the scene, and how.
         used: what of this a command holds.
         repeated: amounts that a time tells, too.
+        redundant: words of times that tell nothing beside the others: "from 2 s, for 1 s, until 3 s".
     """
 
     names: tuple[str, ...]
@@ -127,8 +134,10 @@ class Slots:
     spans: Sequence[Span]
     thing: Thing
     moves: Callable[[Query], bool]
+    movement: MovementOf
     used: set[str] = field(default_factory=set)
     repeated: set[str] = field(default_factory=set)
+    redundant: tuple[str, ...] = ()
 
     @property
     def told(self) -> bool:
@@ -190,8 +199,18 @@ class Slots:
         found = set[int]()
         for tag, start, stop in self.spans:
             said = " ".join(self.words[start:stop])
-            if tag == "by" and any(own in said for own in self.repeated):
+            if tag in ("by", *TIMES) and any(own in said for own in self.repeated):
                 found |= set(range(start, stop))
+            if tag in TIMES and any(own in said for own in self.redundant):
+                found |= set(range(start, stop))
+            if tag == "keep" and not facts:
+                found |= set(range(start, stop))
+            if tag in TIMES and _ITS_TURN.search(said):
+                found |= {
+                    at for at in range(start, stop - 1) if self.words[at + 1] in ("degree", "degrees", "deg", "°")
+                }
+            if tag in TIMES and (self.moment.always or _THROUGHOUT.search(said)):
+                found |= set(range(start, stop))  # "for all five seconds"
             if tag in _IDLE:
                 numbers = ((at, seconds_of(f"{self.words[at]} seconds")) for at in range(start, stop))
                 found |= {at for at, value in numbers if any(abs((value or -9.0) - now) < _NEAR for now in facts)}
@@ -205,6 +224,8 @@ class Slots:
         )
 
 
+_ITS_TURN = re.compile(r"\bturn(?:s|ed|ing)?\b")
+_THROUGHOUT = re.compile(r"\b(?:all|whole|entire|full|these) (?:\w+ )*?(?:seconds|secs)\b")
 _UNLESS = re.compile(
     r"\b(?:except|unless|apart from|only if)\b|"
     r"(?<!wonder )(?<!see )(?<!know )(?<!ask )(?<!check )\bif (?:it|he|she|they|the)\b"
@@ -227,46 +248,61 @@ def asks_more(words: Sequence[str], tag: str) -> bool:
 
 
 def slots(
-    words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: str, moves: Callable[[Query], bool]
+    words: Sequence[str],
+    spans: Sequence[Span],
+    thing: Thing,
+    kind: str,
+    moves: Callable[[Query], bool],
+    movement: MovementOf,
 ) -> Slots | None:
     """What the marks in words hold; None if one of them is not understood, or a number stands in none.
 
     Args:
         thing: reads a name.
         kind: that of the wish.
-        moves: tells whether what is named moves in the scene; where nothing is named, what moves is meant.
+        moves, movement: tell whether what is named moves in the scene, and how; where nothing is named, what moves
+            is meant.
     """
 
     def text(span: Span) -> str:
         return " ".join(words[span[1] : span[2]]).strip(_TRIM)
 
     spans = [_joined(span, words, kind) for span in sorted(spans, key=lambda span: span[1])]
+    thing = with_colors(thing, words, spans)
     time = _time(words, spans, text, thing, kind)
     if time is None:
         return None
+    time, redundant = _with_both_ends(*time)
     amounts = list[Amount]()
     for span in spans:
-        if span[0] == "by" and _AT_A_TIME.match(text(span)) is None:
-            if (found := amount(f"{text(span)} around" if kind == "spin" else text(span))) is None:
-                vague = kind in ("speed", "return") and not any(map(_tells_number, text(span).split()))
-                if vague or (kind in ("pause", "halt") and _HALFWAY.search(text(span)) is not None):
-                    continue  # "right down"; "halfway" is told by words
+        if span[0] == "by" and (kind in _OF_NO_TIME or _AT_A_TIME.match(text(span)) is None):
+            found = repeats(text(span)) if kind == "repeat" else None
+            found = found or amount(f"{text(span)} around" if kind == "spin" else text(span))
+            if found is None:
+                vague = not any(map(_tells_number, text(span).split()))
+                beside = any(own[0] == "by" and own != span and amount(text(own)) is not None for own in spans)
+                if vague and (beside or kind in ("speed", "return", "begin", "open", "close", "remove")):
+                    continue  # "right down"; "a crack, twenty degrees"
+                if kind in ("pause", "halt", "amount") and _HALFWAY.search(text(span)) is not None:
+                    continue  # "halfway" is told by words
                 return None
             amounts += [] if any(found.value == own.value and found.unit == own.unit for own in amounts) else [found]
     named = [span for span in spans if span[0] == "x"]
     if any(_EVERYTHING.search(text(span)) for span in named) or _is_divided(words, named, thing, kind):
         return None
     goals = tuple(_goals(words, spans, text, thing))
-    if kind not in (*_LOOKS, "order") and any(goal.query.last for goal in goals):
+    if kind not in (*_LOOKS, "order") and any(goal.query.last and not _is_own(goal.name, kind) for goal in goals):
         return None
-    names, queries = _things(map(text, named), thing)
+    names, queries = _things(map(text, named), thing, kind in COURSES and moves(ALL_MOVING))
     painted = None if names else _painted(map(text, (span for span in spans if span[0] == "as")), thing)
     if painted is not None:
         names, queries = (painted[0],), (painted[1],)  # "I would like a pink bed"
     if not names:
         names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
     if not names and any(
-        thing(text(span)) is None and text(span) not in (*hues(), "its", "his", "her") for span in named
+        ((query := thing(text(span))) is None and text(span) not in (*hues(), "its", "his", "her"))
+        or (query is not None and query.last and " " in text(span))
+        for span in named
     ):
         return None  # what it is about is not understood
     of = None if time[1] is None else time[1].during.of
@@ -277,7 +313,9 @@ def slots(
         names, queries = (MOVING,), (ALL_MOVING,)
     if not names and len(goals) == 1 and kind in _LOOKS:  # "a coat of paint on the bed"
         names, queries = (goals[0].name,), (goals[0].query,)
-    goals = tuple(goal for goal in goals if not goal.query.last and goal.query not in queries)
+    goals = tuple(
+        goal for goal in goals if not goal.query.last and goal.query not in queries and not _is_own(goal.name, kind)
+    )
     shades = [span for span in spans if span[0] == "as"]
     wanted = [span for span in shades if len(shades) == 1 or not _is_former(words[: span[1]])]
     colors = dict.fromkeys(_color(text(span)) for span in wanted)
@@ -290,7 +328,7 @@ def slots(
     said = " ".join(word for at, word in enumerate(words) if at not in marked or at in asking)
     return Slots(
         names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said,
-        words, spans, thing, moves,
+        words, spans, thing, moves, movement, redundant=redundant,
     )  # fmt: skip
 
 
@@ -308,7 +346,10 @@ def _named_elsewhere(
         name for tag, a, b in spans if tag in ("off", "not") for name in names_in(" ".join(words[a:b]), thing)
     ]:
         return tuple(dict.fromkeys(named)) if len(set(named)) == 1 else ()  # "reroute the ball, it should ..."
-    return () if happening is None else names_in(happening.said, thing)[:1]
+    if happening is not None:
+        return names_in(happening.said, thing)[:1]
+    when = [names_in(" ".join(words[a:b]), thing)[:1] for tag, a, b in spans if tag in TIMES]
+    return next(filter(None, when), ())
 
 
 def _joined(span: Span, words: Sequence[str], kind: str) -> Span:
@@ -412,8 +453,12 @@ def _color(said: str) -> str:
     )
 
 
-def _things(said: Iterator[str], thing: Thing) -> tuple[tuple[str, ...], tuple[Query, ...]]:
-    """Names of things and what they mean, each once, without pronouns and what they do: "the ball 's roll"."""
+def _things(said: Iterator[str], thing: Thing, grouped: bool = False) -> tuple[tuple[str, ...], tuple[Query, ...]]:
+    """Names of things and what they mean, each once, without pronouns and what they do: "the ball 's roll".
+
+    Args:
+        grouped: whether "all three" are all that moves.
+    """
     found = dict[str, Query]()
     for name in said:
         if _JUST_EVENT.match(name):
@@ -421,7 +466,9 @@ def _things(said: Iterator[str], thing: Thing) -> tuple[tuple[str, ...], tuple[Q
         bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
         bare = re.sub(r" 's?$", "", bare)
         bare = _STATE.sub("", with_moving(bare)) if is_opened(bare) else with_moving(bare)
-        query = thing(bare)
+        if (part := singular(bare.split()[-1])) in _PARTS:
+            bare = f"the {_PARTS[part]}" if len(bare.split()) < 3 else _WHOLE_OF.sub("", bare)
+        query = ALL_MOVING if grouped and _GROUP.match(bare) else thing(bare)
         if query is None and (shorter := _RANKS.sub("", bare)) != bare:
             bare = shorter
             query = thing(bare)
@@ -483,11 +530,36 @@ def _as_well(happening: Happening, other: Query, tag: str, phrase: str) -> Happe
 
 
 _STAYS_OPEN = re.compile(r"^(?:until|till) (?:\d|one\b|two\b|three\b|four\b|five\b|half\b)")
+_AT_A_NUMBER = re.compile(r"^(?:at|from|on) (?:t ?= ?|second )?\d")
+_COMES_BACK = re.compile(
+    r"\b(?:back|again|returns?|reappears?|normal|usual|reverts?|visible|shows?|seen|ends?|stops?|over|done|until|till)\b"
+)
 _UP_TO_THEN = re.compile(r"\b(?:until|till|before)(?: ,)?$")
 _AT_A_SECOND = re.compile(r"^(?:just |right )?(?:in|at|on) (?:second|sec|t ?=) ?\d")
 
 
 _OF_SEVERAL = ("open", "order", "together", "move")
+_SECOND_TIME = re.compile(
+    r"\b(?:for )?(?:the |a )?(?:second|first|next|last|other) (?:time|go|run|pass|one|take|round)\b ?"
+)
+_AGAIN_AT_ONCE = re.compile(
+    r"^(?:and )?(?:the |a )?(?:second (?:time|go|run|one) )?(?:right|straight|immediately|directly|at once|on the spot|"
+    r"no |without|with no|each following|each one|one after|instantly|back to back|in a row|just)\b"
+    r"(?!.*\b(?:it|the \w+) (?:is|has|lands?|stops?|opens?|shuts?|closes?))"
+)
+_EACH_TIME = re.compile(
+    r"(?:^| )(?:each (?:time |run |one |pass |way )?|every time |apiece|per (?:run|pass|time))"
+    r"(?:lasting |taking |in |for )?| each(?: time)?$"
+)
+_OWN = re.compile(  # where something is anyway: "back into its frame", "to where it lay"
+    r"^(?:its|his|her|their|where) .+$|^the (?:original|initial|starting|old|first|start|former|same|very) .+$|"
+    r"^(?:the )?start(?:ing)? (?:position|point|spot|place)$|^(?:the )?(?:frame|origin|housing|carcass|slot|jamb)$"
+)
+_GROUP = re.compile(  # "the three of them", "all three", "the whole lot"
+    r"^(?:all |both |every |each |the )*(?:(?:whole )?(?:lot|bunch|trio|row|set|gang|cast)|"
+    r"(?:one|two|three|four|five|all|both)(?: of (?:them|those|these))?)$"
+)
+_STAYS_THERE = ("open", "close", "begin", "stay", "still", "pause", "halt", "return", "amount", "speed", "reverse")
 _TOGETHER = re.compile(
     r"^one (?:after|behind) (?:the )?(?:other|another)$|^one by one$|^in turn$|"
     r"^(?:(?:both|all|in|and|out|shuts?|opens?|close[sd]?|times|again|back) )*together\b(?! with\b)[a-z ]*$"
@@ -498,6 +570,7 @@ _REVERTED = re.compile(  # ", and come back when it is closed again"
     r"\b(?P<then>(?:when|once|as soon as|at|after|upon) .+)$"
 )
 _RESTS = re.compile(rf"^for (?P<lasting>{DURATION}) (?P<then>(?:after|once|when|from|right after|as soon as) .+)$")
+_OF_NO_TIME = ("amount", "speed", "spin")  # kinds whose amounts are no times
 _AT_A_TIME = re.compile(r"^(?:(?:forward|back|up|out|on) )?(?:to|at|from) (?:t ?= ?)?\d+(?:\.\d+)?$")  # for what begins
 
 
@@ -509,7 +582,7 @@ def _time(
     times = sum(tag in TIMES for tag, _, _ in spans)
     for span in spans:
         tag, phrase = span[0], text(span)
-        if tag == "by" and _AT_A_TIME.match(phrase):
+        if tag == "by" and kind not in _OF_NO_TIME and _AT_A_TIME.match(phrase):
             tag = "from"
         lasts = happening is not None and happening.during.part == "while"
         if tag == "not" and kind in _ENDED and not lasts and (reverted := _REVERTED.search(phrase)) is not None:
@@ -521,15 +594,25 @@ def _time(
             moment, phrase = both, rests["then"]
         if tag not in TIMES or not phrase or _KEEPING.match(phrase):
             continue
+        if (
+            kind == "repeat"
+            and _AGAIN_AT_ONCE.match(phrase)
+            and not any(map(_tells_number, _SECOND_TIME.sub("", phrase).split()))
+        ):
+            continue  # "right after the first", "without a break"
+        if kind == "repeat":
+            phrase = _SECOND_TIME.sub("", _EACH_TIME.sub("", phrase))
         if kind in _OF_SEVERAL and (_TOGETHER.match(phrase) or set(phrase.split()) <= _PLACES_IN_TURN):
             continue  # "first bottom, then middle"; "together and shuts together"
         for pattern, plain in _PLAINER:
             phrase = pattern.sub(plain, phrase)
         tag = _plainer_tag(tag, phrase, " ".join(words[max(0, span[1] - 4) : span[1]]), kind, moment, happening)
+        if tag == "to" and kind in _LOOKS and _AT_A_NUMBER.match(phrase) and not _COMES_BACK.search(" ".join(words)):
+            return None  # "gold once the cat has sat down at 3 s" does not end then
         phrase, delay = delayed(LEADING.sub("", phrase))
         if tag == "from" and kind == "pause" and (before := _JUST_BEFORE.match(phrase)) is not None:
             phrase = f"when {phrase[before.end() :]}"  # a rest before its turn begins where that did
-        told = _told(tag, phrase, text(span), thing, happening)
+        told = _told(tag, phrase, text(span) if delay is None else phrase, thing, happening)
         if told is None and times > 1 and _says_nothing(phrase, thing):
             continue
         if told is None:
@@ -554,6 +637,26 @@ def _time(
     if kind in _LOOKS and moment.start == 0.0 and moment.stop is not None:
         moment = replace(moment, start=None)
     return moment, happening
+
+
+def _is_own(name: str, kind: str) -> bool:
+    """Whether a place is where something of a kind of wish is, or comes back to, anyway."""
+    return kind in _STAYS_THERE and _OWN.match(name) is not None
+
+
+def _with_both_ends(
+    moment: Moment, happening: Happening | None
+) -> tuple[tuple[Moment, Happening | None], tuple[str, ...]]:
+    """A time that tells its end and how long it lasts with its beginning and its end instead, and the words that tell
+    nothing beside them."""
+    lasting, stop, start = moment.lasting, moment.stop, moment.start
+    if lasting is None or not isinstance(stop, float) or happening is not None:
+        return (moment, happening), ()
+    if start is None and stop >= lasting:
+        return (replace(moment, start=round(stop - lasting, 4), lasting=None, taken=False), None), moment.said
+    if isinstance(start, float) and abs(start + lasting - stop) < _NEAR:
+        return (replace(moment, lasting=None, taken=False), None), moment.said
+    return (moment, None), ()
 
 
 def _says_nothing(phrase: str, thing: Thing) -> bool:
@@ -608,4 +711,6 @@ def _told(
         if told is not None:
             by_event = told[0] is None and is_told_by_event(phrase)
             return (told_by_event(tag, said, thing) if by_event else None) or told
+    if (moment := numbered(tag, phrase)) is not None:
+        return moment, None
     return told_by_event(tag, said, thing)

@@ -28,7 +28,19 @@ LEADING = re.compile(
 )
 UNTIL = re.compile(r"^(?:arriv|finish|ending|done|there |be there|complet|reach|all |over )")  # what it is until then
 LASTS = re.compile(r"^(?:and )?(?:tak(?:es?|ing)|last(?:s|ing)?)\b")  # how long it is said to take
-_DELAY = re.compile(rf"^(?P<delay>{DURATION}|a (?:moment|bit)) (?=(?:after|once|when) )")
+_DELAY = re.compile(
+    rf"^(?:with a (?:lag|delay|gap) of |in )?(?P<delay>{DURATION}|\d+(?:\.\d+)?|a (?:moment|bit)) "
+    r"(?:(?=(?:after|once|when) )|(?P<word>behind|past|following|upon|into|from(?= when\b)) )"
+)
+_PLUS = re.compile(  # "fully open + 0.5 s", "after a second's rest at the wall", "after it has lain there for a second"
+    rf"^(?P<clause>.+?) (?:\+|plus|and then)(?: an?(?: [a-z]+)? of)? (?P<delay>{DURATION})$"
+)
+_STOOD = re.compile(
+    r"^(?:once|after|when|as soon as)(?: (?P<who>.+?) (?:has|have|is|'s|had))? (?:been |just |only )?"
+    r"(?P<how>stood|standing|lain|lying|rested|resting|sat|sitting|stayed|staying|remained|remaining|hung|hanging|"
+    rf"waited|waiting|stopped|paused|being)\b ?(?P<state>(?:(?!at\b|by\b|until\b|till\b|from\b)[a-z]+ ?)*?) ?"
+    rf"(?:for|of)? ?(?P<delay>{DURATION})(?: there| so)?$"
+)
 _BARE = re.compile(
     r"^(?:(?:by|at|on|from|in|into|to|till|until|after|before|up|for|over|within|during|the|only|just|about|around|"
     r"exactly|"
@@ -106,14 +118,26 @@ def delayed(phrase: str) -> tuple[str, float | None]:
     if (waits := _WAITS.match(phrase)) is not None:
         return "after it has stopped", seconds_of(waits["delay"]) or 1.0
     delay = None
-    for pattern in (_DELAY, _HAS_BEEN, _GIVEN):
-        if (found := pattern.match(phrase)) is not None and (seconds := seconds_of(found["delay"])) is not None:
+    if (stood := _STOOD.match(phrase)) is not None and (seconds := seconds_of(stood["delay"])) is not None:
+        who = stood["who"] or "it"
+        opened = re.search(r"\b(?:open|out)\b", stood["state"]) is not None
+        return (f"once {who} is fully open" if opened else f"after {who} has stopped"), seconds
+    for pattern in (_DELAY, _HAS_BEEN, _GIVEN, _PLUS):
+        found = pattern.match(phrase)
+        seconds = None if found is None else seconds_of(found["delay"]) or seconds_of(f"{found['delay']} seconds")
+        if found is not None and seconds is not None:
             delay = seconds
             if pattern is _DELAY:
-                phrase = phrase[found.end() :]
+                phrase = _SINCE.get(found["word"], "{}").format(phrase[found.end() :])
             else:
                 phrase = _so_far(found) if pattern is _HAS_BEEN else found["clause"]
     return phrase, delay
+
+
+_SINCE = {  # from when the seconds count behind which a word stands
+    "behind": "when {} starts", "into": "from the start of {}", "past": "after {}", "following": "after {}",
+    "upon": "after {}",
+}  # fmt: skip
 
 
 def _so_far(found: re.Match[str]) -> str:
