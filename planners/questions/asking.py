@@ -31,6 +31,7 @@ from .reading.time.everyday import everyday
 from .reading.time.frames import UNIT, plain
 from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
+from .reading.time.sorting import sorted_events
 from .reading.time.supposed.plainly import LEAST, SURE, goes_first, supposed
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
@@ -119,6 +120,8 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     if (chosen := _chosen(words, survey, timeline)) is not None:
         return chosen
     names = _names(survey)
+    if (in_order := _sorted(text, names, survey, timeline)) is not None:
+        return in_order
     moved = _of_motion(asked, survey)
     if moved is not None and moved.answer.answer is not None:
         first = goes_first(text)
@@ -242,6 +245,29 @@ def _chosen(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
     return replace(told, answer=told.answer.model_copy(update={**only, "text": text, "evidence": shown}))
 
 
+def _sorted(text: str, names: frozenset[str], survey: Survey, timeline: Timeline) -> Reading | None:
+    """Events in their order, of each of which it is asked when it happens; None if the text wants none sorted."""
+    told = list[tuple[float, str, Reading]]()
+    for event, question in sorted_events(text, names):
+        found = _timed(question, survey, timeline)
+        if not isinstance(found.answer.answer, float) or found.answer.unit != "s":
+            return None
+        told.append((found.answer.answer, event, found))
+    if not told:
+        return None
+    told.sort(key=lambda own: own[0])
+    first = told[0][2]
+    ids = tuple(dict.fromkeys(i for _, _, found in told for i in found.answer.evidence.ids))
+    changed = {
+        "answer": tuple(event for _, event, _ in told),
+        "answer_type": "list",
+        "unit": "",
+        "text": "; ".join(f"{at(time)}: {event}" for time, event, _ in told)[:4000],
+        "evidence": first.answer.evidence.model_copy(update={"ids": ids}),
+    }
+    return replace(first, answer=first.answer.model_copy(update=changed), restated="")
+
+
 def _of_two(words: Words, survey: Survey, timeline: Timeline) -> Reading | None:
     """The answer to a question that is two, each of which is asked by itself; None if it is no such question."""
     said = plain(words)
@@ -356,7 +382,7 @@ def _read_as(questions: Sequence[str], survey: Survey, timeline: Timeline) -> Re
     told: list[tuple[str, Reading]] = []
     for plainer in questions:
         asked = Asked(plainer, words=tuple(plainer.split()), timeline=timeline)
-        found = _of_motion(asked, survey)
+        found = _chosen(plain_words(plainer), survey, timeline) if " or " in plainer else _of_motion(asked, survey)
         if found is None or found.answer.answer is None:
             found = _of_moments(asked, survey, timeline)
         if found is not None and found.answer.answer not in (

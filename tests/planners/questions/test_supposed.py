@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from scenewright.planners.grammar.tagging.words import bag
-from scenewright.planners.questions.reading.time.supposed.kinds import kinds_of, marked
+from scenewright.planners.questions.reading.time.supposed.kinds import kinds_of, marked_ways
 from scenewright.planners.questions.reading.time.supposed.plainly import supposed
 from scenewright.planners.questions.reading.time.supposed.times import plain_time
 
@@ -71,7 +71,7 @@ def test_kinds_and_marks_are_told() -> None:
     text = "can you tell me how many metres the cat covers before it sits down"
     words = text.split()
     assert kinds_of(words)[0][0] == "far"
-    found = {tag: " ".join(words[a:b]) for tag, a, b in marked(words)}
+    found = {tag: " ".join(words[a:b]) for tag, a, b in marked_ways(words)[0]}
     assert found["x"] == "the cat" and found["t"] == "before it sits down"
 
 

@@ -18,10 +18,10 @@ def kinds_of(words: Sequence[str]) -> Sequence[tuple[str, float]]:
     return told(TASK, tuple(words)).kinds
 
 
-def marked(words: Sequence[str]) -> tuple[Span, ...]:
+def marked_ways(words: Sequence[str]) -> tuple[tuple[Span, ...], ...]:
     """Which words of a question name what it is about (`x`), another thing (`y`), at what time it is asked (`t`), in
-    what unit (`u`), and which ask for nothing (`off`)."""
-    return told(TASK, tuple(words)).spans
+    what unit (`u`), and which ask for nothing (`off`); in likely ways, the likeliest first."""
+    return told(TASK, tuple(words)).ways
 
 
 def vocabulary() -> Collection[str]:

@@ -15,6 +15,7 @@ from ......gaussians import late_re as re
 from ......gaussians.world import kinds as kinds_of_things
 from ......gaussians.world.spelling import best_slip
 from ......gaussians.world.words import singular
+from .....grammar.learned.marks import Span
 from .....grammar.tagging.spelling import is_word
 from .....grammar.tagging.words import bag, clean, split
 from .....grammar.timing.spoken import in_figures
@@ -23,12 +24,12 @@ from ...noun_phrase import is_color_word
 from ..everyday import everyday
 from ..frames import UNIT
 from ..loosely import HARD
-from .kinds import kinds_of, marked, vocabulary
-from .times import plain_time
+from .kinds import kinds_of, marked_ways, vocabulary
+from .times import plain_time, time_left
 
 LEAST = 0.5  # probability of a kind that is tried
 SURE = 0.8  # probability from which words without a mark are taken for those of the question
-_LONGEST = 40  # words
+_LONGEST = 70  # words
 _SHORTEST = 2
 _DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|your|his|her|its|their|all|both|any|every)\b")
 _PLURAL = re.compile(r"^(?:all |both )?(?:of )?(?:the |these |those |my |our )?")
@@ -49,6 +50,8 @@ class Said:
         off: words that ask for nothing.
         rest: all other words.
         names: words of the names of the things of the scene.
+        first: its first word that asks for something.
+        barred: `rest` with a bar for each mark.
     """
 
     x: str
@@ -60,6 +63,8 @@ class Said:
     off: str = ""
     places: tuple[str, ...] = ()
     names: Collection[str] = ()
+    first: str = ""
+    barred: str = ""
 
 
 @lru_cache(maxsize=1024)
@@ -77,25 +82,41 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
     if sum(word.isalpha() for word in told) < _SHORTEST:
         return ()
     told, leg = _without_leg(told)
+    times = ([" ".join(told[a:b]) for tag, a, b in spans if tag == "t"] for spans in marked_ways(told))
+    if (left := next(filter(None, (time_left(told, own) for own in times)), None)) is not None:
+        return (left,)
     kind, chance = _likeliest(told)
     if chance < least or kind not in _PLAIN or _asks_why(kind, " ".join(told)):
         return ()
-    said = _said(told, marked(told), names)
+    for spans in marked_ways(told):
+        if found := tuple(dict.fromkeys(_plainly(told, spans, leg, kind, chance, names))):
+            return found
+    return ()
+
+
+def _plainly(
+    told: tuple[str, ...], spans: Collection[Span], leg: str, kind: str, chance: float, names: frozenset[str]
+) -> Iterator[str]:
+    """The words of a question of a kind, with these marks, as plain questions; none if they say more."""
+    said = _said(told, spans, names)
     if said is None or _says_more(kind, chance, said, names):
-        return ()
+        return
     if not said.x and kind not in _OF_ALL:
         if any(
             kinds_of_things.find(singular(word)) is not None and singular(word) not in names and word not in names
             for word in told
         ):
-            return ()  # "any window I could open"
+            return  # "any window I could open"
         said = replace(said, x="it")
     if leg:
         if said.time or kind not in _OF_A_LEG:
-            return ()
+            return
         said = replace(said, time=leg, times=(leg,))
     times = dict.fromkeys(_times(kind, said.times)) if said.time and kind != "gap" else ("",)
-    return tuple(dict.fromkeys(" ".join(f"{plain} {time}".split()) for time in times for plain in _PLAIN[kind](said)))
+    for time in times:
+        for plain in _PLAIN[kind](said):
+            whole = plain.format(when=time) if "{when}" in plain else f"{plain} {time}"
+            yield " ".join(whole.split()).replace(" ,", ",")
 
 
 def _times(kind: str, said: tuple[str, ...]) -> Iterator[str]:
@@ -283,6 +304,7 @@ def _asks_why(kind: str, said: str) -> bool:
 
 _CAUSES = re.compile(
     r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|"
+    r"\b(?:motives?|intentions?|intended|meant to|on whose)\b|"
     r"(?<!\bby )\bcolou?rs?\b"
 )
 _FEELS = re.compile(
@@ -312,9 +334,15 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
         found[tag].append(" ".join(words[start:stop]).strip(" ,.?"))
         inside |= set(range(start, stop))
     rest = " ".join(word for at, word in enumerate(words) if at not in inside)
+    starts = {start for _, start, _ in spans}
+    barred = " ".join(
+        "|" if at in starts else word for at, word in enumerate(words) if at not in inside or at in starts
+    )
+    idle = {at for tag, start, stop in spans if tag == "off" for at in range(start, stop)}
+    first = next((word for at, word in enumerate(words) if at not in idle and word.isalpha()), "")
     events = [name for name in found["x"] if _AN_EVENT.match(name)]
     found["x"] = [name for name in found["x"] if name not in events and not _ONES.match(name)]
-    rest = " ".join((rest, *events))
+    rest = _TAG.sub(" ", " ".join((rest, *events)))
     if not found["x"]:  # "one of the toys was in a sulk, which was it?"
         plain = (word for aside in found["off"] for word in aside.split())
         found["x"] = [f"the {word}" for word in plain if word.endswith("s") and singular(word) in names][:1]
@@ -325,16 +353,32 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
     }
     if not found["t"] and len(found["off"]) == 1 and (blinked := _BLINKED.search(found["off"][0])) is not None:
         found["t"], found["off"] = [blinked["time"]], []  # "I blinked at 1.4 s, which book was falling?"
-    if len(found["t"]) > 2 or any(_TIMED.search(aside) for aside in found["off"]):
+    asides = (words[start:stop] for tag, start, stop in spans if tag == "off" and not _is_apart(words, start, stop))
+    if len(found["t"]) > 2 or any(_TIMED.search(" ".join(aside)) for aside in asides):
         return None
     unit = _IN_UNIT.search(re.sub(r"metre", "meter", " ".join(found["u"])))
     return Said(
         x=_joined(things["x"]), y=_joined(things["y"][:1]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
         rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]), places=things["y"],
-        names=names,
+        names=names, first=first, barred=f" {_TAG.sub(' ', barred)} ",
     )  # fmt: skip
 
 
+_TAG = re.compile(  # "it opens, doesn't it?", "yes or no"
+    r" ,? ?(?:or )?(?:is|are|was|does|do|did|has|have|will|would|could|can) "
+    r"(?:not (?:it|he|she|they)|(?:it|he|she|they)"
+    r"(?: not)?)(?: \?)?$|,? ?\b(?:yes ?(?:or|/) ?no|y ?/ ?n|true or (?:false|not)|right or wrong)\b|, true \?$"
+)
+
+
+def _is_apart(words: tuple[str, ...], start: int, stop: int) -> bool:
+    """Whether words are a sentence of their own in front of the question, or behind it."""
+    ends = set(words[stop - 1 : stop + 1]) if start == 0 else set()
+    begins = set(words[start - 1 : start + 1]) if start and stop >= len(words) - 1 else set()
+    return not ends.isdisjoint(_STOPS) or not begins.isdisjoint(_STOPS)
+
+
+_STOPS = (".", "!", "?", ":", ";")
 _AN_EVENT = re.compile(
     r"^(?:the |its |his |her |this |that )?(?:turn|turning|roll|rolling|fall|falling|opening|closing|walk|spin|"
     r"movement|motion|rotation|drop)"
@@ -380,16 +424,17 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
     """Whether words without a mark say more than the kind of question does."""
     rest, allowed = _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub("when", said.rest)).split(), _ALLOWED.get(kind, frozenset())
     if kind in ("what_moves", "what_still"):
-        whose = said.x in _ANYTHING or _is_kind(said.x) or _APART.search(said.rest) is not None
+        whose = said.x in _ANYTHING or _is_kind(said.x) or " and " in said.x or _APART.search(said.rest) is not None
         if not whose or said.y:
             return True  # "who moves the ball", "what never moves near the desk"
     if len(said.places) > 1 and kind != "visits":
         return True
-    if not kind.startswith("if_") and not said.unit and rest and rest[0] in _AUXILIARIES:
+    asks = not _ASKS.isdisjoint(rest) or (kind == "turn_way" and "or" in rest)
+    if not kind.startswith("if_") and not said.unit and said.first in _AUXILIARIES and not asks:
         return True  # "is the ball at its top speed then?" wants no number
     if _NTH.search(said.time):
         return True
-    deeds = _TWO_DEEDS.search(f" {' '.join(rest)} ")
+    deeds = _TWO_DEEDS.search(said.barred)
     if deeds is not None and deeds["deed"] not in _OWN_DEEDS.get(kind, ()):
         return True
     told = [word for word in rest if word not in allowed]
@@ -406,9 +451,20 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
             return True  # "which way does it turn" wants no yes or no; two deeds, or things to choose from
         if any(word in _HARD for word in told):
             return True
+    if chance >= CERTAIN and kind in _PLACED:
+        told = _BY_A_PLACE.sub(" ", f" {' '.join(rest)} ").split()
     return any(singular(w) in names for w in told if w not in _VERBS and not (kind in _TO_THE_FLOOR and w in _LEVELS))
 
 
+CERTAIN = 0.95  # probability of a kind from which the place of what happens needs no mark
+_PLACED = bag(
+    "when_closes when_shut when_falls when_opens when_turns when_stops first last order if_returns if_stops if_closes "
+    "if_turns where_ends far_opens how_many turn_way what_fell what_up does long_closes long_opens"
+)
+_BY_A_PLACE = re.compile(  # "comes to rest at which wall", "quits the shelf board"
+    r" (?:(?:in|into|to|from|at|off|on|onto|of|out of|back to|face|quits?|leaves?|against|towards?) )"
+    r"(?:the |its |his |her |which |what |that )?(?:[a-z]+ )?[a-z]+(?= )"
+)
 _WHAT_SECOND = re.compile(r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b")
 _IN_A_ROOM = re.compile(r"\b(?:in|of|inside) (?:the|this|that|our) (?:[a-z]+ )?room\b")
 _APART = re.compile(r"\b(?:besides|apart from|except|excepting|other than|aside from|but)\b")
@@ -427,7 +483,7 @@ _ANYTHING = ("", "things", "the things", "anything", "everything", "something", 
 _DENIED = bag("not no never without nothing nobody")
 _RANKS = bag("second third first last other another twice again")
 _LEVELS = bag("floor ground board shelf")
-_TO_THE_FLOOR = bag("when_lands when_falls if_falls long_falls how_many what_fell what_up far_falls")
+_TO_THE_FLOOR = bag("when_lands when_falls if_falls long_falls how_many what_fell what_up far_falls first last order")
 _ASKS = bag("which what how when where who whose")
 _AUXILIARIES = bag("is are was were does do did has have had")
 _NEGATED = bag("if_still what_still long_still what_up what_shut if_shut")
@@ -442,7 +498,8 @@ _ALLOWED: Mapping[str, frozenset[str]] = {
     "when_closest": bag("most least"), "when_starts": bag("first"), "when_stops": bag("last final again"),
     "when_reaches": bag("first"), "when_falls": bag("first"), "where_starts": bag("first initial"),
     "turns": bag("every each"), "often": bag("every each"), "fast_most": bag("most"), "gap": _ORDERS | {"between"},
-    "long_still": bag("before first only"), "long_reach": bag("before until"), "if_to_end": bag("until"),
+    "long_still": bag("before first only"), "long_reach": bag("before until"),
+    "if_to_end": bag("until last second final"), "turn_way": bag("other"),
     "what_still": bag("only else other"), "what_moves": bag("only else other"),
     "does": _ORDERS | bag("one another"), "how_many": bag("every each other"),
 }  # fmt: skip
@@ -461,6 +518,7 @@ _DEEDS = tuple(
     )
 )  # fmt: skip
 _OFTEN = (
+    (re.compile(r"\b(?:com(?:es?|ing)|slid(?:es?|ing)|pops?|pulled) (?:\w+ )?out\b"), "how often does {x} open"),
     (re.compile(r"\bsteps?\b|\bpaces?\b"), "how many steps does {x} take"),
     (re.compile(r"\bhops?\b|\bbounc\w+|\bbobs?\b|\bjumps?\b"), "how often does {x} bob"),
 )
@@ -599,8 +657,13 @@ def _turns(said: Said) -> Iterator[str]:
         yield f"how many degrees does {said.x} turn" if degrees else f"how many turns does {said.x} make"
 
 
+_HOW_LONG = re.compile(r"\b(?:how long|how many seconds|how much time|what (?:length|amount) of time|period)\b")
+
+
 def _fast(said: Said) -> Iterator[str]:
-    if said.x and said.unit not in ("seconds", "second", "s", "sec"):
+    if said.x and _HOW_LONG.search(f"{said.rest} {said.unit}"):
+        yield f"how long does {said.x} take for one turn"
+    elif said.x and said.unit not in ("seconds", "second", "s", "sec"):
         yield f"how fast does {said.x} move in {said.unit}" if said.unit else f"what is the average speed of {said.x}"
 
 
@@ -649,6 +712,19 @@ def _of_those(asked: str, always: str) -> Plain:
     return made
 
 
+def _offered(does: str, otherwise: Plain) -> Plain:
+    """Which of several things that are named do something."""
+
+    def made(said: Said) -> Iterator[str]:
+        if " and " in said.x:
+            *names, last = said.x.split(" and ")
+            yield f"what {does} {{when}}, {', '.join(names)} or {last}"
+        else:
+            yield from otherwise(said)
+
+    return made
+
+
 _IN_THE_AIR = re.compile(
     r"\b(?:on (?:its|their|the) way (?:down|to the (?:floor|ground))|falling|mid ?air|in the air|airborne)\b"
 )
@@ -669,6 +745,12 @@ def _what_on(said: Said) -> Iterator[str]:
         yield f"what is on {said.x}"
 
 
+def _beside(said: Said) -> Iterator[str]:
+    if said.x and said.y:
+        for place in ("on", "next to") if said.x not in _PRONOUNS else ("on",):
+            yield f"how long is {said.x} {place} {said.y}"
+
+
 _EVENTS = re.compile(r"\b(?:leav|reach|set|start|stop|depart|arriv|roll|com)(?:e?s|ing)\b")  # that are put in order
 
 
@@ -680,12 +762,13 @@ def _visits(said: Said) -> Iterator[str]:
 
 def _long_open(said: Said) -> Iterator[str]:
     if said.x:
-        yield f"how long does {said.x} stay {'fully ' if _FULLY.search(f'{said.rest} {said.time}') else ''}open"
+        fully = _FULLY.search(f"{said.rest} {said.time} {said.off}") is not None
+        yield f"how long does {said.x} stay {'fully ' if fully else ''}open"
 
 
 _SUMMED = re.compile(
     r"\b(?:strokes both|both (?:strokes|directions)|total|altogether|cumulative|sum|summed|"
-    r"added|add|combined|both ways|there and back|out and back|overall)\b"
+    r"adds|added|add|combined|both ways|there and back|out and back|overall)\b"
 )
 
 
@@ -695,10 +778,13 @@ def _in_total(said: Said) -> Iterator[str]:
 
 
 def _which(said: Said) -> Iterator[str]:
-    if said.x:
-        yield (
-            f"which {_one_of(said.x)} is the fastest" if " and " not in said.x else f"which of {said.x} is the fastest"
-        )
+    if " and " in said.x:
+        yield f"which of {said.x} is the fastest"
+        nouns = {name.split()[-1] for name in said.x.split(" and ")}
+        if len(nouns) == 1:
+            yield f"which {singular(nouns.pop())} is the fastest"
+    elif said.x:
+        yield f"which {_one_of(said.x)} is the fastest"
 
 
 def _over(said: Said) -> Iterator[str]:
@@ -781,7 +867,7 @@ _PLAIN: Mapping[str, Plain] = {
     "long_closes": _about("how long does {x} take to close"),
     "long_open": _long_open,
     "long_still": _about("how long does {x} stand still"),
-    "long_on": _about("how long is {x} on {y}"),
+    "long_on": _beside,
     "long_falls": _about("how long does {x} fall"),
     "long_reach": _about("how long does {x} take to reach {y}"),
     "gap": _gap,
@@ -815,15 +901,18 @@ _PLAIN: Mapping[str, Plain] = {
     "if_before": lambda said: _compared(said, "before"),
     "if_after": lambda said: _compared(said, "after"),
     "if_together": lambda said: _compared(said, "at the same time as"),
-    "what_moves": lambda said: iter((f"which {_several(said.x)} move" if _is_kind(said.x) else "what moves",)),
-    "what_still": lambda said: iter(
-        (f"which {_several(said.x)} do not move" if _is_kind(said.x) else "what does not move",)
+    "what_moves": _offered(
+        "moves", lambda said: iter((f"which {_several(said.x)} move" if _is_kind(said.x) else "what moves",))
     ),
-    "what_open": _of_those("are open", "are open"),
-    "what_shut": _of_those("are closed", "stay closed"),
+    "what_still": _offered(
+        "does not move",
+        lambda said: iter((f"which {_several(said.x)} do not move" if _is_kind(said.x) else "what does not move",)),
+    ),
+    "what_open": _offered("is open", _of_those("are open", "are open")),
+    "what_shut": _offered("is closed", _of_those("are closed", "stay closed")),
     "what_on": _what_on,
-    "what_fell": _of_those("have fallen", "fall"),
-    "what_up": _of_those("have not fallen", "do not fall"),
+    "what_fell": _offered("has fallen", _of_those("have fallen", "fall")),
+    "what_up": _offered("has not fallen", _of_those("have not fallen", "do not fall")),
     "visits": _visits,
     "apart": _about("how far does {x} move as the crow flies", unit=True),
     "far_falls": _about("how far does {x} fall", unit=True),
