@@ -9,6 +9,7 @@ import pytest
 
 from scenewright.gaussians.language.query.query import Query
 from scenewright.planners.grammar.planner import GrammarPlanner
+from scenewright.planners.grammar.timing.marked.kinds import marked_ways
 from scenewright.planners.grammar.timing.marked.names import with_nouns
 from scenewright.planners.plan import Movement
 
@@ -44,6 +45,13 @@ class Film:
 def planned(text: str) -> list[dict[str, Any]]:
     plan = PLANNER.plan(text, observation=Film())
     return [op.model_dump(exclude_defaults=True, mode="json") | {"op": op.op} for op in plan.ops]
+
+
+HALFWAY = {"state": "halfway", "part": "from"}
+
+
+def book(color: str) -> dict[str, Any]:
+    return {"text": "book", "colors": [color]}
 
 
 def drawer(pick: str) -> dict[str, str]:
@@ -153,3 +161,74 @@ def test_words_for_one_of_several() -> None:
     assert with_nouns("open the top drawer , then the middle one and stop") == (
         "open the top drawer , then the middle drawer and stop"
     )
+
+
+@pytest.mark.parametrize(
+    ("text", "when"),
+    [
+        ("hide the robot, on the move from 1 sec to 3 sec", {"start": 1.0, "stop": 3.0}),
+        ("shift the car to the robot in the time from 1 s to 3 s", {"start": 1.0, "stop": 3.0}),
+        ("paint the car red between the second second and the third", {"start": 2.0, "stop": 3.0}),
+        ("the car ought to be invisible during whole first two seconds", {"stop": 2.0}),
+        ("run the car over to the robot, off at 1, parked up at 3", {"start": 1.0, "stop": 3.0}),
+        ("the car disappears at 0.5 s for a duration of two seconds", {"start": 0.5, "lasting": 2.0}),
+    ],
+)
+def test_times_in_numbers_are_read_in_any_words(text: str, when: dict[str, float]) -> None:
+    (op,) = planned(text)
+    assert op["when"] == when
+
+
+@pytest.mark.parametrize(
+    ("text", "fields"),
+    [
+        ("let the robot turn by only 45 degrees at the corner", {"change": "turn", "degrees": 45.0}),
+        (
+            "the top drawer gets caught after ten centimetres for half a second, then slides out the rest",
+            {"when": {"lasting": 0.5, "during": HALFWAY | {"distance": {"value": 0.1}}}},
+        ),
+        (
+            "a quarter of the way down the red book hovers for 0.4 s",
+            {"when": {"lasting": 0.4, "during": HALFWAY | {"share": 0.25}}},
+        ),
+        ("run the fan one more second, please", {"change": "go_on", "when": {"stop": 5.0}}),
+        ("the red ball falls one more time at 4 s", {"change": "repeat", "when": {"start": 4.0}}),
+    ],
+)
+def test_how_far_how_often_and_how_much_longer(text: str, fields: dict[str, Any]) -> None:
+    (op,) = planned(text)
+    assert {key: op[key] for key in fields} == fields
+
+
+@pytest.mark.parametrize(
+    ("text", "order"),
+    [
+        ("swap the red book and the blue book in the falling queue", {"order": None, "first": None}),
+        ("the red book should wait its turn and be the last to drop", {"order": "listed", "last": book("red")}),
+        (
+            "I need the green book to be the first one down, ahead of the other two",
+            {"order": "listed", "first": [book("green")]},
+        ),
+        (
+            "flip the show: the green book leads, the blue book follows, the red book closes",
+            {"order": "listed", "first": [book("green"), book("blue"), book("red")]},
+        ),
+    ],
+)
+def test_orders_are_read_in_any_words(text: str, order: dict[str, Any]) -> None:
+    (op,) = planned(text)
+    assert op["op"] == "order" and {key: op.get(key) for key in order} == order
+
+
+def test_marks_that_make_no_plan_give_way_to_the_next_likely_ones() -> None:
+    """The likeliest marks take "on the rug" for a time, or leave the amount out: others are tried."""
+    words = ["robot", ":", "a", "1", "s", "pause", "right", "after", "its", "turn", ",", "then", "on", "as", "usual"]
+    first, *others = marked_ways(words)
+    assert others and all(way != first for way in others)
+    (op,) = planned(" ".join(words))
+    assert op["change"] == "stop" and op["when"]["lasting"] == 1.0
+
+
+def test_another_thing_is_never_changed_for_want_of_a_plan() -> None:
+    """Of marks that name another thing than the likeliest do, none is tried."""
+    assert planned("the machine between the robot and the fan ought to be frobnicated at 3 s") == []

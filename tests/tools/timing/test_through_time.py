@@ -173,6 +173,8 @@ def of_two(moving: Scene) -> Scene:
     [
         ({"order": "reversed"}, (2.0, 1.0)),
         ({"order": "listed", "first": [{"groups": [VASE]}]}, (2.0, 1.0)),
+        ({"order": "listed", "last": A_CHAIR}, (2.0, 1.0)),
+        ({"order": "listed", "last": {"groups": [VASE]}}, (1.0, 2.0)),
         ({"order": "together"}, (1.0, 1.0)),
         ({"order": "together", "when": {"start": 0.5}}, (0.5, 0.5)),
         ({"order": "kept", "gap": 0.5}, (1.0, 1.5)),
@@ -194,14 +196,91 @@ def test_an_order_needs_several_things_that_move(moving: Scene, context: Context
         done(moving, {"op": "order", "target": {"groups": [CHAIR, VASE], "pick": "all"}}, context)
 
 
-def test_what_turns_left_on_its_way_turns_right(corner: Scene, context: Context) -> None:
+def test_an_order_is_listed_by_what_is_first_or_last_alone() -> None:
+    for wrong in ({"order": "listed"}, {"order": "reversed", "last": A_CHAIR}):
+        with pytest.raises(UserError, match=r"first|last"):
+            parse({"op": "order", "target": A_CHAIR, **wrong})
+
+
+@pytest.mark.parametrize(
+    ("gone", "begins"),
+    [
+        ({}, 2.0),
+        ({"share": 0.25}, 1.5),
+        ({"distance": {"value": 40, "unit": "cm"}}, 2.6),
+    ],
+)
+def test_a_rest_begins_where_a_thing_has_gone_so_far(
+    moving: Scene, context: Context, gone: Json, begins: float
+) -> None:
+    """The chair goes half a unit in two seconds: it rests for half a second where it then is, and goes on."""
+    when = {"during": {"state": "halfway", "part": "from", **gone}, "lasting": 0.5}
+    made = done(moving, {"op": "pace", "target": A_CHAIR, "change": "stop", "when": when}, context).scene
+    assert np.allclose(middle(made, begins + 0.02), middle(made, begins + 0.48), atol=1e-4)
+    assert middle(made, begins + 0.1)[0] == pytest.approx(middle(moving, begins)[0], abs=0.01)
+    assert np.allclose(middle(made, 3.5), middle(moving, 3.0), atol=1e-4)
+
+
+def test_what_opens_rests_at_an_angle(corner: Scene, context: Context) -> None:
+    ids = corner.cloud.ids[corner.cloud.group == TABLE].numpy()
+    swings = Track.hinge(ids, [1, 3], [0, math.radians(80)], (0, 0, 1), tuple(middle(corner, 0.0, TABLE)), smooth=False)
+    scene = corner.replace(motion=Motion((swings,), (), (), 0.0, 4.0))
+    when = {"during": {"state": "halfway", "part": "from", "degrees": 20}}
+    made = done(scene, {"op": "pace", "target": {"groups": [TABLE]}, "change": "stop", "when": when}, context).scene
+    assert made.motion is not None
+    assert math.degrees(float(angles_at(made.motion.tracks[0], np.array([4.0]))[0])) == pytest.approx(20, abs=0.5)
+    when["during"]["degrees"] = 100  # further than it opens
+    with pytest.raises(InstructionError):
+        done(scene, {"op": "pace", "target": {"groups": [TABLE]}, "change": "stop", "when": when}, context)
+
+
+def test_an_amount_is_of_what_has_gone_so_far_alone() -> None:
+    for during in ({"state": "moving", "degrees": 20}, {"state": "halfway", "degrees": 20, "share": 0.5}):
+        with pytest.raises(UserError, match=r"halfway|amount|share"):
+            parse({"op": "pace", "target": A_CHAIR, "change": "stop", "when": {"during": during}})
+
+
+@pytest.mark.parametrize("degrees", [45, 90, 180, 270])
+def test_what_turns_on_its_way_turns_by_another_angle(corner: Scene, context: Context, degrees: float) -> None:
+    """0.4 along x, a quarter turn to the left, 0.3 on: the way behind the turn is as long, in the new direction."""
+    scene, here = turning(corner)
+    data = {"op": "pace", "target": {"groups": [VASE]}, "change": "turn", "degrees": degrees}
+    made = done(scene, data, context).scene
+    angle = math.radians(degrees)
+    for time in (0.5, 1.0):
+        assert np.allclose(middle(made, time, VASE), middle(scene, time, VASE), atol=1e-4)
+    ends = here + np.array([0.4 + 0.3 * math.cos(angle), 0.3 * math.sin(angle), 0])
+    assert np.allclose(middle(made, 3.0, VASE), ends, atol=2e-3)
+    course = course_of(made, VASE)
+    turned = np.trapezoid(course.turns(course.grid()) @ [0, 0, 1], course.grid())
+    assert math.degrees(turned) == pytest.approx(degrees, abs=2)
+
+
+def test_what_goes_straight_on_or_only_turns_takes_no_turn(moving: Scene, corner: Scene, context: Context) -> None:
+    for scene, group in ((moving, CHAIR), (spinning(corner), VASE)):
+        with pytest.raises(InstructionError, match="takes no turn"):
+            done(scene, {"op": "pace", "target": {"groups": [group]}, "change": "turn", "degrees": 45}, context)
+
+
+def spinning(corner: Scene) -> Scene:
+    ids = corner.cloud.ids[corner.cloud.group == VASE].numpy()
+    track = Track.hinge(ids, [0, 2], [0, math.pi], (0, 0, 1), tuple(middle(corner, 0.0, VASE)))
+    return corner.replace(motion=Motion((track,), (), (), 0.0, 4.0))
+
+
+def turning(corner: Scene) -> tuple[Scene, np.ndarray]:
+    """The vase goes 0.4 along x, turns left on the spot, and goes 0.3 on; and its place at the start."""
     ids = corner.cloud.ids[corner.cloud.group == VASE].numpy()
     turns = [np.eye(3), np.eye(3), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]]]
     here = middle(corner, 0.0, VASE)
     places = np.array([[0, 0, 0], [0.4, 0, 0], [0.4, 0, 0], [0.4, 0.3, 0]])
     shifts = [here + p - np.array(r) @ here for p, r in zip(places, turns, strict=True)]
     track = Track.poses_at(ids, (0.0, 1.0, 1.5, 2.5), turns, shifts, here)
-    scene = corner.replace(motion=Motion((track,), (), (), 0.0, 3.0))
+    return corner.replace(motion=Motion((track,), (), (), 0.0, 3.0)), here
+
+
+def test_what_turns_left_on_its_way_turns_right(corner: Scene, context: Context) -> None:
+    scene, here = turning(corner)
     made = done(scene, {"op": "pace", "target": {"groups": [VASE]}, "change": "mirror"}, context).scene
     for time in (0.5, 1.2, 2.0, 3.0):
         was, now = (middle(s, time, VASE) - here for s in (scene, made))

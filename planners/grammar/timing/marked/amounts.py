@@ -49,6 +49,8 @@ _FACTORS = {  # by how the word begins
     "twice": 2.0, "doub": 2.0, "twof": 2.0, "two fold": 2.0, "trip": 3.0, "thri": 3.0, "quad": 4.0, "hal": 0.5,
     "quar": 0.25, "third": 1 / 3, "two thirds": 2 / 3, "three quarters": 0.75,
 }  # fmt: skip
+_MORE = re.compile(r"\b(?:more|extra|further|additional) (?=(?:seconds?|secs?)\b)")
+_ANOTHER = re.compile(r"\banother (?=(?:seconds?|secs?)\b)")
 _AGAIN = re.compile(
     r"\b(?:again|once more|anew|afresh|(?:another|one more|a second|second) (?:time|go|round|run|pass))\b|^another$"
 )
@@ -76,6 +78,7 @@ class Amount:
 
 def amount(phrase: str) -> Amount | None:
     """The amount that a phrase names; None if it names none, or none that is understood."""
+    phrase = _ANOTHER.sub("one ", _MORE.sub("", phrase))
     for unit, pattern in _PATTERNS:
         if (found := pattern.search(phrase)) is not None and (value := _value(unit, found)) is not None:
             return Amount(value, unit, found[0])

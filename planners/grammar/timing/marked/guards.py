@@ -113,7 +113,7 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"back": "return reverse close stay still hide order repeat pause",
     r"again": "repeat return close open stay still halt hide recolor reverse pause",
     r"invisible|hides?|hidden|disappears?|vanish|vanishes|gone": "hide remove",
-    r"shows?|shown|reveals?|visible": "hide recolor repeat",
+    r"(?<!the )shows?|shown|reveals?|visible": "hide recolor repeat",
     r"shut|shuts|close|closes": "close stay still open begin order together speed reverse",
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",

@@ -81,8 +81,8 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
     shares = [{v and 1 / v, 100 * v, 1 - v, 100 * (1 - v), 100 * (v - 1)} for v in exact]
     held = exact.union({0.0}, {360 * v for v in exact}, *shares)  # degrees of turns
     for at, (word, then) in enumerate(zip(words, (*words[1:], ""), strict=True)):
-        if is_known(singular(then)) or then in _NO_NUMBER:
-            continue
+        if is_known(singular(then)) or then in _NO_NUMBER or (at and words[at - 1] == "other"):
+            continue  # "ahead of the other two"
         told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
         seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
         seconds |= word == "one" and at > 0 and words[at - 1] in _AT and not then.isalpha()  # "starting at one"

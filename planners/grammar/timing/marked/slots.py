@@ -225,7 +225,9 @@ class Slots:
 
 
 _ITS_TURN = re.compile(r"\bturn(?:s|ed|ing)?\b")
-_THROUGHOUT = re.compile(r"\b(?:all|whole|entire|full|these) (?:\w+ )*?(?:seconds|secs)\b")
+_THROUGHOUT = re.compile(
+    r"\b(?:all|whole|entire|full|these) (?:(?!first|last|opening|closing|final|middle)\w+ )*?(?:seconds|secs)\b"
+)
 _UNLESS = re.compile(
     r"\b(?:except|unless|apart from|only if)\b|"
     r"(?<!wonder )(?<!see )(?<!know )(?<!ask )(?<!check )\bif (?:it|he|she|they|the)\b"

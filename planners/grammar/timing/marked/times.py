@@ -68,6 +68,7 @@ _ALL = re.compile(
     r"all (?:the way )?through|over the length of|all the time|always|"
     r"(?:beginning|start) to (?:the )?(?:end|finish))\b"
 )
+_A_PART = re.compile(r"\b(?:first|last|opening|closing|final|initial|middle|second|third)\b.*\b(?:seconds?|secs?)\b")
 _NAMED: tuple[tuple[re.Pattern[str], End], ...] = (
     (re.compile(r"\b(?:middle|half ?way|half time|mid ?way|mid ?point|half the)\b"), "middle"),
     (
@@ -223,7 +224,7 @@ def _moment(tag: str, phrase: str) -> Moment | None:
     if (half := _HALF.search(phrase)) is not None:
         first = half[1] == "first"
         return Moment(start=None if first else "middle", stop="middle" if first else "end", said=(phrase,))
-    if _ALL.search(phrase):
+    if _ALL.search(phrase) and not _A_PART.search(phrase):
         return Moment(always=True, said=(phrase,))
     bare = _BARE.match(phrase)
     value = None if bare is None else _seconds(bare["value"])
