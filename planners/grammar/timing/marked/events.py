@@ -20,6 +20,9 @@ _AFTER = re.compile(r"^(?:right |just |only |directly |straight )*(?:after|follo
 _OVER = re.compile(r"\b(?:end|finish|close) of\b")  # "at the end of its first walk"
 _NOWHERE = re.compile(r"\b(?:comes?|came|coming) (?:over|by|near|close)$")  # to where is not told
 _EACH_TIME = re.compile(r"\b(?:each|every) time\b|\bwhenever\b")  # one event has one time
+_NTH_OF_SEVERAL = re.compile(
+    r"\b(?:first|second|third|last|next|final) (?:walk|leg|stretch|movement|roll|fall|run|part|stage|lap|step)\b"
+)
 _FULLY = re.compile(r"\b(?:full|fully|out|extended|wide|all the way|completely)\b")
 
 
@@ -71,6 +74,8 @@ def told_by_event(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, H
     event = event_of(phrase)
     if event is None or _NOWHERE.search(phrase) is not None or _EACH_TIME.search(phrase) is not None:
         return None
+    if _NTH_OF_SEVERAL.search(phrase) is not None and event.kind not in ("first_leg", "last_leg"):
+        return None  # "in sync with its second walk" is not all of its way
     ends = tag == "to" or _BEFORE.match(phrase) is not None
     if event.kind in ("film_start", "film_end"):
         return _of_film(event.kind == "film_end", ends, phrase), None

@@ -80,7 +80,7 @@ _ENDS = re.compile(
     r"\b(?:last|rear|finally|final(?:e|ly)?|finish\w*|ends?|ending|clos(?:es|e|ing)|tail|trails?|"
     r"conclud\w+|winds? up|latest|after (?:\||the others?|both|all))\b"
 )
-_PRECEDES = re.compile(r"\b(?:before|ahead of|earlier than|sooner than|prior to|in front of|preced\w+|leads)\b")
+_PRECEDES = re.compile(r"\b(?:before|ahead of|earlier than|sooner than|prior to|in front of|preced\w+)\b")
 _FOLLOWS = re.compile(r"\b(?:after|behind|later than|follow\w*|succeed\w*)\b")
 
 
