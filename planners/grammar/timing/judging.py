@@ -91,6 +91,11 @@ _NEVER_LEAVES = re.compile(  # "walks all the way to the bed without ever leavin
     r"(?:leaving (?:its|his|her|the) (?:spot|place|position)|moving|budging|stirring)\b"
 )
 _THROUGHOUT_OR_NOT = ("recolor", "hide", "spin", "duration", "speed")  # kinds of which "throughout" is no other time
+_LOCKED = re.compile(  # "lock the ball to its spot while it rolls to the wall"
+    r"\b(?:lock(?:ed|s)?|pin(?:ned|s)?|nailed|stuck|glued|motionless|stands? still|stays? (?:still|put))\b.{0,60}"
+    r"\b(?:while|whilst|as) (?:it|he|she|they) (?:also |still )?"
+    r"(?:rolls?|walks?|moves?|goes|drives?|travels?|spins?|opens?)\b"
+)
 _AT_REST = r"(?:still|shut|closed|motionless|not move|not be moving|stays? put|perfectly still|at rest)"
 _MOVES = r"(?:spin\w*|mov(?:e|es|ing)|roll\w*|walk\w*|turn\w*|open\w*|fall\w*|run\w*|rotat\w*)"
 _BOTH_AT_ONCE = re.compile(
@@ -134,11 +139,16 @@ class Judge:
         first, *others = marked_ways(wording)
         if (found := self._marked_so(cleaned, wording, first, least)) is not None:
             return found
+        kind = next(iter(likely(cleaned)), ("", 0.0))[0]
+        if kind in STATIC and not any(tag in TIMES for tag, _, _ in first):
+            return None  # what is done once and for all needs the likeliest marks
         named = self._named_by(wording, first)
         for spans in others:
             if not named <= self._named_by(wording, spans):
                 continue  # a thing that is named stays
-            if (found := self._marked_so(cleaned, wording, spans, max(least, SURE))) is not None:
+            if (found := self._marked_so(cleaned, wording, spans, max(least, SURE))) is not None and not leaves_out(
+                wording, found, spans=first
+            ):
                 return found
         return None
 
@@ -230,7 +240,7 @@ class Judge:
         """Whether something is to be so all the time, and otherwise at a time or as well: "keep it shut throughout, and
         have it open at 2 s"."""
         said = with_nouns(in_words(cleaned))
-        if _BOTH_WAYS.search(said) is not None or _NEVER_LEAVES.search(said) is not None:
+        if any(pattern.search(said) is not None for pattern in (_BOTH_WAYS, _NEVER_LEAVES, _LOCKED)):
             return True
         if _ALWAYS.search(said) is None:
             return _BOTH_AT_ONCE.search(said) is not None

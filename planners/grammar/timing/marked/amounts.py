@@ -16,7 +16,10 @@ _N = (
     r"(?:\d+(?:\.\d+)?|three quarters(?: of an?)?|(?:an? )?quarter(?: of an?)?|(?:an? |one )?half(?: an?)?|"
     rf"(?:an? |one |two )?thirds?(?: of an?)?|(?:{_WORD})(?: (?:{_WORD}))?(?: and a half)?|an?)"
 )
-_FULL = r"(?: (?:full|whole|complete|entire|quick|slow|single|proper|more|further))*"
+_FULL = (
+    r"(?: (?:full|whole|complete|entire|quick|slow|little|gentle|lazy|short|small|graceful|single|proper|more|"
+    r"further))*"
+)
 _ROUNDS = r"(?:turns?|revolutions?|revs?|rotations?|rounds?|spins?|circles?|twirls?|pirouettes?|laps?|times|cycles?)"
 _EACH = r"(?: (?:around|round|about|over))?(?: ?/ ?| (?:per|a|an|each|every|by|in a|in one|to the) )"
 _SECOND = r"(?:s|secs?|seconds?)"

@@ -39,12 +39,12 @@ _TOO_FAST = re.compile(
     r"\b(?:too|so|awfully|rather)(?: \w+)? (?:fast|quick\w*|rapid\w*|hast\w+|rushed)\b|\b(?:not|less) (?:so |as |"
     r"that )?(?:fast|quick\w*|rapid\w*)\b"
 )
-_LONG = re.compile(r"\b(?:time|long|length|duration)\b")
+_LONG = re.compile(r"\b(?:(?<!double )(?<!half )time|long|length|duration)\b")
 _LESS = re.compile(r"\b(?:less|lower|reduc\w+|cut|drop|decreas\w+|slower|slow)\b")
 _MORE = re.compile(r"\b(?:faster|quicker|increas\w+|rais\w+|more|up)\b")
 _LATER = re.compile(
     r"\b(?:plus|later|delay\w*|late|postpon\w+|hold\w*|held|waits?|waiting|longer|behind|lag\w*|defer\w*|push\w*|"
-    r"hang\w*|"
+    r"hang\w*|hung|extra|"
     r"back|pause\w*|linger\w*|stay\w*|put\b.{1,40} off|to the right|down the (?:time ?)?line)\b"
 )
 _EARLIER = re.compile(
@@ -414,7 +414,9 @@ def _duration(slots: Slots) -> Iterator[Wanted]:
         if slots.tell(re.compile(r"\b(?:longer|shorter|more|less|another|extra|additional|sooner|earlier|later)\b")):
             return
         moment = replace(moment, lasting=seconds.value)
-    if moment.lasting is not None:
+    if moment.lasting is not None and _ends_itself(slots):
+        yield Wanted(pace(whose_of(slots), "begin"), replace(moment, taken=True), None)
+    elif moment.lasting is not None:
         yield paced(slots, "begin", replace(moment, taken=True))
     elif moment.stop not in (None, "end") or (moment.stop == "end" and moment.start is not None):
         yield paced(slots, "begin", moment)
@@ -422,6 +424,12 @@ def _duration(slots: Slots) -> Iterator[Wanted]:
         value = factor.value / 100 if factor.unit == "%" else factor.value
         if value > 0:
             yield paced(slots, "speed", moment, factor=round(1 / value, 4))
+
+
+def _ends_itself(slots: Slots) -> bool:
+    """Whether what happens only tells that its own movement ends: "two whole seconds till it lands"."""
+    during = None if slots.happening is None or slots.happening.until is not None else slots.happening.during
+    return during is not None and during.part in _ENDED_BY and during.of in (None, IT, *slots.queries)
 
 
 # -- rests -------------------------------------------------------------------------------------------------------------
@@ -519,10 +527,14 @@ _HALF_OF_IT = 0.5
 
 def _still(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    if not slots.told or slots.moment.always:
+    others = slots.happening is not None and _AS_OTHERS.search(slots.happening.said) is not None
+    if not slots.told or slots.moment.always or others:
         yield Wanted(pace(whose_of(slots), "stop"), Moment(), None)
     elif slots.happening is None:
         yield paced(slots, "stop")
+
+
+_AS_OTHERS = re.compile(r"\b(?:while|as|when) (?:the |all the |both )?(?:others?|rest)\b")  # that move as they do
 
 
 def _stay(slots: Slots) -> Iterator[Wanted]:
@@ -661,7 +673,7 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
         elif slots.happening is not None and slots.moment.empty:
             yield now(slots, f"{verb} {slots.whom}", start=by.value)
         return
-    how = _how_far(slots) if slots.amounts else None
+    how = _how_far(slots) if slots.amounts and verb == "open" else None
     moment = slots.moment if slots.moment.lasting is None else replace(slots.moment, taken=True)
     if moment.always and moment.start is not None:
         moment = replace(moment, stop="end", always=False)  # "at four, so that it is shut as the film ends"
@@ -743,7 +755,7 @@ def _together(slots: Slots) -> Iterator[Wanted]:
     if (step := in_step(slots)) is not None:
         yield step
         return
-    if _IN_TURN.search(" ".join(slots.words)):
+    if _IN_TURN.search(slots.meant):
         return  # "one by one"
     if not slots.moves(slots.queries[0]) and slots.goals:
         yield from _move(slots)

@@ -23,7 +23,7 @@ _EACH_TIME = re.compile(r"\b(?:each|every) time\b|\bwhenever\b")  # one event ha
 _NTH_OF_SEVERAL = re.compile(
     r"\b(?:first|second|third|last|next|final) (?:walk|leg|stretch|movement|roll|fall|run|part|stage|lap|step)\b"
 )
-_FULLY = re.compile(r"\b(?:full|fully|out|extended|wide|all the way|completely)\b")
+_FULLY = re.compile(r"\b(?:at rest|full|fully|out|extended|wide|all the way|completely)\b")
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from ...learned.seen import hues
 from ...vocabulary.nouns import EVERYWHERE, is_opened
 from ..clauses import AUXILIARIES
 from ..happenings import IT
-from ..verbs import SENSES, has_form
 from ..whens import HELD_BACK
 from .kinds import STATIC, SURE, is_any_word
 from .names import MOVING
@@ -62,7 +61,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     things, asked, idle = slots.things, slots.asked, slots.idle
     if not things or (slots.queries and slots.queries[0].text.split(" ")[-1] in EVERYWHERE):
         return True
-    aside = (" ".join(slots.words[start:stop]) for tag, start, stop in slots.spans if tag in ("off", "not"))
+    aside = (" ".join(slots.words[start:stop]) for tag, start, stop in slots.spans if tag in ("off", "not", "keep"))
     for said in (asked, *aside):
         first, then = (*_GREETING.sub("", _JOINED.sub("", said)).split(" "), "")[:2]
         if first.isalpha() and not is_any_word(first) and _DETERMINED.match(then):
@@ -153,6 +152,7 @@ _TWO_ORDERS = re.compile(  # "open it, and once it is open paint it red"
     r"^(?:open|close|shut|push|pull|move|slide|roll|lift|spin|turn|stop|start|freeze|hide|remove|delete) \|.*"
     r"(?:,|\band\b|\bthen\b) ?(?:paint|make|turn|colou?r|hide|show|spin|move|stop|open|close) (?:it|him|her|them|\|)"
 )
+_SOUNDS = re.compile(r"(?:creak|squeak|groan|bang|slam|rattl|whine)")  # more than that it opens
 _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
 
 
@@ -189,4 +189,4 @@ def says_more(kind: str, slots: Slots) -> bool:
         return kind != "begin" or not waits  # "not at once, it waits", "do not open it till 3 s"
     manner = _MANNER.search(left)
     verb = None if manner is None else manner["verb"]
-    return verb is not None and verb not in AUXILIARIES and not has_form(verb, tuple(SENSES), "plain", "s", "ing")
+    return verb is not None and verb not in AUXILIARIES and (_SOUNDS.match(verb) is not None or not is_any_word(verb))

@@ -106,7 +106,7 @@ def as_named(slots: Slots) -> tuple[Query, ...]:
         return ()
     queries = tuple(query for query in named if query is not None)
     parts = slots.rest.split("|")
-    if len(parts) != len(named) + 1 or any(map(_TELLS.search, parts)) or any(map(_is_past, parts)):
+    if len(parts) != len(named) + 1 or any(map(_TELLS.search, parts)) or any(map(_is_past, parts[1:])):
         return ()
     if len(named) == 2:
         if _PRECEDES.search(parts[1]):

@@ -185,6 +185,12 @@ class Slots:
         return " ".join(word for at, word in enumerate(self.words) if at not in left_out).strip(_TRIM)
 
     @cached_property
+    def meant(self) -> str:
+        """All words but those about what is not wanted, what stays, or nothing."""
+        left_out = {at for tag, a, b in self.spans if tag in _IDLE for at in range(a, b)}
+        return " ".join(word for at, word in enumerate(self.words) if at not in left_out)
+
+    @cached_property
     def idle(self) -> str:
         """The words about what is not wanted, what stays, or nothing."""
         return " ".join(" ".join(self.words[a:b]) for tag, a, b in self.spans if tag in _IDLE)
@@ -277,7 +283,7 @@ def slots(
     time, redundant = _with_both_ends(*time)
     amounts = list[Amount]()
     for span in spans:
-        if span[0] == "by" and (kind in _OF_NO_TIME or _AT_A_TIME.match(text(span)) is None):
+        if span[0] == "by" and not _is_a_time(text(span), kind):
             found = repeats(text(span)) if kind == "repeat" else None
             found = found or amount(f"{text(span)} around" if kind == "spin" else text(span))
             if found is None:
@@ -584,7 +590,7 @@ def _time(
     times = sum(tag in TIMES for tag, _, _ in spans)
     for span in spans:
         tag, phrase = span[0], text(span)
-        if tag == "by" and kind not in _OF_NO_TIME and _AT_A_TIME.match(phrase):
+        if tag == "by" and _is_a_time(phrase, kind):
             tag = "from"
         lasts = happening is not None and happening.during.part == "while"
         if tag == "not" and kind in _ENDED and not lasts and (reverted := _REVERTED.search(phrase)) is not None:
@@ -625,6 +631,10 @@ def _time(
         elif found is not None and isinstance(found.start, float) and happening is not None and _begins(happening):
             happening = None  # "once the fan has stopped, at 4.5 s": the number tells it
         if found is not None:
+            now, then = (own.stop if isinstance(own.stop, float) else None for own in (moment, found))
+            begun = moment.start is not None and now is not None
+            if kind == "pause" and tag == "to" and begun and then is not None and now is not None and then > now:
+                continue  # "from 1 to 2 s, afterwards it goes on until 4 s"
             if (both := joined(moment, found)) is None:
                 return None
             moment = both
@@ -671,6 +681,17 @@ def _says_nothing(phrase: str, thing: Thing) -> bool:
 _CLAUSE = re.compile(r"\bsame\b|\b(?:as|with|when|while|once|until|till|after|before|during) \w+ \w+")
 
 
+_COMPLETED = re.compile(r"\b(?:completed?|finished|done|over with|arriv\w+|there)(?: already)?$")
+
+
+def _is_a_time(phrase: str, kind: str) -> bool:
+    """Whether words for how much are the time of a kind of wish: "cue its slide back on [three]"."""
+    if kind in _OF_NO_TIME:
+        return False
+    bare = kind == "close" and (alone := amount(phrase)) is not None and alone.unit == ""
+    return bare or _AT_A_TIME.match(phrase) is not None
+
+
 def _begins(happening: Happening) -> bool:
     """Whether what happens is that from which something is to be."""
     return happening.until is None and happening.during.part in ("from", "after")
@@ -686,6 +707,8 @@ def _plainer_tag(tag: str, phrase: str, before: str, kind: str, moment: Moment, 
         tag = "to"
     if kind == "close" and tag == "to" and _STAYS_OPEN.match(phrase) and re.search(r"\b(?:open|out)\b", before):
         return "from"  # "leave it open till four, then close it"
+    if tag == "from" and kind not in _LOOKS and _COMPLETED.search(before) and _A_NUMBER.search(phrase):
+        tag = "to"
     if tag == "from" and (UNTIL.match(phrase) or _UP_TO_THEN.search(before)):
         tag = "to"
     if tag == "in" and _AT_A_SECOND.match(phrase) and kind not in _LOOKS:
@@ -713,6 +736,12 @@ def _told(
         if told is not None:
             by_event = told[0] is None and is_told_by_event(phrase)
             return (told_by_event(tag, said, thing) if by_event else None) or told
+    if tag in ("from", "to") and (far := amount(phrase)) is not None and far.unit in ("m", "deg"):
+        whose = names_in(phrase, thing)[:1]
+        how_far = {"degrees": far.value} if far.unit == "deg" else {"distance": {"value": far.value}}
+        of = thing(whose[0]) if whose else IT
+        fields = {"state": "halfway", "of": of or IT, "part": "until" if tag == "to" else "from", **how_far}
+        return None, Happening(During.model_validate(fields), phrase)
     if (moment := numbered(tag, phrase)) is not None:
         return moment, None
     return told_by_event(tag, said, thing)
