@@ -99,6 +99,7 @@ def route(text: str, survey: Survey, timeline: Timeline | None = None) -> Readin
     Raises:
         UserError: the text is too long.
     """
+    text = _DECIMAL.sub(".", text)
     if timeline is None:
         found = _static(text, survey)
         told = found.kind == "" or (found.kind == "undecidable" and not found.sight)
@@ -107,6 +108,9 @@ def route(text: str, survey: Survey, timeline: Timeline | None = None) -> Readin
             return Reading(still, "motion")
         return found
     return _timed(text, survey, timeline)
+
+
+_DECIMAL = re.compile(r"(?<=\d),(?=\d{1,2}(?![\d,]))")  # "4,2 s", as much of the world writes it
 
 
 def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:

@@ -12,6 +12,7 @@ _SORTS = re.compile(
 )
 _LEAST, _MOST = 3, 8  # events
 _INTRODUCED = re.compile(r"^(?P<before>[^:]+): ?(?P<events>.+?)[.?!]*$")
+_BEHIND = re.compile(r"^(?P<events>[^:]+): ?(?P<before>.+?)[.?!]*$")  # "..., ..., ...: sort these"
 _JOINTS = re.compile(r" ?(?:[,;/]|\bthen\b|\band\b(?= ))(?: and| or)? ?")
 
 
@@ -22,8 +23,9 @@ def sorted_events(text: str, names: frozenset[str]) -> tuple[tuple[str, str], ..
     Args:
         names: words of the names of the things of the scene.
     """
-    found = _INTRODUCED.match(clean(text).strip())
-    if found is None or _SORTS.search(found["before"]) is None:
+    said = clean(text).strip()
+    found = next((m for m in (_INTRODUCED.match(said), _BEHIND.match(said)) if m and _SORTS.search(m["before"])), None)
+    if found is None:
         return ()
     events = [event.strip(" .\"'") for event in _JOINTS.split(found["events"]) if event.strip(" .\"'")]
     if not _LEAST <= len(events) <= _MOST:

@@ -121,6 +121,9 @@ def _plainly(
 
 def _times(kind: str, said: tuple[str, ...]) -> Iterator[str]:
     """The words for a time, as they are said and by what happens at it; those that both are read agree in it."""
+    if kind in _OF_A_WAY and all(_ON_ITS_WAY.match(one) for one in said):
+        yield ""
+        return
     plain = " ".join(filter(None, (_plain_time(kind, one) for one in said)))
     told = plain_time(plain) if plain else None
     if told is not None and told in _EDGES and kind not in _STATES:
@@ -131,6 +134,13 @@ def _times(kind: str, said: tuple[str, ...]) -> Iterator[str]:
         yield told
 
 
+_OF_A_WAY = bag("fast fast_most far long_moves turns")
+_ON_ITS_WAY = re.compile(  # that says nothing more of a movement
+    r"^(?:on|during|along|over|in) (?:its|his|her|the) (?:whole |entire )?"
+    r"(?:way|trip|journey|roll|run|course|path|route)\b|"
+    r"^(?:while|whilst|when|as long as) (?:it|he|she) (?:is|'s) (?:actually )?"
+    r"(?:moving|working|rolling|running|spinning|turning|going|in motion|on|under way)$"
+)
 _OF_ALL = bag(
     "what_moves what_still how_many first last order fastest happens film_long gap if_moves if_still if_together "
     "what_open what_shut what_on what_fell what_up"
@@ -465,7 +475,10 @@ _BY_A_PLACE = re.compile(  # "comes to rest at which wall", "quits the shelf boa
     r" (?:(?:in|into|to|from|at|off|on|onto|of|out of|back to|face|quits?|leaves?|against|towards?) )"
     r"(?:the |its |his |her |which |what |that )?(?:[a-z]+ )?[a-z]+(?= )"
 )
-_WHAT_SECOND = re.compile(r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b")
+_WHAT_SECOND = re.compile(
+    r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b|"
+    r"\bthe (?:exact |precise |very )?second (?:(?:at|in|on) which|where|when|that)\b"
+)
 _IN_A_ROOM = re.compile(r"\b(?:in|of|inside) (?:the|this|that|our) (?:[a-z]+ )?room\b")
 _APART = re.compile(r"\b(?:besides|apart from|except|excepting|other than|aside from|but)\b")
 _RANKED = bag("order visits long_moves long_opens long_closes far apart long_falls")
@@ -745,12 +758,6 @@ def _what_on(said: Said) -> Iterator[str]:
         yield f"what is on {said.x}"
 
 
-def _beside(said: Said) -> Iterator[str]:
-    if said.x and said.y:
-        for place in ("on", "next to") if said.x not in _PRONOUNS else ("on",):
-            yield f"how long is {said.x} {place} {said.y}"
-
-
 _EVENTS = re.compile(r"\b(?:leav|reach|set|start|stop|depart|arriv|roll|com)(?:e?s|ing)\b")  # that are put in order
 
 
@@ -867,7 +874,7 @@ _PLAIN: Mapping[str, Plain] = {
     "long_closes": _about("how long does {x} take to close"),
     "long_open": _long_open,
     "long_still": _about("how long does {x} stand still"),
-    "long_on": _beside,
+    "long_on": _about("how long is {x} on {y}"),
     "long_falls": _about("how long does {x} fall"),
     "long_reach": _about("how long does {x} take to reach {y}"),
     "gap": _gap,
