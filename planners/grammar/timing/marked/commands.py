@@ -256,11 +256,18 @@ def _reverse(slots: Slots) -> Iterator[Wanted]:
         yield Wanted(pace(ALL_OF_IT if whose.text == "everything" else whose_of(slots), "reverse"), Moment(), None)
 
 
+_GOES_ON = re.compile(r"\b(?:keep\w*|goes|going|go|carr\w+|runs?) (?:it |him |her |\| )?(?:going|on)\b")
+
+
 def _repeat(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     if slots.moment.always and slots.moment.start is not None:  # "again from 4.5 until the end"
         moment = replace(plainly(slots.moment), stop="end", always=False)
-        yield Wanted(pace(whose_of(slots), "repeat", times=1), moment, None)
+        yield Wanted(pace(whose_of(slots), "repeat", times=1), moment, slots.happening)
+        return
+    moves = slots.movement(slots.queries[0])
+    if moves is not None and moves.turns and slots.moment.stop is None and _GOES_ON.search(" ".join(slots.words)):
+        yield paced(slots, "repeat", replace(plainly(slots.moment), stop="end"), times=1)
         return
     again = slots.one("times", "turns")
     lasting = slots.moment.lasting

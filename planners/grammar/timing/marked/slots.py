@@ -68,6 +68,14 @@ _PLAINER = (  # times in plainer words
     ),
     (re.compile(r"\bthe rest of (?:the|this) \w+$"), "the rest of the film"),
     (
+        re.compile(
+            r"\b(?:has |is |had )?(?:finished|finishes|done|completes|completed) (?:coming out|sliding out|opening|"
+            r"going out|moving out)$"
+        ),
+        "is fully open",
+    ),
+    (re.compile(r"\b(?:couple(?: of)?) (?=seconds?\b)"), "two "),
+    (
         re.compile(r"^(?P<lead>(?:by|until|till|before|at) the )(?P<rank>first|second|third|fourth|fifth)$"),
         r"\g<lead>\g<rank> second",
     ),

@@ -71,7 +71,7 @@ def in_turn(things: Sequence[Query], slots: Slots) -> Iterator[Wanted]:
 
 def in_step(slots: Slots) -> Wanted | None:
     """What opens, and closes, when another does: "the middle drawer, in sync with the top one"; None for others."""
-    if len(slots.queries) != 1 or not is_opened(slots.queries[0].text) or slots.moves(slots.queries[0]):
+    if not all(is_opened(query.text) and not slots.moves(query) for query in slots.queries):
         return None
     other: Query | None = None
     if slots.happening is not None and slots.happening.during.part == "while" and slots.moment.empty:
@@ -81,13 +81,13 @@ def in_step(slots: Slots) -> Wanted | None:
         slots.pass_goals()
     if other is None or not is_opened(other.text) or not slots.moves(other):
         return None
-    query, words = slots.queries[0], " ".join(slots.words)
+    words = " ".join(slots.words)
     opening, closing = (
         Happening(During(state=state, of=other), f"as it is {state}") for state in ("opening", "closing")
     )
     length = slots.one("m")
     how_far: dict[str, Any] = {} if length is None else {"distance": {"value": length.value}}
-    opened = _opened(query, Moment(), opening, **how_far)
-    if _STAYS.search(words) or not _CLOSES.search(_OPENS_ALONE.sub(" ", words)):
-        return opened
-    return replace(opened, also=(_opened(query, Moment(), closing, "close"),))
+    steps = [_opened(query, Moment(), opening, **how_far) for query in slots.queries]
+    if not _STAYS.search(words) and _CLOSES.search(_OPENS_ALONE.sub(" ", words)):
+        steps += [_opened(query, Moment(), closing, "close") for query in slots.queries]
+    return replace(steps[0], also=tuple(steps[1:]))
