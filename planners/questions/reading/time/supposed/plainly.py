@@ -758,6 +758,16 @@ def _what_on(said: Said) -> Iterator[str]:
         yield f"what is on {said.x}"
 
 
+_OUT = re.compile(r"\b(?:pulled|slid|hang\w*|extended|wide|all the way|fully|completely|right) (?:out|open)\b")
+
+
+def _long_still(said: Said) -> Iterator[str]:
+    if said.x and not said.time and _OUT.search(said.rest):  # "how long does it sit there pulled all the way out"
+        yield f"how long does {said.x} stay fully open"
+    elif said.x:
+        yield f"how long does {said.x} stand still"
+
+
 _EVENTS = re.compile(r"\b(?:leav|reach|set|start|stop|depart|arriv|roll|com)(?:e?s|ing)\b")  # that are put in order
 
 
@@ -873,7 +883,7 @@ _PLAIN: Mapping[str, Plain] = {
     "long_opens": _about("how long does {x} take to open"),
     "long_closes": _about("how long does {x} take to close"),
     "long_open": _long_open,
-    "long_still": _about("how long does {x} stand still"),
+    "long_still": _long_still,
     "long_on": _about("how long is {x} on {y}"),
     "long_falls": _about("how long does {x} fall"),
     "long_reach": _about("how long does {x} take to reach {y}"),
