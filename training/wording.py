@@ -32,7 +32,7 @@ BATCH = 48
 RATE, DECAY, CLIP = 3e-3, 1e-2, 2.0
 SMOOTHED = 0.02  # of the probability of a kind
 CHAIN = 1 / 6  # weight of the marks of a sentence against its kind
-_MARK = re.compile(r"\[(?P<tag>[a-z]+) (?P<said>[^\[\]]*)\]")
+MARK = re.compile(r"\[(?P<tag>[a-z]+) (?P<said>[^\[\]]*)\]")
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Sentence:
     @cached_property
     def said(self) -> str:
         """The sentence without marks."""
-        return _MARK.sub(lambda found: found["said"], self.marked)
+        return MARK.sub(lambda found: found["said"], self.marked)
 
     @cached_property
     def words(self) -> tuple[str, ...]:
@@ -58,7 +58,7 @@ class Sentence:
         """Its marks in its words."""
         found, shorter = list[Span](), 0
         places = [word.start for word in split(self.said)]
-        for mark in _MARK.finditer(self.marked):
+        for mark in MARK.finditer(self.marked):
             start = mark.start() - shorter
             shorter += len(mark[0]) - len(mark["said"])
             at = [i for i, place in enumerate(places) if start <= place < start + len(mark["said"])]

@@ -199,7 +199,7 @@ def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -
     if not may_be_timed(cleaned):
         return _wished(cleaned, previous)
     reader = TimeReader(_operations, _thing)
-    judge = _judge(reader, scene)
+    judge = judge_of(scene, reader)
     if judge.contradicts_itself(cleaned):
         raise Refusal("this asks for two things that cannot both be", cleaned[:200], verdict="impossible")
     asked, kept = without_kept(cleaned)
@@ -220,7 +220,7 @@ def _most_likely(cleaned: str, scene: Observation | None) -> Sequence[Fields]:
         Refusal: that would change what it says is to stay.
     """
     cleaned = written(cleaned)
-    judge = _judge(TimeReader(_operations, _thing), scene)
+    judge = judge_of(scene)
     if not may_be_timed(cleaned):
         return judge.wished(cleaned) or ()
     asked, kept = without_kept(cleaned)
@@ -241,8 +241,13 @@ def _as_kept(ops: Sequence[Fields], asked: str, kept: Sequence[Kept], scene: Obs
     return held(with_end(asked.lower(), ops, movement), kept, movement)
 
 
-def _judge(reader: TimeReader, scene: Observation | None) -> Judge:
-    """A judge of what a reader reads, for a scene if there is one."""
+def judge_of(scene: Observation | None, reader: TimeReader | None = None) -> Judge:
+    """A judge of what is read of an instruction, for a scene if there is one.
+
+    Args:
+        reader: reads its times, names and commands; None: a new one.
+    """
+    reader = TimeReader(_operations, _thing) if reader is None else reader
     return Judge(reader) if scene is None else Judge(reader, scene.moves, scene.movement)
 
 
@@ -304,7 +309,7 @@ def _wished(cleaned: str, previous: str | None) -> _Outcome:
     Raises:
         Refusal: as `_timeless`.
     """
-    judge = Judge(TimeReader(_operations, _thing))
+    judge = judge_of(None)
     try:
         outcome = _timeless(cleaned, previous)
     except Refusal as refusal:

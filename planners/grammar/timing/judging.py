@@ -169,17 +169,17 @@ class Judge:
             if kind in _EACH and (parts := each_in_time(wording, spans, self._reader.thing)):
                 if sum(chance for own, chance in kinds if _EACH.get(own) == _EACH[kind]) < least:
                     return None
-                own = [self._made_of(_EACH[kind], SURELY, words, marks) for words, marks in parts]
+                own = [self.made_of(_EACH[kind], SURELY, words, marks) for words, marks in parts]
                 return None if None in own else tuple(op for ops in own for op in ops or ())
             if {own for own, _ in kinds[:2]} == _IN_TURN:
                 chance = sum(chance for _, chance in kinds[:2])  # things that open one after the other
             if chance < least:
                 return None
-            if (found := self._made_of(kind, chance, wording, spans)) is not None:
+            if (found := self.made_of(kind, chance, wording, spans)) is not None:
                 return found
         return None
 
-    def _made_of(
+    def made_of(
         self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]
     ) -> tuple[Fields, ...] | None:
         """The first operations that a kind makes of marks, that leave nothing out, and that something moves for."""

@@ -33,6 +33,9 @@ NAMES = bag("ball sofa rug lamp table wall floor door plant drawer fan book robo
         ("as the crow flies, how far from its start does the robot end up",
          "how far does the robot move as the crow flies"),
         ("how high up did the red book come from", "how far does the red book fall"),
+        ("mention the second at which the robot begins to turn", "when does the robot turn"),
+        ("what average pace was the ball keeping on its way over", "what is the average speed of the ball"),
+        ("out of sofa, ball and table, which never budge?", "what does not move, the sofa, the ball or the table"),
     ],
 )  # fmt: skip
 def test_a_question_is_put_plainly(text: str, plainly: str) -> None:

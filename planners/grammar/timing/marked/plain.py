@@ -136,6 +136,14 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
         rf"(?: of (?:it|the {_FILM}|this))?$",
         _ALWAYS,
     ),
+    (
+        "in for to",
+        rf"^(?:for |over |during |in |on |within )?(?:(?:all|these)(?: of)?(?: the)? {_NUMBER} (?:seconds|secs|s)|"
+        rf"(?:all|every|the (?:whole|full)|whole|full|entire) (?:of )?(?:the |its )?"
+        rf"(?:frames?|length|timeline|{_FILM})|"
+        r"(?:from )?(?:the )?(?:start|top|beginning) to (?:the )?(?:end|tail|bottom|finish))$",
+        _ALWAYS,
+    ),
     ("for", rf"^(?:for )?(?:just )?(?:briefly|an? (?:short |brief |wee |quick )?(?:{_BRIEFLY}))$", "for 1 seconds"),
     ("from", r"^(?:from|after|at) (?:the )?(?:off|get go|word go|very start)$", "from the start"),
     (
