@@ -1,6 +1,6 @@
 """bench motion: scenes with time. Films of six rooms are fitted and compared with the truth (`fit`); what a frame at a
 time costs (`frame`); questions and instructions with time that somebody wrote who knew the rooms but no code
-(`questions`, `instructions`).
+(`questions`, `instructions`); how much of labelled wishes is read where their kinds and marks are known (`marks`).
 
 Rooms, films and truth are ours (`_motion`), drawn with our renderer: what real cameras add (noise, exposure, shadows of
 what moves) is not measured.
@@ -13,12 +13,12 @@ from statistics import fmean
 from typing import NamedTuple, get_args
 
 from ..gaussians.motion.fitting.fit import Detail
-from ._motion import asking, frame, instructing, rooms
+from ._motion import asking, frame, instructing, marks_read, rooms
 from ._motion.films import Rig, film
 from ._motion.fitted import Figures, fitted, small, wanted
 from .harness import Metric, Point, Result
 
-PARTS = ("fit", "frame", "questions", "instructions")
+PARTS = ("fit", "frame", "questions", "instructions", "marks")
 SETS = ("", "held_")  # of written questions and instructions: what the readers were developed with, and others
 STEPS, QUICK_STEPS = 5000, 500
 WHOLE, INSIDE, PATH, OVERLAP = 28.0, 24.0, 0.02, 0.95  # goals with twelve cameras: dB, dB, metres, share
@@ -45,6 +45,7 @@ def run(quick: bool = False, parts: Sequence[str] = PARTS) -> Result:
         "frame": lambda quick: _Part(frame.measured(quick)),
         "questions": lambda _: _Part([m for which in SETS for m in asking.metrics(f"{which}questions")]),
         "instructions": lambda _: _Part([m for which in SETS for m in instructing.metrics(f"{which}instructions")]),
+        "marks": lambda quick: _Part(marks_read.metrics(quick)),
     }
     found = [measures[name](quick) for name in PARTS if name in parts]
     return Result(

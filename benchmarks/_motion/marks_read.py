@@ -1,29 +1,27 @@
 """How much of what wishes say is read, where their kinds and marks are known: what the networks tell has no part in it.
 
-    python -m scenewright.training.marks_read [--every 4]
-
-Takes the labelled wishes of `timed_wishes.tsv` that are about one of the six moving rooms of the benchmark, makes
-commands of their marks in that room, and tells the share of each kind of which there is a plan. Whether a plan is right
-is not told; `scenewright bench motion --part instructions` measures that.
+Plans are made of the marks of labelled wishes (`training/timed_wishes.tsv`) that are about one of the six rooms, in
+that room. Whether a plan is right is not told: written instructions are judged for that.
 """
 
 from __future__ import annotations
 
-import argparse
 from collections import Counter
 from collections.abc import Iterator
+from functools import cache
 
-from ..agent.session.session import Session
-from ..benchmarks._motion import rooms
-from ..planners.grammar.learned.marks import Span
-from ..planners.grammar.planner import judge_of
-from ..planners.grammar.tagging.words import bag
-from ..planners.grammar.timing.marked.kinds import NO_WISH
-from ..planners.grammar.timing.marked.names import with_nouns
-from ..planners.grammar.timing.marked.slots import asks_more
-from ..planners.grammar.timing.wording import LONG_WORDS, in_words, spelt_out, spelt_right
-from .timed_words import FILES
-from .wording import MARK, Sentence, sentences
+from ...agent.session.session import Session
+from ...planners.grammar.learned.marks import Span
+from ...planners.grammar.planner import judge_of
+from ...planners.grammar.tagging.words import bag
+from ...planners.grammar.timing.marked.kinds import NO_WISH
+from ...planners.grammar.timing.marked.names import with_nouns
+from ...planners.grammar.timing.marked.slots import asks_more
+from ...planners.grammar.timing.wording import LONG_WORDS, in_words, spelt_out, spelt_right
+from ...training.timed_words import FILES
+from ...training.wording import MARK, Sentence, sentences
+from ..harness import Metric
+from . import rooms
 
 _DETAIL = 0.3  # of the rooms: what is read does not depend on it
 _SURE = 0.99  # probability of a kind that is known
@@ -34,24 +32,38 @@ _ROOMS = {  # words by which a wish is about a room
 }  # fmt: skip
 
 
-def main() -> None:
-    """Tell how much is read of every so many wishes."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--every", type=int, default=4, metavar="N")
-    every = parser.parse_args().every
-    known = [sentence for sentence in sentences(FILES["wishes"]) if sentence.kind != NO_WISH][::every]
-    sessions = {room: Session(rooms.moving_room(room, _DETAIL)) for room in _ROOMS}
+def metrics(quick: bool) -> list[Metric]:
+    """The share of wishes of which there is a plan, of all and of each kind.
+
+    Args:
+        quick: of every fortieth, instead of every fourth.
+    """
+    known = [own for own in sentences(FILES["wishes"]) if own.kind != NO_WISH][:: 40 if quick else 4]
     given, read = Counter[str](), Counter[str]()
     for sentence in known:
         words, spans = marked_words(sentence)
         if (room := _room(words)) is not None:
             given[sentence.kind] += 1
-            more = any(asks_more(words[start:stop], tag) for tag, start, stop in spans)
-            made = None if more else judge_of(sessions[room]).made_of(sentence.kind, _SURE, words, spans)
-            read[sentence.kind] += made is not None
-    for kind, count in sorted(given.items()):
-        print(f"{kind}: {read[kind]} of {count}")
-    print(f"all: {read.total()} of {given.total()}, {read.total() / max(given.total(), 1):.2f}")
+            read[sentence.kind] += _is_read(room, sentence.kind, words, spans)
+    share = read.total() / max(given.total(), 1)
+    found = [
+        Metric("marks.read", share, "share", "higher", tolerance=0.02),
+        Metric("marks.given", given.total(), "count"),
+    ]
+    return found + [
+        Metric(f"marks.{kind}", read[kind] / given[kind], "share", "higher", tolerance=0.02) for kind in given
+    ]
+
+
+def _is_read(room: str, kind: str, words: list[str], spans: list[Span]) -> bool:
+    if any(asks_more(words[start:stop], tag) for tag, start, stop in spans):
+        return False
+    return judge_of(_session(room)).made_of(kind, _SURE, words, spans) is not None
+
+
+@cache
+def _session(room: str) -> Session:
+    return Session(rooms.moving_room(room, _DETAIL))
 
 
 def marked_words(sentence: Sentence) -> tuple[list[str], list[Span]]:
@@ -80,7 +92,3 @@ def _room(words: list[str]) -> str | None:
     said = {room: len(own.intersection(words)) for room, own in _ROOMS.items()}
     room = max(said, key=said.__getitem__)
     return room if said[room] else None
-
-
-if __name__ == "__main__":
-    main()
