@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice, pairwise
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
 from .....gaussians.world.words import singular
-from .....tools.when import During
-from ...learned.events import event_of
 from ...learned.marks import Span
 from ...learned.seen import hues
 from ...tagging.words import bag
@@ -20,14 +18,13 @@ from ...vocabulary.quantities import NUMBERS
 from ..ending import MovementOf
 from ..happenings import IT, Happening
 from ..manner import Thing
-from ..moments import DURATION, Moment, seconds_of
+from ..moments import Moment, seconds_of
 from .amounts import Amount, amount, repeats
-from .events import is_told_by_event, told_by_event
 from .kinds import COURSES
 from .names import MOVING, with_colors, with_moving
 from .names import named as names_in
-from .numbered import numbered
-from .times import LASTS, LEADING, TIMES, UNTIL, delayed, joined, told_by
+from .times import TIMES
+from .when import LOOKS, NEAR, PLACES_IN_TURN, is_a_time, tells_number, time_of, with_both_ends
 
 _EVENTS = (
     r"(?:falls?|falling|drops?|movements?|motions?|rolls?|rolling|walks?|walking|turns?|turning|rotations?|spins?|"
@@ -51,50 +48,8 @@ _RANKS = re.compile(
     r"(?: (?:next|first|last|then|second|third|afterwards|finally|in turn|on|off|one by one|itself|himself|"
     r"herself|too|as well|again|instead|there|here))+$"
 )
-_KEEPING = re.compile(
-    r"^(?:while|whilst|all the while) (?:still )?(?:preserving|keeping|maintaining|retaining|leaving|holding|"
-    r"conserving)\b|^(?:from|at|with|in) (?:the |its |his |her )?(?:same|usual|present|current|normal|old|original) "
-    r"(?!(?:time|moment|instant|second|frame) (?:as|that|when)\b)"
-)
-_PLAINER = (  # times in plainer words
-    (re.compile(r"^(?:for |during |in )?(?:just |exactly |precisely |only )*(?=(?:as|so) long as\b)"), ""),
-    (re.compile(r"\b(?:a|one) second (?=has|is|have)"), "1 seconds "),
-    (
-        re.compile(
-            r"\b(?:has|have|is|are|'s) (?:\w+ly )?(?:swung|slid|come|gone|been pulled|opened|pulled|rolled)"
-            r"(?: (?:fully|wide|right|all the way|completely|wholly))? (?=(?:open|out)\b)"
-        ),
-        "is fully ",
-    ),
-    (re.compile(r"\bthe rest of (?:the|this) \w+$"), "the rest of the film"),
-    (
-        re.compile(
-            r"\b(?:has |is |had )?(?:finished|finishes|done|completes|completed) (?:coming out|sliding out|opening|"
-            r"going out|moving out)$"
-        ),
-        "is fully open",
-    ),
-    (re.compile(r"\b(?:couple(?: of)?) (?=seconds?\b)"), "two "),
-    (
-        re.compile(r"^(?P<lead>(?:by|until|till|before|at) the )(?P<rank>first|second|third|fourth|fifth)$"),
-        r"\g<lead>\g<rank> second",
-    ),
-    (
-        re.compile(
-            r"^(?P<lead>(?:for|in|of|over|within|taking|lasting) )?(?:an?|the|just|only|like|about) (?=(?:\d|one|"
-            r"two|three|four|five|half a|third of|quarter of)\b)"
-        ),
-        r"\g<lead>",
-    ),
-)
 _A_THING = re.compile(r"\b(?:the|that|this|my|our) (?:[a-z]+ ){1,3}things?\b")  # "the left red thing"
 _IDLE = ("not", "off", "keep")
-_NEAR = 0.06  # seconds by which a number may differ from what it says of how it is now
-_LOOKS = ("recolor", "hide", "remove")  # kinds that other things only tell the place of
-_ARRIVES = re.compile(
-    r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?|home|parks?|"
-    r"complet\w+|back|again|return\w*|re ?\w+s)\b"
-)
 
 
 ALL_MOVING = Query(text="", moving=True, pick="all")
@@ -227,7 +182,7 @@ class Slots:
                 found |= set(range(start, stop))  # "for all five seconds"
             if tag in _IDLE:
                 numbers = ((at, seconds_of(f"{self.words[at]} seconds")) for at in range(start, stop))
-                found |= {at for at, value in numbers if any(abs((value or -9.0) - now) < _NEAR for now in facts)}
+                found |= {at for at, value in numbers if any(abs((value or -9.0) - now) < NEAR for now in facts)}
                 found |= {at for at in range(start, stop - 1) if tag == "off" and _counts(self.words[at + 1])}
         return found
 
@@ -285,17 +240,17 @@ def slots(
 
     spans = [_joined(span, words, kind) for span in sorted(spans, key=lambda span: span[1])]
     thing = with_colors(thing, words, spans)
-    time = _time(words, spans, text, thing, kind)
+    time = time_of(words, spans, text, thing, kind)
     if time is None:
         return None
-    time, redundant = _with_both_ends(*time)
+    time, redundant = with_both_ends(*time)
     amounts = list[Amount]()
     for span in spans:
-        if span[0] == "by" and not _is_a_time(text(span), kind):
+        if span[0] == "by" and not is_a_time(text(span), kind):
             found = repeats(text(span)) if kind == "repeat" else None
             found = found or amount(f"{text(span)} around" if kind == "spin" else text(span))
             if found is None:
-                vague = not any(map(_tells_number, text(span).split()))
+                vague = not any(map(tells_number, text(span).split()))
                 beside = any(own[0] == "by" and own != span and amount(text(own)) is not None for own in spans)
                 if vague and (beside or kind in ("speed", "return", "begin", "open", "close", "remove")):
                     continue  # "right down"; "a crack, twenty degrees"
@@ -307,7 +262,7 @@ def slots(
     if any(_EVERYTHING.search(text(span)) for span in named) or _is_divided(words, named, thing, kind):
         return None
     goals = tuple(_goals(words, spans, text, thing))
-    if kind not in (*_LOOKS, "order") and any(goal.query.last and not _is_own(goal.name, kind) for goal in goals):
+    if kind not in (*LOOKS, "order") and any(goal.query.last and not _is_own(goal.name, kind) for goal in goals):
         return None
     names, queries = _things(map(text, named), thing, kind in COURSES and moves(ALL_MOVING))
     painted = None if names else _painted(map(text, (span for span in spans if span[0] == "as")), thing)
@@ -322,12 +277,12 @@ def slots(
     ):
         return None  # what it is about is not understood
     of = None if time[1] is None else time[1].during.of
-    if not names and of is not None and of.text and kind not in _LOOKS:  # "once the blue volume falls, its fall ..."
+    if not names and of is not None and of.text and kind not in LOOKS:  # "once the blue volume falls, its fall ..."
         own = re.search(rf"\bthe (?:[a-z]+ )?{re.escape(of.text)}\b", time[1].said if time[1] is not None else "")
         names, queries = ((own[0],), (of,)) if own is not None else ((), ())
     if not names and kind in (*COURSES, "open", "close") and moves(ALL_MOVING):
         names, queries = (MOVING,), (ALL_MOVING,)
-    if not names and len(goals) == 1 and kind in _LOOKS:  # "a coat of paint on the bed"
+    if not names and len(goals) == 1 and kind in LOOKS:  # "a coat of paint on the bed"
         names, queries = (goals[0].name,), (goals[0].query,)
     goals = tuple(
         goal for goal in goals if not goal.query.last and goal.query not in queries and not _is_own(goal.name, kind)
@@ -374,7 +329,7 @@ def _joined(span: Span, words: Sequence[str], kind: str) -> Span:
     tag, start, stop = span
     if tag == "x" and stop < len(words) and words[stop] in ("thing", "things"):
         return tag, start, stop + 1
-    joined = tag == "y" and kind in _LOOKS and start > 1 and words[start - 1] in ("and", "nor")
+    joined = tag == "y" and kind in LOOKS and start > 1 and words[start - 1] in ("and", "nor")
     return ("x", start, stop) if joined else span
 
 
@@ -387,7 +342,7 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
         (thing(name) or (Query(text="", colors=(name,)) if name in hues() else None), start, stop)
         for name, start, stop in names
     ]
-    ranks = {stop for name, _, stop in names if set(name.split()) <= _PLACES_IN_TURN}  # "first bottom, then top"
+    ranks = {stop for name, _, stop in names if set(name.split()) <= PLACES_IN_TURN}  # "first bottom, then top"
     told = [
         (query, start, stop)
         for query, start, stop in meant
@@ -395,7 +350,7 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
     ]
     if kind == "open" and _IN_ORDER & set(words) and all(is_opened(query.text) for query, _, _ in told):
         return False
-    joints = _JOINTS | _AGAIN if kind in _LOOKS else _JOINTS
+    joints = _JOINTS | _AGAIN if kind in LOOKS else _JOINTS
     return any(
         one != other and not set(words[stop:start]) <= joints for (one, _, stop), (other, start, _) in pairwise(told)
     )
@@ -424,10 +379,6 @@ def _is_number(word: str, then: str) -> bool:
     if word[0].isdigit():
         return True
     return word in NUMBERS and word not in ("one", "a", "an", "half") and not is_known(then)
-
-
-def _tells_number(word: str) -> bool:
-    return word[0].isdigit() or word in NUMBERS
 
 
 def _painted(shades: Iterator[str], thing: Thing) -> tuple[str, Query] | None:
@@ -529,44 +480,8 @@ def _goals(words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], s
 
 
 _HALFWAY = re.compile(r"\b(?:half ?way|mid ?way)\b")
-_ENDED = ("hide", "recolor", "pause", "halt")  # kinds that two times begin and end: "gone at 1 s, and back at 3 s"
-_A_NUMBER = re.compile(r"^(?:at|from|in) (?:t ?= ?|second )?\d")
-_ONLY = re.compile(r"^(?:right|only|just|exactly|precisely|immediately|directly|shortly|already|not) ")
-_JUST_BEFORE = re.compile(r"^(?:right |just |directly |immediately )*before ")
-_LIKEWISE = re.compile(
-    r"^(?:when|once|as soon as|after|until|till) (?P<who>(?:the|a|my) [a-z ]+?) (?:does|do|did|has|is)(?: too| so)?$"
-)
 
 
-def _as_well(happening: Happening, other: Query, tag: str, phrase: str) -> Happening:
-    """The time at which another thing does the same: "when the red book lands, ... when the blue one does"."""
-    ends = {"from": "until", "while": "until", "after": "until_end"}
-    part = ends.get(happening.during.part, "until") if tag == "to" else happening.during.part
-    return Happening(happening.during.model_copy(update={"of": other, "part": part}), phrase)
-
-
-_STAYS_OPEN = re.compile(r"^(?:until|till) (?:\d|one\b|two\b|three\b|four\b|five\b|half\b)")
-_AT_A_NUMBER = re.compile(r"^(?:at|from|on) (?:t ?= ?|second )?\d")
-_COMES_BACK = re.compile(
-    r"\b(?:back|again|returns?|reappears?|normal|usual|reverts?|visible|shows?|seen|ends?|stops?|over|done|until|till)\b"
-)
-_UP_TO_THEN = re.compile(r"\b(?:until|till|before)(?: ,)?$")
-_AT_A_SECOND = re.compile(r"^(?:just |right )?(?:in|at|on) (?:second|sec|t ?=) ?\d")
-
-
-_OF_SEVERAL = ("open", "order", "together", "move")
-_SECOND_TIME = re.compile(
-    r"\b(?:for )?(?:the |a )?(?:second|first|next|last|other) (?:time|go|run|pass|one|take|round)\b ?"
-)
-_AGAIN_AT_ONCE = re.compile(
-    r"^(?:and )?(?:the |a )?(?:second (?:time|go|run|one) )?(?:right|straight|immediately|directly|at once|on the spot|"
-    r"no |without|with no|each following|each one|one after|instantly|back to back|in a row|just)\b"
-    r"(?!.*\b(?:it|the \w+) (?:is|has|lands?|stops?|opens?|shuts?|closes?))"
-)
-_EACH_TIME = re.compile(
-    r"(?:^| )(?:each (?:time |run |one |pass |way )?|every time |apiece|per (?:run|pass|time))"
-    r"(?:lasting |taking |in |for )?| each(?: time)?$"
-)
 _OWN = re.compile(  # where something is anyway: "back into its frame", "to where it lay"
     r"^(?:its|his|her|their|where) .+$|^the (?:original|initial|starting|old|first|start|former|same|very) .+$|"
     r"^(?:the )?start(?:ing)? (?:position|point|spot|place)$|^(?:the )?(?:frame|origin|housing|carcass|slot|jamb)$"
@@ -576,180 +491,8 @@ _GROUP = re.compile(  # "the three of them", "all three", "the whole lot"
     r"(?:one|two|three|four|five|all|both)(?: of (?:them|those|these))?)$"
 )
 _STAYS_THERE = ("open", "close", "begin", "stay", "still", "pause", "halt", "return", "amount", "speed", "reverse")
-_TOGETHER = re.compile(
-    r"^one (?:after|behind) (?:the )?(?:other|another)$|^one by one$|^in turn$|"
-    r"^(?:(?:both|all|in|and|out|shuts?|opens?|close[sd]?|times|again|back) )*together\b(?! with\b)[a-z ]*$"
-)
-_PLACES_IN_TURN = bag("first then next last lastly finally and the one ones top middle bottom upper lower drawer , ;")
-_REVERTED = re.compile(  # ", and come back when it is closed again"
-    r"\b(?:back|returns?|reappears?|again|visible|normal|usual|reverts?)\b.*?"
-    r"\b(?P<then>(?:when|once|as soon as|at|after|upon) .+)$"
-)
-_RESTS = re.compile(rf"^for (?P<lasting>{DURATION}) (?P<then>(?:after|once|when|from|right after|as soon as) .+)$")
-_OF_NO_TIME = ("amount", "speed", "spin")  # kinds whose amounts are no times
-_AT_A_TIME = re.compile(r"^(?:(?:forward|back|up|out|on) )?(?:to|at|from) (?:t ?= ?)?\d+(?:\.\d+)?$")  # for what begins
-
-
-def _time(
-    words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], str], thing: Thing, kind: str
-) -> tuple[Moment, Happening | None] | None:
-    """The time that marks tell; None if one of them is not understood, or if they contradict each other."""
-    moment, happening = Moment(), None
-    times = sum(tag in TIMES for tag, _, _ in spans)
-    for span in spans:
-        tag, phrase = span[0], text(span)
-        if tag == "by" and _is_a_time(phrase, kind):
-            tag = "from"
-        lasts = happening is not None and happening.during.part == "while"
-        if tag == "not" and kind in _ENDED and not lasts and (reverted := _REVERTED.search(phrase)) is not None:
-            tag, phrase = "to", reverted["then"]
-        if tag == "from" and (rests := _RESTS.match(phrase)) is not None:
-            lasting = told_by("for", rests["lasting"], thing)
-            if lasting is None or lasting[0] is None or (both := joined(moment, lasting[0])) is None:
-                return None
-            moment, phrase = both, rests["then"]
-        if tag not in TIMES or not phrase or _KEEPING.match(phrase):
-            continue
-        if (
-            kind == "repeat"
-            and _AGAIN_AT_ONCE.match(phrase)
-            and not any(map(_tells_number, _SECOND_TIME.sub("", phrase).split()))
-        ):
-            continue  # "right after the first", "without a break"
-        if kind == "repeat":
-            phrase = _SECOND_TIME.sub("", _EACH_TIME.sub("", phrase))
-        if kind in _OF_SEVERAL and (_TOGETHER.match(phrase) or set(phrase.split()) <= _PLACES_IN_TURN):
-            continue  # "first bottom, then middle"; "together and shuts together"
-        for pattern, plain in _PLAINER:
-            phrase = pattern.sub(plain, phrase)
-        tag = _plainer_tag(tag, phrase, " ".join(words[max(0, span[1] - 4) : span[1]]), kind, moment, happening)
-        if tag == "to" and kind in _LOOKS and _AT_A_NUMBER.match(phrase) and not _COMES_BACK.search(" ".join(words)):
-            return None  # "gold once the cat has sat down at 3 s" does not end then
-        phrase, delay = delayed(LEADING.sub("", phrase))
-        if tag == "from" and kind == "pause" and (before := _JUST_BEFORE.match(phrase)) is not None:
-            phrase = f"when {phrase[before.end() :]}"  # a rest before its turn begins where that did
-        told = _told(tag, phrase, text(span) if delay is None else phrase, thing, happening)
-        if told is None and times > 1 and _says_nothing(phrase, thing):
-            continue
-        if told is None:
-            return None
-        found, event = told
-        if delay is not None:
-            found = replace(found or Moment(), start=delay)
-        elif found is not None and isinstance(found.start, float) and happening is not None and _begins(happening):
-            happening = None  # "once the fan has stopped, at 4.5 s": the number tells it
-        if found is not None:
-            now, then = (own.stop if isinstance(own.stop, float) else None for own in (moment, found))
-            begun = moment.start is not None and now is not None
-            if kind == "pause" and tag == "to" and begun and then is not None and now is not None and then > now:
-                continue  # "from 1 to 2 s, afterwards it goes on until 4 s"
-            if (both := joined(moment, found)) is None:
-                return None
-            moment = both
-        if event is not None and happening is not None:
-            resting = kind == "pause" and moment.lasting is not None and _begins(happening)
-            if resting and event.during.part == "until":
-                continue  # "for a second after its walk, before it turns"
-            event = happening.ended(event) or event.ended(happening)
-            if event is None:
-                return None
-        happening = event or happening
-    if kind in _LOOKS and moment.start == 0.0 and moment.stop is not None:
-        moment = replace(moment, start=None)
-    return moment, happening
 
 
 def _is_own(name: str, kind: str) -> bool:
     """Whether a place is where something of a kind of wish is, or comes back to, anyway."""
     return kind in _STAYS_THERE and _OWN.match(name) is not None
-
-
-def _with_both_ends(
-    moment: Moment, happening: Happening | None
-) -> tuple[tuple[Moment, Happening | None], tuple[str, ...]]:
-    """A time that tells its end and how long it lasts with its beginning and its end instead, and the words that tell
-    nothing beside them."""
-    lasting, stop, start = moment.lasting, moment.stop, moment.start
-    if lasting is None or not isinstance(stop, float) or happening is not None:
-        return (moment, happening), ()
-    if start is None and stop >= lasting:
-        return (replace(moment, start=round(stop - lasting, 4), lasting=None, taken=False), None), moment.said
-    if isinstance(start, float) and abs(start + lasting - stop) < _NEAR:
-        return (replace(moment, lasting=None, taken=False), None), moment.said
-    return (moment, None), ()
-
-
-def _says_nothing(phrase: str, thing: Thing) -> bool:
-    """Whether words with a mark of time tell of nothing beside another time: "a good while first"."""
-    words = phrase.split()
-    told = any(map(_tells_number, words)) or _CLAUSE.search(phrase) is not None or names_in(phrase, thing)
-    return not told and event_of(phrase) is None
-
-
-_CLAUSE = re.compile(r"\bsame\b|\b(?:as|with|when|while|once|until|till|after|before|during) \w+ \w+")
-
-
-_COMPLETED = re.compile(r"\b(?:completed?|finished|done|over with|arriv\w+|there)(?: already)?$")
-
-
-def _is_a_time(phrase: str, kind: str) -> bool:
-    """Whether words for how much are the time of a kind of wish: "cue its slide back on [three]"."""
-    if kind in _OF_NO_TIME:
-        return False
-    bare = kind == "close" and (alone := amount(phrase)) is not None and alone.unit == ""
-    return bare or _AT_A_TIME.match(phrase) is not None
-
-
-def _begins(happening: Happening) -> bool:
-    """Whether what happens is that from which something is to be."""
-    return happening.until is None and happening.during.part in ("from", "after")
-
-
-def _plainer_tag(tag: str, phrase: str, before: str, kind: str, moment: Moment, happening: Happening | None) -> str:
-    """The tag of words that tell a time, where they or those before them say what they are: "it lasts", "back at"."""
-    begun = isinstance(moment.start, float) or (
-        happening is not None and happening.during.part not in ("until", "until_end")
-    )
-    numbers = isinstance(moment.start, float) or _A_NUMBER.search(phrase) is None
-    if tag == "from" and begun and kind != "repeat" and ((kind in _ENDED and numbers) or _ARRIVES.search(before)):
-        tag = "to"
-    if kind == "close" and tag == "to" and _STAYS_OPEN.match(phrase) and re.search(r"\b(?:open|out)\b", before):
-        return "from"  # "leave it open till four, then close it"
-    if tag == "from" and kind not in _LOOKS and _COMPLETED.search(before) and _A_NUMBER.search(phrase):
-        tag = "to"
-    if tag == "from" and (UNTIL.match(phrase) or _UP_TO_THEN.search(before)):
-        tag = "to"
-    if tag == "in" and _AT_A_SECOND.match(phrase) and kind not in _LOOKS:
-        tag = "from"
-    return "for" if tag in ("from", "to") and LASTS.match(phrase) else tag
-
-
-def _told(
-    tag: str, phrase: str, said: str, thing: Thing, happening: Happening | None
-) -> tuple[Moment | None, Happening | None] | None:
-    """The time that words with a tag tell, by rules or else by the kind of what happens; None if they tell none.
-
-    Args:
-        phrase: the words without those that only lead to them.
-        said: all of the words.
-        happening: what happens at the time that is told so far.
-    """
-    if (likewise := _LIKEWISE.match(phrase)) is not None and (other := thing(likewise["who"])) is not None:
-        if happening is not None:
-            return None, _as_well(happening, other, tag, phrase)
-        if phrase.split()[-1] in ("does", "do"):
-            return None, Happening(During(state="moving", of=other, part="until" if tag == "to" else "from"), phrase)
-    for plainer in dict.fromkeys((phrase, _ONLY.sub("", phrase))):
-        told = told_by(tag, plainer, thing)
-        if told is not None:
-            by_event = told[0] is None and is_told_by_event(phrase)
-            return (told_by_event(tag, said, thing) if by_event else None) or told
-    if tag in ("from", "to") and (far := amount(phrase)) is not None and far.unit in ("m", "deg"):
-        whose = names_in(phrase, thing)[:1]
-        how_far = {"degrees": far.value} if far.unit == "deg" else {"distance": {"value": far.value}}
-        of = thing(whose[0]) if whose else IT
-        fields = {"state": "halfway", "of": of or IT, "part": "until" if tag == "to" else "from", **how_far}
-        return None, Happening(During.model_validate(fields), phrase)
-    if (moment := numbered(tag, phrase)) is not None:
-        return moment, None
-    return told_by_event(tag, said, thing)
