@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from .....gaussians import late_re as re
+from .....gaussians.world.lengths import METRES
 from ...vocabulary.quantities import NUMBERS
 from ..moments import DURATION, seconds_of
 
@@ -67,7 +68,7 @@ _ALONE = re.compile(
     rf"^(?:(?:by|to|at|just|only|about|around|like|say|some|exactly|not|more|than|a|mere|maybe|max|maximum|up) )*"
     rf"(?P<n>\d+(?:\.\d+)?|(?:{_WORD})(?: (?:{_WORD}))?)(?: (?:max|only|or so|tops|at most|instead))?$"
 )
-_METRES = {"mm": 0.001, "cm": 0.01, "milli": 0.001, "centi": 0.01, "f": 0.3048, "inch": 0.0254}
+_METRES = {"mm": 0.001, "cm": 0.01, "milli": 0.001, "centi": 0.01, "f": METRES["ft"], "inch": METRES["in"]}
 
 
 @dataclass(frozen=True)
