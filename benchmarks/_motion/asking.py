@@ -48,7 +48,8 @@ class Asked:
 
 
 @cache
-def _session(room: str) -> Session:
+def session(room: str) -> Session:
+    """One session for each room: nothing that is asked changes it."""
     return Session(rooms.moving_room(room, DETAIL))
 
 
@@ -56,10 +57,10 @@ def asked(which: Sequence[dict[str, Any]]) -> list[Asked]:
     """Each question asked by itself: "it" refers to nothing that was asked before."""
     found = []
     for case in which:
-        session = _session(case["room"])
-        session.recall(None)
+        own = session(case["room"])
+        own.recall(None)
         started = time.process_time()
-        answer = session.ask(case["text"])
+        answer = own.ask(case["text"])
         found.append(Asked(case, judged(case["expect"], answer), answer, time.process_time() - started))
     return found
 

@@ -8,22 +8,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from functools import cache
 
-from ...agent.session.session import Session
 from ...planners.grammar.learned.marks import Span
 from ...planners.grammar.planner import judge_of
 from ...planners.grammar.tagging.words import bag
+from ...planners.grammar.timing.judging import wording_of
 from ...planners.grammar.timing.marked.kinds import NO_WISH
-from ...planners.grammar.timing.marked.names import with_nouns
 from ...planners.grammar.timing.marked.slots import asks_more
-from ...planners.grammar.timing.wording import LONG_WORDS, in_words, spelt_out, spelt_right
 from ...training.timed_words import FILES
 from ...training.wording import MARK, Sentence, sentences
 from ..harness import Metric
-from . import rooms
+from .asking import session
 
-_DETAIL = 0.3  # of the rooms: what is read does not depend on it
 _SURE = 0.99  # probability of a kind that is known
 _ROOMS = {  # words by which a wish is about a room
     "ball": bag("ball sofa rug tv"), "door": bag("door bench rack coat potted"),
@@ -58,12 +54,7 @@ def metrics(quick: bool) -> list[Metric]:
 def _is_read(room: str, kind: str, words: list[str], spans: list[Span]) -> bool:
     if any(asks_more(words[start:stop], tag) for tag, start, stop in spans):
         return False
-    return judge_of(_session(room)).made_of(kind, _SURE, words, spans) is not None
-
-
-@cache
-def _session(room: str) -> Session:
-    return Session(rooms.moving_room(room, _DETAIL))
+    return judge_of(session(room)).made_of(kind, _SURE, words, spans) is not None
 
 
 def marked_words(sentence: Sentence) -> tuple[list[str], list[Span]]:
@@ -71,7 +62,7 @@ def marked_words(sentence: Sentence) -> tuple[list[str], list[Span]]:
     words, spans = list[str](), list[Span]()
     for tag, said in _parts(sentence.marked):
         start = len(words)
-        words += [word for word in with_nouns(spelt_right(spelt_out(in_words(said)), LONG_WORDS)).split(" ") if word]
+        words += filter(None, wording_of(said))
         if tag and len(words) > start:
             spans.append((tag, start, len(words)))
     return words, spans

@@ -386,7 +386,7 @@ def _read_as(questions: Sequence[str], survey: Survey, timeline: Timeline) -> Re
     told: list[tuple[str, Reading]] = []
     for plainer in questions:
         asked = Asked(plainer, words=tuple(plainer.split()), timeline=timeline)
-        found = _chosen(plain_words(plainer), survey, timeline) if " or " in plainer else _of_motion(asked, survey)
+        found = _chosen(plain_words(plainer), survey, timeline) or _of_motion(asked, survey)
         if found is None or found.answer.answer is None:
             found = _of_moments(asked, survey, timeline)
         if found is not None and found.answer.answer not in (

@@ -305,7 +305,7 @@ class Pace(TargetedOp):
         """Tracks whose turns to the left are turns to the right: mirrored at the plane in which a thing sets out."""
         times = np.linspace(span[0], span[1], 200)
         way, up = _way_of(scene, own, group, times), scene.frame.up_vector
-        level = (way - way[0]) - ((way - way[0]) @ up)[:, None] * up
+        level = _level(way, up)
         length = np.linalg.norm(level, axis=1)
         gone = np.flatnonzero(length > 0.1 * max(float(length.max()), 1e-9))
         if length.max() * (scene.frame.metres_per_unit or 1.0) < _ON_THE_SPOT:
@@ -321,10 +321,10 @@ class Pace(TargetedOp):
         assert self.degrees is not None
         up, times = scene.frame.up_vector, np.linspace(span[0], span[1], 400)
         turning = [track for track in own if abs(float(upright_turns(track, times, up)[-1])) > _NO_TURN]
-        level = [_level_way(track, times, up) for track in own if track not in turning]
-        if len(turning) != 1 or _level_way(turning[0], times, up) * (scene.frame.metres_per_unit or 1.0) < _ON_THE_SPOT:
+        far = _level_way(turning[0], times, up) if len(turning) == 1 else 0.0
+        if far * (scene.frame.metres_per_unit or 1.0) < _ON_THE_SPOT:
             raise InstructionError(f"{self.target.describe()} takes no turn on its way: say where it is to go")
-        if any(way > _STRAIGHT * _level_way(turning[0], times, up) for way in level):
+        if any(_level_way(track, times, up) > _STRAIGHT * far for track in own if track not in turning):
             raise InstructionError(f"{self.target.describe()} goes its way on several tracks, and none of them is bent")
         middle = _way_of(scene, [], group, times[:1])[0]
         return [bent(t, math.radians(self.degrees), up, middle, times) if t in turning else t for t in own]
@@ -404,12 +404,16 @@ def _way_of(scene: Scene, own: list[Track], group: I64, times: F64) -> F64:
     return np.asarray(turns @ middle + shifts)
 
 
+def _level(way: F64, up: F64) -> F64:
+    """`[T, 3]` how far along the floor a way `[T, 3]` has gone from where it begins."""
+    gone = way - way[:1]
+    return np.asarray(gone - (gone @ up)[:, None] * up)
+
+
 def _level_way(track: Track, times: F64, up: F64) -> float:
     """How far a track carries its pivot along the floor, scene units."""
     turns, shifts = poses(track, times)
-    way = turns @ track.pivot + shifts
-    level = way - way[:1] - ((way - way[:1]) @ up)[:, None] * up
-    return float(np.linalg.norm(level, axis=1).max())
+    return float(np.linalg.norm(_level(turns @ track.pivot + shifts, up), axis=1).max())
 
 
 def _reflected(track: Track, side: F64, point: F64) -> Track:

@@ -251,15 +251,14 @@ def _gone(course: Course, span: Span, during: During, frame: Frame) -> float | N
     """When a thing has gone half a movement, or turned by half its angle, or as much as is told; None if it never
     does."""
     times = course.grid(span)
+    rates, wanted = course.rates(times), None
     if during.degrees is not None:
         rates, wanted = np.linalg.norm(course.turns(times), axis=1), math.radians(during.degrees)
     elif during.distance is not None:
         rates, wanted = np.linalg.norm(course.velocities(times), axis=1), during.distance.in_units(frame)
-    else:
-        rates, wanted = course.rates(times), math.nan
     steps = (rates[1:] + rates[:-1]) / 2 * np.diff(times)
     gone = np.concatenate([[0.0], np.cumsum(steps)])
-    if math.isnan(wanted):
+    if wanted is None:
         wanted = float(gone[-1]) * (0.5 if during.share is None else during.share)
     return float(np.interp(wanted, gone, times)) if wanted < gone[-1] else None
 

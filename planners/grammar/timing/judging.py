@@ -111,6 +111,11 @@ _ALL = re.compile(r"\b(?:every\w*|all|whatever|anything|both|each|they|them|thin
 _EXCHANGES = re.compile(r"\b(?:swap|exchange|trade|switch)\b.*\bcolou?rs?\b", re.IGNORECASE)
 
 
+def wording_of(said: str) -> list[str]:
+    """The words of an instruction as they are marked: numbers and nouns spelt out, slips corrected."""
+    return with_nouns(spelt_right(spelt_out(in_words(said)), LONG_WORDS)).split(" ")
+
+
 class Judge:
     """Judges the operations of one instruction.
 
@@ -133,7 +138,7 @@ class Judge:
     def _marked(self, cleaned: str, least: float) -> tuple[Fields, ...] | None:
         """The operations that the likeliest kind of wish makes of what the marks of an instruction hold; None if it is
         not as likely as `least`, or if one of the marks is not understood."""
-        wording = with_nouns(spelt_right(spelt_out(in_words(cleaned)), LONG_WORDS)).split(" ")
+        wording = wording_of(cleaned)
         if len(wording) > _LONGEST or _ALL_ELSE.search(" ".join(wording)):
             return None
         first, *others = marked_ways(wording)

@@ -18,9 +18,9 @@ from ..happenings import IT, Happening
 from ..moments import Moment
 from .amounts import amount
 from .guards import ASKED_AS_NOT
-from .orders import OTHERS, as_named, in_order, listed, rank_of
+from .orders import OTHERS, as_named, in_order, listed, ordered, rank_of
 from .slots import ALL_MOVING, Slots
-from .steps import gap_of, in_step, in_turn
+from .steps import gap_of, in_step, in_turn, opened
 from .wanted import Wanted, now, paced, plainly, whose_of
 
 _SLOWER = re.compile(
@@ -575,7 +575,7 @@ def _longer(slots: Slots) -> Iterator[Wanted]:
     ends = round((moves.stop if more is not None or _EXTRA.search(words) else moves.start) + seconds, 4)
     if ends <= moves.stop or (stop is not None and abs(stop - ends) > _AS_TOLD):
         return
-    slots.repeated |= {said for said in slots.moment.said} | ({more.said} if more is not None else set())
+    slots.repeated |= {*slots.moment.said, *(() if more is None else (more.said,))}
     yield Wanted(pace(whose_of(slots), "go_on"), Moment(stop=ends), None)
 
 
@@ -602,7 +602,7 @@ def _amount(slots: Slots) -> Iterator[Wanted]:
         return
     slots.used |= {own.said for own in slots.amounts if own.unit in ("times", "%")}  # "half as far, 15 cm"
     if is_opened(_noun(slots)) and isinstance(how, float):
-        yield now(slots, Command(({"op": "articulate", "target": whose_of(slots), "change": "open", "share": how},)))
+        yield opened(whose_of(slots), plainly(slots.moment), slots.happening, share=how)
     elif isinstance(how, float):
         yield paced(slots, "part", share=how)
     elif is_opened(_noun(slots)):
@@ -655,9 +655,9 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
         return
     held = verb == "close" and moment.start is None and slots.happening is None and _HELD.search(slots.rest) is not None
     if held and moment.lasting is not None:  # "give the open door a one second hold, then swing it shut, closed by 4.5"
-        opened = Happening(During(state="fully_open", part="from"), "once it is open")
+        once_open = Happening(During(state="fully_open", part="from"), "once it is open")
         ends = Moment(start=moment.lasting, stop=moment.stop, said=("then",))
-        yield Wanted(f"close {slots.whom}", ends, opened)
+        yield Wanted(f"close {slots.whom}", ends, once_open)
         return
     if verb == "open" and (order := listed(slots.words, slots.spans, slots.thing)) and len(order) > 1:
         yield from in_turn(order, slots)
@@ -684,10 +684,11 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     moment = slots.moment if slots.moment.lasting is None else replace(slots.moment, taken=True)
     if moment.always and moment.start is not None:
         moment = replace(moment, stop="end", always=False)  # "at four, so that it is shut as the film ends"
-    command: str | Command = f"{verb} {slots.whom}" if how is None or verb == "close" else f"open {slots.whom} {how}"
-    if isinstance(how, float) and verb == "open":
-        command = Command(({"op": "articulate", "target": whose_of(slots), "change": "open", "share": how},))
-    yield Wanted(command, plainly(moment), slots.happening)
+    if isinstance(how, float):
+        yield opened(whose_of(slots), plainly(moment), slots.happening, share=how)
+    else:
+        command = f"{verb} {slots.whom}" if how is None else f"open {slots.whom} {how}"
+        yield Wanted(command, plainly(moment), slots.happening)
 
 
 # -- one after the other -----------------------------------------------------------------------------------------------
@@ -721,12 +722,12 @@ def _order(slots: Slots) -> Iterator[Wanted]:
     alone = len(slots.names) == 1 and all(OTHERS.search(goal.name) for goal in goals)
     if _SWAPS.search(slots.rest) and len(both) == 2 and not slots.told:
         pair = both[0].model_copy(update={"also": (both[1],)})
-        yield Wanted(Command(({"op": "order", "target": pair, "order": "reversed"},)), Moment(), None)
+        yield Wanted(ordered(pair, "reversed"), Moment(), None)
     elif order:
         yield Wanted(in_order(order, gap), Moment(), None)
     elif alone and slots.queries[0].pick == "one" and (rank := rank_of(slots.rest)) is not None:
         own: dict[str, Any] = {"first": slots.queries} if rank == "first" else {"last": slots.queries[0]}
-        yield Wanted(Command(({"op": "order", "target": ALL_MOVING, "order": "listed", **own},)), Moment(), None)
+        yield Wanted(ordered(ALL_MOVING, "listed", **own), Moment(), None)
     elif len(slots.names) == len(goals) == 1 and _AFTER_IT.search(slots.rest):
         after = During(state="moving", of=goals[0].query, part="after")
         yield Wanted(pace(whose_of(slots), "begin"), Moment(), Happening(after, f"after {goals[0].name}"))
@@ -774,8 +775,7 @@ def _together(slots: Slots) -> Iterator[Wanted]:
     several = len(who) > 1 or who[0].pick != "one" or bool(who[0].also)
     if not hasty and several and (slots.happening is None or slots.happening.until is None):
         things = replace(slots, queries=who)
-        command = Command(({"op": "order", "target": whose_of(things), "order": "together"},))
-        yield Wanted(command, plainly(slots.moment), slots.happening)
+        yield Wanted(ordered(whose_of(things), "together"), plainly(slots.moment), slots.happening)
 
 
 _KINDS: dict[str, Callable[[Slots], Iterator[Wanted]]] = {

@@ -125,8 +125,8 @@ def is_any_word(word: str) -> bool:
     return (
         is_word(word)
         or is_known(word)
-        or is_captioned(word)
-        or (word.startswith("re") and is_captioned(word[2:]))
         or word in networks().places
         or has_form(word, tuple(SENSES), "plain", "s", "ing", "past")
+        or is_captioned(word)
+        or (word.startswith("re") and is_captioned(word[2:]))
     )

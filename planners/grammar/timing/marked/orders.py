@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from typing import Any
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
@@ -135,8 +136,13 @@ def in_order(things: Sequence[Query], gap: float | None = None) -> Command:
     """The command that lets things begin to move in an order, so many seconds after each other if that is told."""
     both = things[0].model_copy(update={"also": (things[1],)})
     target = both if len(things) == 2 and all(query.text for query in things) else Query(moving=True, pick="all")
-    fields = {"op": "order", "target": target, "order": "listed", "first": tuple(things)}
-    return Command(({**fields, "gap": gap} if gap is not None else fields,))
+    return ordered(target, "listed", first=tuple(things), **({} if gap is None else {"gap": gap}))
+
+
+def ordered(target: Query, order: str, **more: Any) -> Command:
+    """The command that changes when several things begin to move; `more` tells which is first or last, or how far
+    apart they begin."""
+    return Command(({"op": "order", "target": target, "order": order, **more},))
 
 
 def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterator[tuple[Query, int, int]]:

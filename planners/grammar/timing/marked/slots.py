@@ -144,13 +144,16 @@ class Slots:
     @cached_property
     def asked(self) -> str:
         """The words that are about no time, and not about what is not wanted, what stays, or nothing."""
-        left_out = {at for tag, a, b in self.spans if tag in (*TIMES, *_IDLE) for at in range(a, b)}
-        return " ".join(word for at, word in enumerate(self.words) if at not in left_out).strip(_TRIM)
+        return self._without(*TIMES, *_IDLE).strip(_TRIM)
 
     @cached_property
     def meant(self) -> str:
         """All words but those about what is not wanted, what stays, or nothing."""
-        left_out = {at for tag, a, b in self.spans if tag in _IDLE for at in range(a, b)}
+        return self._without(*_IDLE)
+
+    def _without(self, *tags: str) -> str:
+        """The words that stand in no mark with one of some tags."""
+        left_out = {at for tag, a, b in self.spans if tag in tags for at in range(a, b)}
         return " ".join(word for at, word in enumerate(self.words) if at not in left_out)
 
     @cached_property
@@ -271,7 +274,7 @@ def slots(
     if not names:
         names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
     if not names and any(
-        ((query := thing(text(span))) is None and text(span) not in (*hues(), "its", "his", "her"))
+        ((query := thing(text(span))) is None and text(span) not in ("its", "his", "her"))
         or (query is not None and query.last and " " in text(span))
         for span in named
     ):
@@ -338,10 +341,7 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
     if kind in ("order", "together"):
         return False
     names = [(" ".join(words[start:stop]).strip(_TRIM), start, stop) for _, start, stop in named]
-    meant = [
-        (thing(name) or (Query(text="", colors=(name,)) if name in hues() else None), start, stop)
-        for name, start, stop in names
-    ]
+    meant = [(thing(name), start, stop) for name, start, stop in names]
     ranks = {stop for name, _, stop in names if set(name.split()) <= PLACES_IN_TURN}  # "first bottom, then top"
     told = [
         (query, start, stop)
@@ -438,9 +438,6 @@ def _things(said: Iterator[str], thing: Thing, grouped: bool = False) -> tuple[t
         query = ALL_MOVING if grouped and _GROUP.match(bare) else thing(bare)
         if query is None and (shorter := _RANKS.sub("", bare)) != bare:
             bare = shorter
-            query = thing(bare)
-        if query is None and bare.removeprefix("the ") in hues():
-            bare = f"the {bare.removeprefix('the ')} one"
             query = thing(bare)
         if query is None:
             inner = names_in(bare, thing)

@@ -34,7 +34,8 @@ _CLOSES = re.compile(
 )
 
 
-def _opened(query: Query, moment: Moment, happening: Happening | None, change: str = "open", **more: Any) -> Wanted:
+def opened(query: Query, moment: Moment, happening: Happening | None, change: str = "open", **more: Any) -> Wanted:
+    """What lets a thing open, or do another change of that; `more` tells how far."""
     command = Command(({"op": "articulate", "target": query, "change": change, **more},))
     return Wanted(command, moment, happening)
 
@@ -64,7 +65,7 @@ def in_turn(things: Sequence[Query], slots: Slots) -> Iterator[Wanted]:
             moment = Moment(start=start if start is not None else 0.0)
         else:
             continue  # the first one opens when it does
-        steps.append(Wanted(pace(query, "begin"), moment, happening) if moves else _opened(query, moment, happening))
+        steps.append(Wanted(pace(query, "begin"), moment, happening) if moves else opened(query, moment, happening))
     if steps:
         yield replace(steps[0], also=tuple(steps[1:]))
 
@@ -87,7 +88,7 @@ def in_step(slots: Slots) -> Wanted | None:
     )
     length = slots.one("m")
     how_far: dict[str, Any] = {} if length is None else {"distance": {"value": length.value}}
-    steps = [_opened(query, Moment(), opening, **how_far) for query in slots.queries]
+    steps = [opened(query, Moment(), opening, **how_far) for query in slots.queries]
     if not _STAYS.search(words) and _CLOSES.search(_OPENS_ALONE.sub(" ", words)):
-        steps += [_opened(query, Moment(), closing, "close") for query in slots.queries]
+        steps += [opened(query, Moment(), closing, "close") for query in slots.queries]
     return replace(steps[0], also=tuple(steps[1:]))

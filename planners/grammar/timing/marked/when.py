@@ -14,7 +14,7 @@ from ...tagging.words import bag
 from ...vocabulary.quantities import NUMBERS
 from ..happenings import IT, Happening
 from ..manner import Thing
-from ..moments import DURATION, Moment
+from ..moments import DURATION, End, Moment
 from .amounts import amount
 from .events import is_told_by_event, told_by_event
 from .names import named as names_in
@@ -155,9 +155,7 @@ def time_of(
         elif found is not None and isinstance(found.start, float) and happening is not None and _begins(happening):
             happening = None  # "once the fan has stopped, at 4.5 s": the number tells it
         if found is not None:
-            now, then = (own.stop if isinstance(own.stop, float) else None for own in (moment, found))
-            begun = moment.start is not None and now is not None
-            if kind == "pause" and tag == "to" and begun and then is not None and now is not None and then > now:
+            if kind == "pause" and tag == "to" and moment.start is not None and _is_later(found.stop, moment.stop):
                 continue  # "from 1 to 2 s, afterwards it goes on until 4 s"
             if (both := joined(moment, found)) is None:
                 return None
@@ -200,6 +198,11 @@ def is_a_time(phrase: str, kind: str) -> bool:
 
 def tells_number(word: str) -> bool:
     return word[0].isdigit() or word in NUMBERS
+
+
+def _is_later(one: End | None, other: End | None) -> bool:
+    """Whether both are seconds, and one is later than the other."""
+    return isinstance(one, float) and isinstance(other, float) and one > other
 
 
 def _as_well(happening: Happening, other: Query, tag: str, phrase: str) -> Happening:

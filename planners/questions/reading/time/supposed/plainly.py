@@ -25,7 +25,7 @@ from ..everyday import everyday
 from ..frames import UNIT
 from ..loosely import HARD
 from .kinds import kinds_of, marked_ways, vocabulary
-from .times import plain_time, time_left
+from .times import plain_time, time_left, with_article
 
 LEAST = 0.5  # probability of a kind that is tried
 SURE = 0.8  # probability from which words without a mark are taken for those of the question
@@ -141,6 +141,17 @@ _ON_ITS_WAY = re.compile(  # that says nothing more of a movement
     r"^(?:while|whilst|when|as long as) (?:it|he|she) (?:is|'s) (?:actually )?"
     r"(?:moving|working|rolling|running|spinning|turning|going|in motion|on|under way)$"
 )
+
+
+def question_of(kind: str, x: str, y: str, rest: str = "") -> str | None:
+    """The plain question of a kind about things; None if it needs another one.
+
+    Args:
+        rest: words beside them by which it is put otherwise: "half".
+    """
+    return next(_PLAIN[kind](Said(with_article(x), y and with_article(y), "", "", rest)), None)
+
+
 _OF_ALL = bag(
     "what_moves what_still how_many first last order fastest happens film_long gap if_moves if_still if_together "
     "what_open what_shut what_on what_fell what_up"

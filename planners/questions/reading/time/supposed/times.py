@@ -26,17 +26,6 @@ _SPANS = {  # what is so for a while
     "on": "is on {y}", "in_step": "is moving",
 }  # fmt: skip
 
-_ASKED = {  # when something happens, as a question
-    "starts": "when does {x} start to move", "moves": "when does {x} start to move",
-    "stops": "when does {x} stop moving", "still": "when does {x} stop moving",
-    "opens": "when does {x} start to open", "opening": "when does {x} start to open",
-    "open": "when is {x} fully open", "is_open": "when is {x} fully open",
-    "closes": "when does {x} start to close", "closing": "when does {x} start to close",
-    "shut": "when is {x} closed", "is_shut": "when is {x} closed", "half": "when is {x} half open",
-    "falls": "when does {x} fall", "falling": "when does {x} fall", "lands": "when does {x} land",
-    "turns": "when does {x} turn", "turning": "when does {x} turn",
-    "reaches": "when does {x} reach {y}", "on": "when does {x} reach {y}", "leaves": "when does {x} leave {y}",
-}  # fmt: skip
 _LEFT = re.compile(
     r"\b(?:how (?:much|long|many)|what)\b.*\b(?:left|remain\w*|still to (?:come|go)|before (?:it|the \w+) "
     r"(?:ends|runs out|is over|finishes)|(?:to|until|till) the (?:last frame|(?:very )?end))\b|"
@@ -46,7 +35,6 @@ _TO_THE_END = re.compile(r"(?: ,)? (?:\w+ )?(?:to|until|till) the (?:last frame|
 _SHOWN = re.compile(
     r"\b(?:film|clip|video|movie|picture|footage|recording|shot|frames?|seconds?|air|screen|time|show|scene|end)\b"
 )
-_SURELY = 0.55  # probability of what happens that is asked for alone
 _PRONOUNS = ("it", "he", "she", "they")
 
 
@@ -62,16 +50,17 @@ def plain_time(phrase: str) -> str | None:
         return "at the start" if event.kind == "film_start" else "at the end"
     who = event.x or "it"
     if who not in _PRONOUNS:
-        who = _with_article(who)
+        who = with_article(who)
     if event.kind == "first_leg":
         return f"before {who} turns"
     if event.kind == "last_leg":
         return f"after {who} has turned"
-    said = (_MOMENTS | _SPANS)[event.kind].format(y=_with_article(event.y))
+    said = (_MOMENTS | _SPANS)[event.kind].format(y=with_article(event.y))
     return f"{lead or _conjunction(event)} {who} {said}"
 
 
-def _with_article(name: str) -> str:
+def with_article(name: str) -> str:
+    """A name with an article."""
     return name if re.match(r"^(?:the|a|an|my|our|this|that|all|both)\b", name) else f"the {name}"
 
 
@@ -95,20 +84,5 @@ def time_left(words: Sequence[str], times: Sequence[str]) -> str | None:
     event = event_of(_TO_THE_END.sub("", times[0]))
     if event is None or not event.x or event.x in _PRONOUNS or event.kind not in _MOMENTS:
         return None
-    happens = _MOMENTS[event.kind].format(y=_with_article(event.y))
-    return f"how long is it from when {_with_article(event.x)} {happens} to the end of the film"
-
-
-def asked_when(phrase: str, who: str) -> str | None:
-    """The question when that happens which a phrase tells: "leaves rug" of the ball; None if it tells nothing.
-
-    Args:
-        who: of whom it is told where the phrase does not say.
-    """
-    named = who.split()[-1:] == [] or who.split()[-1] in phrase.split()
-    told = (event_of(said) for said in (f"when {phrase}" if named else f"when {who} {phrase}", f"when {phrase}"))
-    event = next((own for own in told if own is not None and own.kind in _ASKED and own.chance >= _SURELY), None)
-    if event is None:
-        return None
-    x = event.x if event.x and event.x not in _PRONOUNS else who
-    return _ASKED[event.kind].format(x=_with_article(x), y=_with_article(event.y)) if x else None
+    happens = _MOMENTS[event.kind].format(y=with_article(event.y))
+    return f"how long is it from when {with_article(event.x)} {happens} to the end of the film"
