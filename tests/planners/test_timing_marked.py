@@ -349,6 +349,17 @@ def test_what_no_operation_tells_is_refused(text: str) -> None:
         ("I'd prefer the green book falling first, before the red one", "green red"),
         ("the red book is to fall after the blue one", "blue red"),
         ("let the red ball and the green ball fall after the blue ball", "blue red green"),
+        ("have the red block go last, and the blue block just before it, the green block leading", "green blue red"),
+        (
+            "New falling order: number one the blue book, number two the red one, number three the green one.",
+            "blue red green",
+        ),
+        ("the books should fall like this: 1. green, 2. blue, 3. red", "green blue red"),
+        ("Let the red book fall in the middle: after the blue one, before the green one.", "blue red green"),
+        ("Start with the blue book, finish with the green one, the red one in between.", "blue red green"),
+        ("I would rather the books fell from right to left: blue, green, red.", "blue green red"),
+        ("the green book is to fall first, the red one second; the blue one can stay third", "green red"),
+        ("Could the blue book jump the queue and drop before the other two?", "blue"),
     ],
 )
 def test_an_order_is_told_by_colours(text: str, first: str) -> None:
@@ -431,7 +442,6 @@ def test_words_are_read_as_they_are_spoken() -> None:
         "the red ball fell before the blue ball",
         "I see the red ball fall first and the blue ball last",
         "between the red ball and the blue ball the green ball should fall",
-        "have the red block go last, and the blue block just before it, the green block leading",
     ],
 )
 def test_what_tells_no_order_orders_nothing(text: str) -> None:

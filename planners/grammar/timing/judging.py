@@ -223,10 +223,12 @@ class Judge:
         )
 
     def _facts(self, held: Slots) -> tuple[float, ...]:
-        """The seconds at which the first thing of an instruction begins and ends to move, how long that takes, and the
-        end of the scene."""
-        moves = self._moves_how(held.queries[0])
-        return () if moves is None else (moves.start, moves.stop, moves.stop - moves.start, moves.end)
+        """The seconds at which the things of an instruction begin and end to move, also those that it says stay as they
+        are, how long that takes, and the end of the scene."""
+        found = [self._moves_how(query) for query in (*held.queries, *held.beside)]
+        return tuple(
+            fact for one in found if one is not None for fact in (one.start, one.stop, one.stop - one.start, one.end)
+        )
 
     def _ops(self, wanted: Wanted) -> tuple[Fields, ...] | None:
         """The operations of a command, in words or as it is, at its time, and of those that go with it; None if one of

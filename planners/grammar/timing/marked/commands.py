@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any
 
 from .....gaussians import late_re as re
-from .....gaussians.language.query.query import Query
 from .....tools.when import During, Part
 from ...learned.seen import hues
 from ...vocabulary.nouns import is_opened
@@ -18,7 +17,7 @@ from ..happenings import IT, Happening
 from ..moments import Moment
 from .amounts import amount
 from .guards import ASKED_AS_NOT
-from .orders import OTHERS, as_named, in_order, listed, ordered, rank_of
+from .orders import ordered, told_order
 from .slots import ALL_MOVING, Slots
 from .steps import gap_of, in_step, in_turn, opened
 from .wanted import Wanted, now, paced, plainly, whose_of
@@ -659,8 +658,9 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
         ends = Moment(start=moment.lasting, stop=moment.stop, said=("then",))
         yield Wanted(f"close {slots.whom}", ends, once_open)
         return
-    if verb == "open" and (order := listed(slots.words, slots.spans, slots.thing)) and len(order) > 1:
-        yield from in_turn(order, slots)
+    order = told_order(slots.words, slots.spans, slots.thing) if verb == "open" else None
+    if order is not None and len(order.things) > 1:
+        yield from in_turn(order.things, slots)
         return
     if verb == "open" and (together := in_step(slots)) is not None:
         yield together
@@ -698,65 +698,43 @@ _REVERSED = re.compile(
     r"turn(?:ed)? (?:\w+ )*?(?:round|around)|swap\w*|back to front|other way about|topsy \w+|upside down|"
     r"last (?:one |in line )?(?:\w+ )?(?:lead\w*|first))\b"
 )
-_FIRST = re.compile(r"\b(?:first|firstly|begins?|starts?|leads?|leading|earliest)\b")
-_LAST = re.compile(r"\b(?:last|lastly|finally|latest|final)\b")
+_IN_FULL = re.compile(r"\b(?:only|last|end)\b|\bafter \| (?:has|have|is|are)\b")  # when the other one has done so
 _AFTER_IT = re.compile(r"\b(?:after|behind|following) \|")
-_SWAPS = re.compile(r"\b(?:swap\w*|exchang\w+|trad(?:e|es|ing)|switch\w*|permut\w+|interchang\w+)\b")
-_NO_ORDER = re.compile(
-    r"\b(?:instead|rather|not|between|both|notice[sd]?|saw|see|sees|think|thought|said|says?|know|watched|heard|"
-    r"fell)\b"
-)
+_SWAPS = re.compile(r"\b(?:swap\w*|exchang\w+|trad(?:e|es|ing)|switch\w*|permut\w+|interchang\w+|chang\w+ places)\b")
 
 
 def _order(slots: Slots) -> Iterator[Wanted]:
-    order = listed(slots.words, slots.spans, slots.thing) or _listed(slots)
+    order = told_order(slots.words, slots.spans, slots.thing)
     goals = slots.goals
     slots.pass_goals()
-    if order and all(is_opened(query.text) for query in order) and not all(map(slots.moves, order)):
-        yield from in_turn(order, slots)
+    if (
+        order is not None
+        and all(is_opened(query.text) for query in order.things)
+        and not all(map(slots.moves, order.things))
+    ):
+        yield from in_turn(order.things, slots)
         return
-    gap = gap_of(slots)
-    if slots.told and (gap is None or slots.moment.start is not None or slots.happening is not None):
+    gap, moves = gap_of(slots), slots.movement(ALL_MOVING)
+    if moves is not None and slots.moment.start == round(moves.start, 2):
+        slots.repeated |= set(slots.moment.said)  # "first of all, at 0.5 s", as the first one does now
+    elif slots.told and (gap is None or slots.moment.start is not None or slots.happening is not None):
         return
     both = tuple(dict.fromkeys((*slots.queries, *(goal.query for goal in goals))))
-    alone = len(slots.names) == 1 and all(OTHERS.search(goal.name) for goal in goals)
-    if _SWAPS.search(slots.rest) and len(both) == 2 and not slots.told:
-        pair = both[0].model_copy(update={"also": (both[1],)})
-        yield Wanted(ordered(pair, "reversed"), Moment(), None)
-    elif order:
-        yield Wanted(in_order(order, gap), Moment(), None)
-    elif alone and slots.queries[0].pick == "one" and (rank := rank_of(slots.rest)) is not None:
-        own: dict[str, Any] = {"first": slots.queries} if rank == "first" else {"last": slots.queries[0]}
-        yield Wanted(ordered(ALL_MOVING, "listed", **own), Moment(), None)
-    elif len(slots.names) == len(goals) == 1 and _AFTER_IT.search(slots.rest):
+    if (
+        len(slots.names) == len(goals) == 1
+        and _AFTER_IT.search(slots.rest)
+        and goals[0].query.pick == "one"
+        and (order is None or (order.alone and _IN_FULL.search(slots.rest)))
+    ):
         after = During(state="moving", of=goals[0].query, part="after")
         yield Wanted(pace(whose_of(slots), "begin"), Moment(), Happening(after, f"after {goals[0].name}"))
-    elif named := as_named(slots):
-        yield Wanted(in_order(named, gap), Moment(), None)
+    elif order is not None:
+        yield Wanted(order.command(gap), Moment(), None)
+    elif _SWAPS.search(slots.rest) and len(both) == 2 and not slots.told:
+        pair = both[0].model_copy(update={"also": (both[1],)})
+        yield Wanted(ordered(pair, "reversed"), Moment(), None)
     elif slots.tell(_REVERSED) and len(slots.names) == 1 and not goals:
         yield Wanted(f"let {slots.names[0]} move in reverse order", Moment(), None)
-
-
-def _listed(slots: Slots) -> tuple[Query, ...]:
-    """Three things or more in the order in which they are named, if the words before the second tell that the first is
-    first, or those behind the last but one that the last is last; none in others."""
-    named = [*zip(slots.names, slots.queries, strict=True), *((goal.name, goal.query) for goal in slots.goals)]
-    single = ((_place_of(name, slots), query) for name, query in named if query.pick not in ("all", "rest"))
-    placed = sorted(single, key=lambda own: own[0])
-    if len(placed) < _SEVERAL or _NO_ORDER.search(" ".join(slots.words)):
-        return ()
-    (second, _), (_, _), (before, _) = placed[1], placed[-1], placed[-2]
-    early, late = " ".join(slots.words[:second]), " ".join(slots.words[before + 1 :])
-    return tuple(query for _, query in placed) if _FIRST.search(early) and _LAST.search(late) else ()
-
-
-_SEVERAL = 3  # things from which an order is told by where they are named
-
-
-def _place_of(name: str, slots: Slots) -> int:
-    """Where a name stands among the words."""
-    own = name.removeprefix("the ").removesuffix(" one").split()[0]
-    return next((at for at, word in enumerate(slots.words) if word == own), 0)
 
 
 def _together(slots: Slots) -> Iterator[Wanted]:

@@ -120,7 +120,8 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
 _WHY_NOT = re.compile(r"\bwhy (?:not|do not we|do not you)\b")
 ASKED_AS_NOT = re.compile(  # "couldn't we see it fall again?"
-    r"^(?:\W*\w+ ){0,2}?\W*(?:can|could|will|would|should|might) not (?=\||(?:we|you|i|it|he|she|they|there)\b)"
+    r"^(?:\W*\w+ ){0,2}?\W*(?:why not\b|(?:can|could|will|would|should|might) not "
+    r"(?=\||(?:we|you|i|it|he|she|they|there)\b))"
 )
 _THEN = re.compile(r"\bthen (?:\w+ ){0,3}(?P<rest>(?:shut|close|open)s?)\b")
 _BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)\b)")

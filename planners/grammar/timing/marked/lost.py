@@ -64,7 +64,8 @@ _NOT_WANTED = bag(
 
 def _loses_numbers(words: Sequence[str], ops: Sequence[Fields], free: Set[int], spans: Sequence[Span]) -> bool:
     """Whether a number stands in no operation, and not among what is not wanted."""
-    missing = set(_missing(words, ops)) - free
+    named = {at for tag, start, stop in spans if tag in ("x", "y") for at in range(start, stop)}  # "the red one"
+    missing = set(_missing(words, ops)) - free - named
     if missing and "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
         missing -= set(range(words.index("not"), words.index("but", words.index("not"))))
     if missing:

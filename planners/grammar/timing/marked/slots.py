@@ -23,6 +23,7 @@ from .amounts import Amount, amount, repeats
 from .kinds import COURSES
 from .names import MOVING, with_colors, with_moving
 from .names import named as names_in
+from .orders import PLACES
 from .times import TIMES
 from .when import LOOKS, NEAR, PLACES_IN_TURN, is_a_time, tells_number, time_of, with_both_ends
 
@@ -161,6 +162,13 @@ class Slots:
         """The words about what is not wanted, what stays, or nothing."""
         return " ".join(" ".join(self.words[a:b]) for tag, a, b in self.spans if tag in _IDLE)
 
+    @property
+    def beside(self) -> tuple[Query, ...]:
+        """The things that words about what is not wanted, what stays, or nothing name."""
+        shades = [word for word in self.idle.split() if word in hues()]
+        named = map(self.thing, (*names_in(self.idle, self.thing), *shades))
+        return tuple(query for query in named if query is not None and not query.last)
+
     def said_twice(self, facts: Sequence[float]) -> set[int]:
         """Where numbers stand that say nothing new: those of amounts that a time tells, too, and in words about what
         stays or is not wanted those that are how it is now.
@@ -168,7 +176,8 @@ class Slots:
         Args:
             facts: seconds of how it is now.
         """
-        found = set[int]()
+        marked = {at for _, start, stop in self.spans for at in range(start, stop)}
+        found = {at for at, word in enumerate(self.words) if word in PLACES and at not in marked}  # "1. blue, 2. red"
         for tag, start, stop in self.spans:
             said = " ".join(self.words[start:stop])
             if tag in ("by", *TIMES) and any(own in said for own in self.repeated):
@@ -187,6 +196,7 @@ class Slots:
                 numbers = ((at, seconds_of(f"{self.words[at]} seconds")) for at in range(start, stop))
                 found |= {at for at, value in numbers if any(abs((value or -9.0) - now) < NEAR for now in facts)}
                 found |= {at for at in range(start, stop - 1) if tag == "off" and _counts(self.words[at + 1])}
+                found |= {at + 1 for at in range(start, stop - 1) if tag == "keep" and self.words[at] == "the"}
         return found
 
     def unused(self) -> bool:
@@ -295,7 +305,11 @@ def slots(
     colors = dict.fromkeys(_color(text(span)) for span in wanted)
     marked = {at for _, start, stop in spans for at in range(start, stop)}
     left = [word for at, word in enumerate(words) if at not in marked]
-    numbers = any(_is_number(word, then) for word, then in pairwise([*left, ""]) if (kind, word) != ("still", "zero"))
+    numbers = any(
+        _is_number(word, then)
+        for word, then in pairwise([*left, ""])
+        if (kind, word) != ("still", "zero") and not (kind == "order" and word in PLACES)
+    )
     if len(colors) > (kind == "recolor") or numbers:
         return None
     asking = {at for tag, start, stop in spans if tag in ("x", "y", "by") for at in range(start, stop)}
