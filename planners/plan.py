@@ -156,13 +156,24 @@ class EditPlan(BaseModel):
 
 
 class Movement(NamedTuple):
-    """How something moves in a scene: its first start and its last stop, seconds, whether it only turns round and
-    round, so that its speed does not tell when it stops, and the end of the scene."""
+    """How something moves in a scene.
+
+    Attributes:
+        start, stop: its first start and its last stop, seconds.
+        turns: whether it only turns round and round, so that its speed does not tell when it stops.
+        end: that of the scene, seconds.
+        degrees: its widest angle from the start.
+        metres: the length of its way; of what slides how far out that takes it.
+        edges: seconds at which it begins, ends or changes what it does, if these are few.
+    """
 
     start: float
     stop: float
     turns: bool
     end: float = math.inf
+    degrees: float = 0.0
+    metres: float = 0.0
+    edges: tuple[float, ...] = ()
 
 
 class Observation(Protocol):

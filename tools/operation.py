@@ -254,6 +254,7 @@ class EditOp(BaseModel):
     reveals: ClassVar[bool] = False  # whether it takes things from their place, and what they hid may be filled
     puts: ClassVar[bool] = False  # whether it puts things where they were not, and they cast shadows there
     takes_enclosed: ClassVar[bool] = False  # whether what a thing of a capture encloses is edited with it
+    of_what_moves: ClassVar[bool] = False  # whether it only changes how something moves already
     makes_motion: ClassVar[bool] = False  # whether it changes the motion of the scene itself, and reads its own `when`
 
     def query(self) -> Query | None:

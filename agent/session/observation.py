@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from ...planners.rooms.graph import SceneGraph
     from ...planners.rooms.graph_scene import Stage
 
+_FEW = 12  # keys of a way that somebody wrote, and that was not fitted to a film
 WIDTH = 768  # pixels, of the picture sent to a model: vision models scale down much larger pictures
 
 
@@ -52,14 +54,20 @@ def movement_of(scene: Scene, selection: Selection) -> Movement | None:
     """How the Gaussians of a selection move; None if they stand still, or if nothing was found."""
     from ...planners.plan import Movement
     from ...tools.ops.pace import is_turning
-    from ...tools.timing.retiming import divided, movement
+    from ...tools.timing.retiming import divided, extent, movement
 
     if scene.motion is None or not selection.chosen:
         return None
     tracks, inside = divided(scene.motion, selection.ids.cpu().numpy())
     own = [track for track, belongs in zip(tracks, inside, strict=True) if belongs]
     span = movement(own, scene.motion.start, scene.motion.stop)
-    return None if span is None else Movement(*span, all(is_turning(track) for track in own), scene.motion.stop)
+    if span is None:
+        return None
+    radians, units = extent(own, span, scene.frame.up_vector)
+    metres = units * (scene.frame.metres_per_unit or 1.0)
+    turning = all(is_turning(track) for track in own)
+    edges = sorted({float(time) for track in own if len(track.times) <= _FEW for time in track.times})
+    return Movement(*span, turning, scene.motion.stop, math.degrees(radians), metres, tuple(edges))
 
 
 def picture_of(scene: Scene, camera: Camera) -> bytes:

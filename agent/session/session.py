@@ -299,7 +299,7 @@ class Session:
     def movement(self, query: Query) -> Movement | None:
         """How what a query names moves; None if it stands still, or if it names nothing there. Embeds the scene if it
         is not embedded yet."""
-        found = self._in_motion(query)
+        found = self._in_motion(query, moves=True)
         return None if found is None else movement_of(self.scene, found)
 
     def lacks(self, query: Query) -> bool:
@@ -308,12 +308,15 @@ class Session:
         found = self._in_motion(query)
         return found is not None and found.verdict == "absent"
 
-    def _in_motion(self, query: Query) -> Selection | None:
-        """What a query names in a scene with motion; None in others, which are not embedded for that."""
+    def _in_motion(self, query: Query, moves: bool = False) -> Selection | None:
+        """What a query names in a scene with motion, if that is asked only what moves; None in others, which are not
+        embedded for that."""
         if self.scene.motion is None:
             return None
+        from ...tools.timing.spans import moving_one
+
         self.embed()
-        return self._context(self.last).resolve(self.scene, query)
+        return moving_one(self.scene, query, self._context(self.last), moves)
 
     @property
     def references(self) -> tuple[str, ...]:

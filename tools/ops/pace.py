@@ -78,6 +78,7 @@ class Pace(TargetedOp):
         {"op": "pace", "target": {"text": "fan"}, "change": "stop", "when": {"start": 2}},
     )
     makes_motion: ClassVar[bool] = True
+    of_what_moves: ClassVar[bool] = True
     op: Literal["pace"] = "pace"
     change: Literal[
         "stop",

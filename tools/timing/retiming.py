@@ -9,6 +9,7 @@ import numpy as np
 import torch
 from numpy.typing import ArrayLike, NDArray
 
+from ...gaussians.motion.courses import rotation_vectors
 from ...gaussians.motion.motion import Motion, Residual, Track, carried, poses
 from ...gaussians.motion.runs import runs_of
 from ...gaussians.rows import rows_of_ids
@@ -22,6 +23,7 @@ F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
 _STEP = 1 / 30  # seconds between keys where a path is not played at one rate
+_SAMPLES = 100  # times a second at which a way is looked at
 _STILL = 2e-3  # units and radians between keys: less is no movement
 _SAME = 1e-9  # seconds
 
@@ -151,6 +153,29 @@ def movement(tracks: tuple[Track, ...] | list[Track], start: float, stop: float)
         if len(moving):
             first, last = min(first, float(times[moving[0]])), max(last, float(times[moving[-1] + 1]))
     return (first, last) if last > first else None
+
+
+def extent(tracks: list[Track], span: tuple[float, float], up: F64) -> tuple[float, float]:
+    """How far tracks turn and go in a time: the widest angle from its start, radians, and the length of their way, of
+    what slides the farthest from its start, scene units.
+
+    Args:
+        span: seconds from when to when they move.
+        up: `[3]` unit; what is on no axis turns about it.
+    """
+    times = np.linspace(*span, max(int((span[1] - span[0]) * _SAMPLES), 2))
+    angle, way = 0.0, 0.0
+    for track in tracks:
+        if track.kind in ("hinge", "spin", "slide"):
+            gone = angles_at(track, times)
+            far = float(np.abs(gone - gone[0]).max())
+            angle, way = (angle, max(way, far)) if track.kind == "slide" else (max(angle, far), way)
+            continue
+        turns, shifts = poses(track, times)
+        steps = rotation_vectors(turns[1:] @ turns[:-1].transpose(0, 2, 1)) @ up
+        angle = max(angle, float(np.abs(np.cumsum(steps)).max()))
+        way = max(way, float(np.linalg.norm(np.diff(turns @ track.pivot + shifts, axis=0), axis=1).sum()))
+    return angle, way
 
 
 def divided(motion: Motion, ids: I64) -> tuple[list[Track], list[bool]]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
+from ...gaussians.motion.motion import moving_ids
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.relation_geometry import viewer_stand
 from ..operation import Context
@@ -346,14 +347,32 @@ def _anchor(scene: Scene, query: Query, context: Context, during: During, target
     return fits[0] if len(fits) == 1 else _meant(scene, query, context)
 
 
-def moving_one(scene: Scene, query: Query, context: Context) -> Selection:
-    """What a query means where time is spoken of: of several things that it may mean, the one that moves."""
+def moving_one(scene: Scene, query: Query, context: Context, moves: bool = False) -> Selection:
+    """What a query means where time is spoken of: of several things that it may mean, the one that moves.
+
+    Args:
+        moves: whether only what moves can be meant, as of a change of how it moves: where what is named stands still,
+            or is not found as a part of something, the one thing that moves and has the same noun is meant.
+    """
     found = context.resolve(scene, query)
     plain = query.pick == "one" and query.moving is None  # "the middle drawer" is not the one that moves
-    if found.verdict != "ambiguous" or scene.motion is None or not plain:
+    if scene.motion is None or not plain:
         return found
-    moves = context.resolve(scene, query.model_copy(update={"moving": True}))
-    return moves if moves.chosen else found
+    if found.verdict == "ambiguous":
+        return _that_moves(scene, query, context) or found
+    if not moves or (found.chosen and np.isin(moving_ids(scene.motion), found.ids.cpu().numpy()).any()):
+        return found
+    whole = tuple(relation for relation in query.relations if relation.name != "part_of")
+    for looser in dict.fromkeys((query, query.model_copy(update={"relations": whole}))):
+        if (other := _that_moves(scene, looser, context)) is not None and other.verdict == "found":
+            return other
+    return found
+
+
+def _that_moves(scene: Scene, query: Query, context: Context) -> Selection | None:
+    """The one thing that a query means and that moves; None if there is none, or several."""
+    found = context.resolve(scene, query.model_copy(update={"moving": True}))
+    return found if found.chosen else None
 
 
 def _groups(found: Selection, scene: Scene) -> tuple[int, ...]:

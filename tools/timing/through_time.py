@@ -95,7 +95,7 @@ def _spoken_of(now: Scene, op: EditOp, context: Context, selection: Selection | 
         or not (op.makes_motion or (when is not None and when.during is not None))
     ):
         return selection
-    return moving_one(now, query, context)
+    return moving_one(now, query, context, moves=op.of_what_moves)
 
 
 # -- for all times ---------------------------------------------------------------------------------------------------

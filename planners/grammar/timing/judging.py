@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from itertools import pairwise, starmap
 
 from pydantic import ValidationError
 
@@ -116,6 +117,10 @@ def wording_of(said: str) -> list[str]:
     return with_nouns(spelt_right(spelt_out(in_words(said)), LONG_WORDS)).split(" ")
 
 
+def _apart(start: float, stop: float) -> float:
+    return stop - start
+
+
 class Judge:
     """Judges the operations of one instruction.
 
@@ -223,12 +228,18 @@ class Judge:
         )
 
     def _facts(self, held: Slots) -> tuple[float, ...]:
-        """The seconds at which the things of an instruction begin and end to move, also those that it says stay as they
-        are, how long that takes, and the end of the scene."""
+        """The numbers that tell how the things of an instruction move now, also those that it says stay as they are:
+        seconds, degrees, metres and centimetres."""
         found = [self._moves_how(query) for query in (*held.queries, *held.beside)]
         return tuple(
-            fact for one in found if one is not None for fact in (one.start, one.stop, one.stop - one.start, one.end)
-        )
+            fact
+            for one in found
+            if one is not None
+            for fact in (
+                one.start, one.stop, one.stop - one.start, one.end, *one.edges, *starmap(_apart, pairwise(one.edges)),
+                one.degrees, one.metres, 100 * one.metres,
+            )
+        )  # fmt: skip
 
     def _ops(self, wanted: Wanted) -> tuple[Fields, ...] | None:
         """The operations of a command, in words or as it is, at its time, and of those that go with it; None if one of

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -34,6 +35,7 @@ _TABLE: tuple[tuple[Unit, str], ...] = (  # tried in their order
     ("turns/s", rf"(?P<n>{_N}) (?:per|each|every) {_SECOND}"),
     ("deg", rf"(?P<n>{_N})(?: (?:full|whole|more))? ?(?:degrees?|deg|°)"),
     ("deg", r"(?P<right>right angle)"),
+    ("deg", rf"(?P<rad>{_N}) ?(?:rad|radians?)"),
     ("m", rf"(?P<n>{_N}){_FULL} ?(?P<unit>mm|cm|m|(?:milli|centi)?met(?:re|er)s?|feet|foot|ft|inch(?:es)?)"),
     ("s", rf"(?P<s>{DURATION})"),
     ("turns", rf"(?P<n>{_N}){_FULL} (?!times){_ROUNDS}(?: (?:around|round))?"),
@@ -65,8 +67,9 @@ _GOES = re.compile(
     rf"\b(?:x ?(?P<x>\d+)|(?P<n>{_WORD}|\d+) (?:reps?|repeats?|goes|passes|runs|takes|plays|loops|bows|helpings))\b"
 )
 _ALONE = re.compile(
-    rf"^(?:(?:by|to|at|just|only|about|around|like|say|some|exactly|not|more|than|a|mere|maybe|max|maximum|up) )*"
-    rf"(?P<n>\d+(?:\.\d+)?|(?:{_WORD})(?: (?:{_WORD}))?)(?: (?:max|only|or so|tops|at most|instead))?$"
+    rf"^(?:(?:by|to|at|just|only|barely|through|about|around|like|say|some|exactly|not|more|than|a|mere|maybe|max|"
+    rf"maximum|up|down|no|further|wider|farther) )*(?P<n>\d+(?:\.\d+)?|(?:{_WORD})(?:[ -](?:{_WORD}))?)"
+    rf"(?: (?:max|only|or so|tops|at (?:the )?most|instead|and no more))?$"
 )
 _METRES = {"mm": 0.001, "cm": 0.01, "milli": 0.001, "centi": 0.01, "f": METRES["ft"], "inch": METRES["in"]}
 
@@ -109,6 +112,9 @@ def _value(unit: Unit, found: re.Match[str]) -> float | None:
         return seconds_of(told["s"])
     if "right" in told:
         return 90.0
+    if "rad" in told:
+        radians = number(told["rad"])
+        return None if radians is None else round(math.degrees(radians), 2)
     if "factor" in told:
         return next(value for start, value in _FACTORS.items() if told["factor"].startswith(start))
     if "often" in told:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 from .....gaussians import late_re as re
 from .....tools.when import During, Part
@@ -15,7 +14,7 @@ from ..clauses import ALL_OF_IT
 from ..command import Command, pace
 from ..happenings import IT, Happening
 from ..moments import Moment
-from .amounts import amount
+from .far import far_along, goes_as_far, how_far
 from .guards import ASKED_AS_NOT
 from .orders import ordered, told_order
 from .slots import ALL_MOVING, Slots
@@ -96,14 +95,6 @@ _OTHER_WAY = re.compile(
 _BACKWARDS = re.compile(r"\b(?:backwards?|in reverse|rewind|rewound|from (?:the )?(?:end|back) to|end to start)\b")
 _TRAVELS = re.compile(
     r"\b(?:travel|roll|walk|driv|slid|march|fall|run|ris)(?:e?s|e|ing|ling)?\b|\bsetting (?:off|out)\b"
-)
-_HALF = re.compile(
-    r"\b(?:half ?way|half(?: of)? (?:the|its|his|her|that|this)(?: \w+)? (?:way|fall|drop|walk|swing)|midway|half)\b"
-)
-_NO_FURTHER = re.compile(r"\b(?:no|not) (?:further|farther|more|wider|longer) than\b")
-_LESS_FAR = re.compile(
-    r"\b(?:less|more(?! \w+(?:ful|ing|ic|al|ive|ous|ant|ent|able|ly)\b)|"
-    r"further|farther|wider|extra|additional|another|shorter|longer)\b"
 )
 _SHUTS = re.compile(r"\b(?:clos\w+|shut\w*|(?:go|going|goes|slid\w+|mov\w+|com\w+) back|return\w*|back in)\b")
 
@@ -440,7 +431,6 @@ def _ends_itself(slots: Slots) -> bool:
 
 # -- rests -------------------------------------------------------------------------------------------------------------
 
-_HALFWAY = {"state": "halfway", "part": "from"}
 _WIDE = {"state": "fully_open", "part": "from"}
 _CLOSING = {"state": "closing"}
 
@@ -461,7 +451,7 @@ def _pause(slots: Slots) -> Iterator[Wanted]:
         moment = replace(moment, lasting=seconds.value)
     begun = moment.start is not None or slots.happening is not None
     if not begun and (moment.lasting is None) != (moment.stop is None):
-        if (where := _where(slots)) is not None:
+        if (where := far_along(slots)) is not None:
             yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), moment, None)
             return
         if moment.lasting is not None:
@@ -503,32 +493,12 @@ def _halt(slots: Slots) -> Iterator[Wanted]:
     if ended:  # "it only runs until 2 s"
         moment = replace(moment, start=moment.stop, stop=None)
     if slots.amounts and slots.happening is None and moment.start is None and not ended:
-        if (where := _where(slots)) is not None:  # "it jams at 40 degrees till the film ends"
+        if (where := far_along(slots)) is not None:  # "it jams at 40 degrees till the film ends"
             yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), Moment(), None)
     elif slots.told and (moment.start is not None or slots.happening is not None):
         yield paced(slots, "stop", replace(moment, stop=None) if moment.stop == "end" else moment)
-    elif (where := _where(slots)) is not None:
+    elif (where := far_along(slots)) is not None:
         yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), Moment(), None)
-
-
-def _where(slots: Slots) -> dict[str, Any] | None:
-    """The time from when something has gone as far as is told, as fields: "at 40 degrees", "a third of the way down";
-    None if that is not told."""
-    if (angle := slots.one("deg")) is not None:
-        return {**_HALFWAY, "degrees": angle.value}
-    if (length := slots.one("m")) is not None:
-        return {**_HALFWAY, "distance": {"value": length.value}}
-    share = slots.one("times", "%")
-    part = None if share is None else share.value / 100 if share.unit == "%" else share.value
-    if part is not None and 0 < part < 1:
-        return {**_HALFWAY, "share": round(part, 4)} if part != _HALF_OF_IT else dict(_HALFWAY)
-    if slots.tell(_HALF):
-        slots.used |= {own.said for own in slots.amounts}
-        return dict(_HALFWAY)
-    return None
-
-
-_HALF_OF_IT = 0.5
 
 
 def _still(slots: Slots) -> Iterator[Wanted]:
@@ -584,59 +554,6 @@ _EXTRA = re.compile(
 _AS_TOLD = 0.06  # seconds by which two tellings of one time may differ
 
 
-# -- how far -----------------------------------------------------------------------------------------------------------
-
-
-def _amount(slots: Slots) -> Iterator[Wanted]:
-    slots.pass_goals()
-    further = _LESS_FAR.search(_NO_FURTHER.sub(" ", slots.said.replace("any more", " ")))
-    instead = any(tag == "not" and amount(" ".join(slots.words[a:b])) is not None for tag, a, b in slots.spans)
-    if further and not instead and not _NOT.search(slots.rest) and not _UP_TO.search(" ".join(slots.words)):
-        return  # "5 cm more": from how far it goes now
-    if not is_opened(_noun(slots)) and (angle := slots.one("deg", "")) is not None:
-        if not slots.told and slots.moves(slots.queries[0]):
-            yield paced(slots, "turn", Moment(), degrees=angle.value)
-        return
-    if (how := _how_far(slots)) is None:
-        return
-    slots.used |= {own.said for own in slots.amounts if own.unit in ("times", "%")}  # "half as far, 15 cm"
-    if is_opened(_noun(slots)) and isinstance(how, float):
-        yield opened(whose_of(slots), plainly(slots.moment), slots.happening, share=how)
-    elif isinstance(how, float):
-        yield paced(slots, "part", share=how)
-    elif is_opened(_noun(slots)):
-        yield now(slots, f"open {slots.whom} {how}")
-    elif how.startswith("by") and how.endswith(" m"):
-        yield now(slots, f"let {slots.whom} only move {how.removeprefix('by ')}")
-    elif how == "halfway":
-        yield now(slots, f"let {slots.whom} go half the way")
-
-
-_UP_TO = re.compile(
-    r"\b(?:to|until|up to|reach\w*) (?:\w+ ){0,2}(?:\d|one|two|three|four|five|six|seven|eight|nine|ten|half)"
-)
-
-
-def _how_far(slots: Slots) -> str | float | None:
-    """How far something opens or goes, in words, or as a share of how far it does now."""
-    if (alone := slots.one("")) is not None:  # "knock its swing down to 55"
-        slides = _noun(slots).startswith("drawer")
-        return f"by {alone.value:g} cm" if slides else f"by {alone.value:g} degrees"
-    if (angle := slots.one("deg")) is not None:
-        return f"by {angle.value:g} degrees"
-    if (length := slots.one("m")) is not None:
-        return f"by {length.value:g} m"
-    share = slots.one("times", "%")
-    if (share is not None and share.value in (0.5, 50.0)) or (share is None and slots.tell(_HALF)):
-        return "halfway"
-    if share is not None:
-        part = share.value / 100 if share.unit == "%" else share.value
-        if part < 1 and share.unit == "times" and not _LESS.search(slots.said):
-            return round(part, 4)
-        slots.used.discard(share.said)  # "twice as quick"
-    return None
-
-
 _IN_TURN = re.compile(
     r"\bone (?:after|behind) (?:the )?(?:other|another)\b|\bone by one\b|\bin turn\b|\bstagger\w*|\bcascad\w+|"
     r"\bafter each other\b"
@@ -680,7 +597,7 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
         elif slots.happening is not None and slots.moment.empty:
             yield now(slots, f"{verb} {slots.whom}", start=by.value)
         return
-    how = _how_far(slots) if slots.amounts and verb == "open" else None
+    how = how_far(slots) if slots.amounts and verb == "open" else None
     moment = slots.moment if slots.moment.lasting is None else replace(slots.moment, taken=True)
     if moment.always and moment.start is not None:
         moment = replace(moment, stop="end", always=False)  # "at four, so that it is shut as the film ends"
@@ -759,6 +676,7 @@ def _together(slots: Slots) -> Iterator[Wanted]:
 _KINDS: dict[str, Callable[[Slots], Iterator[Wanted]]] = {
     "recolor": _recolor, "hide": _hide, "remove": _remove, "move": _move, "spin": _spin, "begin": _begin,
     "speed": _speed, "duration": _duration, "pause": _pause, "halt": _halt, "still": _still, "reverse": _reverse,
-    "stay": _stay, "amount": _amount, "open": partial(_opening, verb="open"), "close": partial(_opening, verb="close"),
+    "stay": _stay, "amount": goes_as_far, "open": partial(_opening, verb="open"),
+    "close": partial(_opening, verb="close"),
     "order": _order, "together": _together, "repeat": _repeat, "return": _return, "longer": _longer,
 }  # fmt: skip

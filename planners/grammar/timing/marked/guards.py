@@ -139,7 +139,7 @@ _BEFORE_IT = re.compile(  # "it waits until 2 s before it sets off"
     r"drops?|dropping|opens?|opening|setting|starting|sliding|slides?)"
     r"(?: off| moving| rolling| going| walking| falling| to \w+| out)*"
 )
-_NEGATED = ("hide", "remove", "still", "stay", "halt", "pause", "longer")  # kinds that say what is not to be
+_NEGATED = ("hide", "remove", "still", "stay", "halt", "pause", "longer", "amount")  # kinds that say what is not to be
 _NOT = re.compile(r"\b(?:not|no|never|without|invisible|nobody|nothing)\b")
 _NO_MORE = re.compile(r"\b(?:no|not|nothing) (?:more|further|farther|wider)(?: than (?:that|this))?\b")
 _DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")

@@ -17,7 +17,7 @@ from ..command import Fields
 from ..moments import TIMED
 from .kinds import marked
 
-CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too)\b")
+CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too|now|currently|presently)\b")
 
 
 def leaves_out(

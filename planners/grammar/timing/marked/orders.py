@@ -34,8 +34,8 @@ _ONE_BY_ONE = re.compile(r"\bone (?:after|behind|following) (?:the )?(?:other|an
 _SINGLE = ("one", "highest", "middle", "lowest")
 _MOST = 5  # things in an order
 _OTHERS = re.compile(
-    r"^(?:(?:both|all|each) )?(?:of )?(?:the |its |my )?(?:outer |two )?(?:others?|rest|neighbou?rs|siblings|colleagues|"
-    r"two)\b(?: (?:two|2|ones|others?|books))?$|^both$|^(?:all )?(?:of )?the three$"
+    r"^(?:(?:both|all|each) )?(?:of )?(?:the |its |my )?(?:outer |two )?(?:others?|rest|neighbou?rs|siblings|"
+    r"colleagues|two)\b(?: (?:two|2|ones|others?|books))?$|^both$|^(?:all )?(?:of )?the three$"
 )
 _ALL = "both|all|only|just|the|of|each of|either of|that of|those of"
 _SOONER = re.compile(
@@ -295,8 +295,10 @@ def _relate(gaps: Sequence[str], tokens: Sequence[int], told: _Told) -> bool:
         before = _SOONER.search(gap) is not None or _AFTER_IT.search(tail) is not None
         after = _LATER.search(gap) is not None or _BEFORE_IT.search(tail) is not None
         if before != after:
-            if not subjects or not _RELATION_ALONE.match(gap):
-                subjects = heads
+            if joint := subjects and at > 1 and not _JOINTS.search(gap) and _BARE_JOINT.match(gaps[at - 1]) is not None:
+                told.sooner = told.sooner[: -len(subjects)]  # "red before green, and blue before ...": not before blue
+            if joint or not subjects or not _RELATION_ALONE.match(gap):
+                subjects = [one] if joint else heads
             sooner = before or told.ranks.get(subjects[0]) == 0  # "first the blue one, after the green": then the green
         elif not joined:
             subjects = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -192,12 +193,18 @@ class Slots:
                 }
             if tag in TIMES and (self.moment.always or _THROUGHOUT.search(said)):
                 found |= set(range(start, stop))  # "for all five seconds"
+            if tag in _IDLE or (tag == "by" and sum(map(tells_number, self.words[start:stop])) > 1):
+                found |= {at for at in range(start, stop) if any(abs(self._number(at) - now) < NEAR for now in facts)}
             if tag in _IDLE:
-                numbers = ((at, seconds_of(f"{self.words[at]} seconds")) for at in range(start, stop))
-                found |= {at for at, value in numbers if any(abs((value or -9.0) - now) < NEAR for now in facts)}
                 found |= {at for at in range(start, stop - 1) if tag == "off" and _counts(self.words[at + 1])}
                 found |= {at + 1 for at in range(start, stop - 1) if tag == "keep" and self.words[at] == "the"}
         return found
+
+    def _number(self, at: int) -> float:
+        """The number at a word, with "and a half" behind it; infinity if there is none."""
+        value = seconds_of(f"{self.words[at]} seconds") if tells_number(self.words[at]) else None
+        half = " ".join(self.words[at + 1 : at + 4]).startswith(("and a half", "and half"))
+        return math.inf if value is None else value + 0.5 * half
 
     def unused(self) -> bool:
         """Whether an amount, or a goal, stands in no command."""

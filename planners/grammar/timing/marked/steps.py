@@ -86,8 +86,9 @@ def in_step(slots: Slots) -> Wanted | None:
     opening, closing = (
         Happening(During(state=state, of=other), f"as it is {state}") for state in ("opening", "closing")
     )
-    length = slots.one("m")
+    length, angle = slots.one("m"), slots.one("deg")
     how_far: dict[str, Any] = {} if length is None else {"distance": {"value": length.value}}
+    how_far |= {} if angle is None else {"degrees": angle.value}
     steps = [opened(query, Moment(), opening, **how_far) for query in slots.queries]
     if not _STAYS.search(words) and _CLOSES.search(_OPENS_ALONE.sub(" ", words)):
         steps += [opened(query, Moment(), closing, "close") for query in slots.queries]
