@@ -58,13 +58,16 @@ _FACTORS = {  # by how the word begins
 _MORE = re.compile(r"\b(?:more|extra|further|additional) (?=(?:seconds?|secs?)\b)")
 _ANOTHER = re.compile(r"\banother (?=(?:seconds?|secs?)\b)")
 _AGAIN = re.compile(
-    r"\b(?:again|once more|anew|afresh|(?:another|one more|a second|second) (?:time|go|round|run|pass))\b|^another$"
+    r"\b(?:again|once more|anew|newly|afresh|encore|duplicate|repetition|repeat performance)\b|"
+    r"\b(?:another|(?:one|a) (?:more|further)|(?:a |the )?(?:second|2nd)) (?!half\b|and\b|or\b)(?:\w+ )?[a-z]+$|"
+    r"^(?:once|another)$"
 )
 _TIMES_MORE = re.compile(
     rf"\b(?P<n>{_WORD}|\d+|twice)(?: times| reps| goes)? more(?: times)?\b|\banother (?P<m>{_WORD}|\d+) times\b"
 )
 _GOES = re.compile(
-    rf"\b(?:x ?(?P<x>\d+)|(?P<n>{_WORD}|\d+) (?:reps?|repeats?|goes|passes|runs|takes|plays|loops|bows|helpings))\b"
+    rf"\b(?:[x×n] ?=? ?(?P<x>\d+)|(?P<n>{_WORD}|\d+) (?!seconds?\b|secs?\b|times\b)(?:complete |full |whole )?"
+    r"[a-z]+s)\b"
 )
 _ALONE = re.compile(
     rf"^(?:(?:by|to|at|just|only|barely|through|about|around|like|say|some|exactly|not|more|than|a|mere|maybe|max|"

@@ -42,11 +42,12 @@ _LESS = re.compile(r"\b(?:less|lower|reduc\w+|cut|drop|decreas\w+|slower|slow)\b
 _MORE = re.compile(r"\b(?:faster|quicker|increas\w+|rais\w+|more|up)\b")
 _LATER = re.compile(
     r"\b(?:plus|later|delay\w*|late|postpon\w+|hold\w*|held|waits?|waiting|longer|behind|lag\w*|defer\w*|push\w*|"
-    r"hang\w*|hung|extra|"
-    r"back|pause\w*|linger\w*|stay\w*|put\b.{1,40} off|to the right|down the (?:time ?)?line)\b"
+    r"hang\w*|hung|extra|additional|lead in|heels|tarr\w+|dawdl\w+|idl\w+|sit\w* tight|rest\w*|stillness|"
+    r"back|pause\w*|linger\w*|stay\w*|put\b(?:.{1,40})? off|to the right|down the (?:time ?)?line)\b|\+ ?\d"
 )
 _EARLIER = re.compile(
-    r"\b(?:minus|earlier|sooner|early|ahead|forwards?|advanc\w+|shorter|less|prepon\w+|to the (?:front|left))\b"
+    r"\b(?:minus|earlier|sooner|early|ahead|forwards?|advanc\w+|shorter|less|prepon\w+|anticipat\w+|"
+    r"jump\w* the gun|to the (?:front|left))\b|(?<!\w)[-−–] ?\d"
 )
 _STRICTLY_LATER = re.compile(r"\b(?:later|delay\w*|postpon\w+|longer)\b")
 _TOO = re.compile(r"\btoo (?:\w+ )?(?P<what>late|early|soon)\b")
@@ -259,7 +260,8 @@ def _repeat(slots: Slots) -> Iterator[Wanted]:
     if moves is not None and moves.turns and slots.moment.stop is None and _GOES_ON.search(" ".join(slots.words)):
         yield paced(slots, "repeat", replace(plainly(slots.moment), stop="end"), times=1)
         return
-    again = slots.one("times", "turns")
+    again = slots.one("times", "turns", "")
+    slots.repeated |= set() if again is None else {again.said}
     lasting = slots.moment.lasting
     if (
         lasting is not None
@@ -295,8 +297,8 @@ def _return(slots: Slots) -> Iterator[Wanted]:
 
 
 def _begin(slots: Slots) -> Iterator[Wanted]:
-    slots.used |= {goal.name for goal in slots.goals if slots.happening is None}
-    moment, by = plainly(slots.moment), slots.one("s")
+    slots.used |= {goal.name for goal in slots.goals if slots.happening is None or _LEAVES_IT.search(slots.rest)}
+    moment, by = plainly(slots.moment), slots.one("s", "")
     if by is not None and isinstance(moment.start, float) and slots.happening is None:
         slots.repeated.add(by.said)  # "0.4 s earlier: it begins at 3.1"
     elif by is not None:
@@ -308,7 +310,7 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
     if not slots.told:
         return
     if moment.stop is not None and moment.start is None and slots.happening is None and moment.lasting is None:
-        if not slots.tell(_LATER) and not any(tag == "to" for tag, _, _ in slots.spans):
+        if not slots.tell(_LATER) and not any(tag in ("from", "to") for tag, _, _ in slots.spans):
             return
         moment = replace(moment, start=moment.stop, stop=None)  # "it waits until 2 s"
     if is_opened(_noun(slots)) and _SHUTS.search(slots.rest) and isinstance(slots.moment.start, float):
@@ -332,6 +334,7 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
     yield paced(slots, "begin", moment)
 
 
+_LEAVES_IT = re.compile(r"\b(?:leav\w+|left|quit\w*|depart\w*|go of|leave of|off|from) \|")
 _BEFORE = re.compile(r"\b(?:before|until|till)\b")
 _ENDED_BY: dict[Part, Part] = {"until": "from", "until_end": "after"}
 

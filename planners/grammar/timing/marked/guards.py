@@ -114,7 +114,7 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"invisible|hides?|hidden|disappears?|vanish|vanishes|gone": "hide remove",
     r"(?<!the )shows?|shown|reveals?|visible": "hide recolor repeat",
     r"shut|shuts|close|closes": "close stay still open begin order together speed reverse",
-    r"(?:turn|turned|switch|switched) (?:\| )?off": "halt",
+    r"(?:turn|turned|switch|switched) (?:\| )?off": "halt longer",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
 }
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
@@ -175,6 +175,8 @@ def says_more(kind: str, slots: Slots) -> bool:
         left = _MADE_QUICK.sub(" ", left)
     if kind == "pause":
         left = _ROLLS_ON.sub(" ", left)
+    if kind == "begin" and any(own.unit in ("s", "") for own in slots.amounts):
+        left = _BACK_IN.sub(" ", left)  # "its departure back by a second"
     if kind == "begin":
         left = _BEFORE_IT.sub(" ", HELD_BACK.sub(" ", left))
         if is_opened(slots.things[0]):
@@ -186,8 +188,16 @@ def says_more(kind: str, slots: Slots) -> bool:
     if _WISHED.search(f"{slots.asked} {idle}") or _TWO_ORDERS.search(left):
         return True
     if kind not in _NEGATED and _NOT.search(_DISLIKES.sub(" ", _TOO_FAST.sub(" ", _NO_MORE.sub(" ", left)))):
-        waits = _LATER.search(left) is not None or isinstance(slots.moment.stop, float)
+        waits = _LATER.search(left) is not None or isinstance(slots.moment.stop, float) or _waits(slots)
         return kind != "begin" or not waits  # "not at once, it waits", "do not open it till 3 s"
     manner = _MANNER.search(left)
     verb = None if manner is None else manner["verb"]
     return verb is not None and verb not in AUXILIARIES and (_SOUNDS.match(verb) is not None or not is_any_word(verb))
+
+
+def _waits(slots: Slots) -> bool:
+    """Whether a time is told as that before which something is not to begin: "it must not go before 3 s"."""
+    return any(tag in ("from", "to") and _UNTIL_THEN.match(" ".join(slots.words[a:b])) for tag, a, b in slots.spans)
+
+
+_UNTIL_THEN = re.compile(r"^(?:and |only |just |right )*(?:not )?(?:until|till|til|before|prior to)\b")

@@ -197,6 +197,7 @@ class Slots:
                 found |= {at for at in range(start, stop) if any(abs(self._number(at) - now) < NEAR for now in facts)}
             if tag in _IDLE:
                 found |= {at for at in range(start, stop - 1) if tag == "off" and _counts(self.words[at + 1])}
+                found |= {at for at in range(start + 1, stop) if tag == "off" and self.words[at - 1] in _NUMBERED}
                 found |= {at + 1 for at in range(start, stop - 1) if tag == "keep" and self.words[at] == "the"}
         return found
 
@@ -422,6 +423,10 @@ def _counts(then: str) -> bool:
     return then.isalpha() and then not in _UNITS and then not in NUMBERS
 
 
+_NUMBERED = bag(
+    "requirement tc cue note p no number version scene shot reel bar chapter page line step rule item point class year "
+    "room grade level part day week take slide figure table question exercise - #"
+)
 _UNITS = bag(
     "s sec secs second seconds m cm mm meter meters metre metres degree degrees deg percent turn turns time times rpm "
     "and or to until till from at by in half"
