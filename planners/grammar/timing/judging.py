@@ -121,6 +121,13 @@ def _apart(start: float, stop: float) -> float:
     return stop - start
 
 
+def _turns_of(moves: Movement) -> tuple[float, ...]:
+    """How often something that turns does so: in all, in a second, and in a minute."""
+    turns = moves.degrees / 360
+    rate = turns / max(moves.stop - moves.start, 1e-6)
+    return (turns, rate, 60 * rate) if moves.turns else ()
+
+
 class Judge:
     """Judges the operations of one instruction.
 
@@ -205,7 +212,7 @@ class Judge:
             with suppress(Refusal, UserError, ValidationError):
                 found = self._ops(wanted)
                 if found and not self._loses(found, wording, held) and not self.is_still(found):
-                    return of_one_movement(" ".join(wording), found)
+                    return of_one_movement(held.meant, found)
         return None
 
     def _goes_without_time(self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]) -> bool:
@@ -237,7 +244,7 @@ class Judge:
             if one is not None
             for fact in (
                 one.start, one.stop, one.stop - one.start, one.end, *one.edges, *starmap(_apart, pairwise(one.edges)),
-                one.degrees, one.metres, 100 * one.metres,
+                one.degrees, one.metres, 100 * one.metres, *_turns_of(one),
             )
         )  # fmt: skip
 

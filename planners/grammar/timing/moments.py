@@ -63,12 +63,12 @@ _HEDGE = (
 )
 _NUMBER = rf"(?:{_DIGITS}|{_WORD})"
 _DURATION = (
-    rf"(?:{_NUMBER} and (?:a )?half {_UNIT}|{_NUMBER} {_UNIT} and (?:a )?(?:half|quarter)|(?:{_NUMBER} and )?(?:a "
-    rf")?half (?:a |of a )?{_UNIT}|"
-    rf"(?:three )?quarters? (?:of )?a {_UNIT}|(?:a |one )?(?:third|fifth|tenth) (?:of )?a {_UNIT}|"
+    rf"(?:{_NUMBER} and (?:a |three )?(?:half|quarters?) {_UNIT}|"
+    rf"{_NUMBER} {_UNIT} and (?:a |three )?(?:half|quarters?)|(?:{_NUMBER} and )?(?:a )?half (?:a |of a )?{_UNIT}|"
+    rf"three quarters (?:of )?a {_UNIT}|(?:a |one )?quarter (?:of )?(?:a |one )?{_UNIT}|"
+    rf"(?:a |one )?(?:third|fifth|tenth) (?:of )?a {_UNIT}|(?:a|one) (?:tenth|fifth) (?:of )?{_UNIT}|"
     rf"(?:{_ONES}) (?:thirds|quarters|fifths|tenths|hundredths) of (?:an? |one )?{_UNIT}|"
-    rf"a quarter (?:of )?a {_UNIT}|(?:{_NUMBER}) (?:full |whole "
-    rf")?{_UNIT}|half a {_UNIT})"
+    rf"{_NUMBER} (?:full |whole )?{_UNIT}|half a {_UNIT})"
 )
 DURATION = rf"(?:{_HEDGE}{_DURATION})"
 _MARK = r"(?: mark| point)?"
@@ -122,18 +122,18 @@ def _value(text: str) -> float | None:
     if (shares := _PARTS.match(text)) is not None:
         return NUMBERS[shares["count"]] / _SHARES[shares["share"]]
     half = 0.0
-    if re.search(r" and (?:a )?quarter\b", text):
-        half, text = 0.25, re.sub(r" and (?:a )?quarter\b", "", text)
+    if (quarters := re.search(r" and (?:an? )?(?P<three>three )?quarters?\b", text)) is not None:
+        half, text = 0.75 if quarters["three"] else 0.25, text.replace(quarters[0], "")
     elif re.search(r" and (?:a )?half\b", text):
         half, text = 0.5, re.sub(r" and (?:a )?half\b(?: (?:a|of a))?", "", text)
     if re.match(r"^(?:a )?half\b", text):
         return 0.5 + half
     for word, part in (("third", 1 / 3), ("fifth", 0.2), ("tenth", 0.1)):
-        if re.match(rf"^(?:a |one )?{word} (?:of )?a\b", text):
+        if re.match(rf"^(?:(?:a|one) {word}|{word} (?:of )?a)\b", text):
             return part
     if re.match(r"^three quarters", text):
         return 0.75
-    if re.match(r"^a quarter|^quarter", text):
+    if re.match(r"^(?:a |one )?quarter", text):
         return 0.25
     number = _UNITED.sub("", text).strip()
     if re.fullmatch(_DIGITS, number):

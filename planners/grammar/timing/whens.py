@@ -111,9 +111,10 @@ HELD_BACK = re.compile(
     r"\b(?:hold|held|keep|kept|push|move|shift)(?: (?:the|that|this|my|our)(?: [a-z]+){1,3}| it| \|)?(?: [a-z]+)? "
     r"back\b(?! in\b| to\b)"
 )
-_OPENS = re.compile(r"\b(?:open(?:s|ing)?|out)\b")
+_OPENS = re.compile(r"\b(?:open(?:s|ing)?|(?<!be drawn )(?<!being drawn )out|emerg\w+|extension)\b")
 _CLOSES = re.compile(
-    r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back(?: in)?|(?:go|goes|slides?|comes?|going|sliding) in)\b"
+    r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back(?: in)?|(?:go|goes|slides?|comes?|going|sliding) in|"
+    r"return|retreat|retraction|homecoming)\b"
 )
 _THEN_LATER = r"(?: (?!and\b|,|\.)\S+){0,6}? (?:earlier|sooner|later)\b"
 _OPENS_LATER = re.compile(rf"{_OPENS.pattern}{_THEN_LATER}")

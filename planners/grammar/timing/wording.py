@@ -63,7 +63,11 @@ _SYNONYMS = tuple(
         (r"(?P<word>until|while|when) ?, (?:and|but) only (?P=word) ?,?", r"\g<word>"),
     )
 )
-_MILLISECONDS = re.compile(r"(?<![\d.])(?P<n>\d{1,5}) ?(?:ms|msecs?|milliseconds?)\b", re.IGNORECASE)
+_MILLISECONDS = re.compile(
+    r"(?<![\d.])(?P<n>\d{1,5}) ?(?:(?P<unit>(?:ms|msecs?|milliseconds?)\b)|"
+    r"(?=(?:and|to|-|–) ?\d{1,5} ?(?:ms\b|millisec)))",
+    re.IGNORECASE,
+)
 _NO_NEED = re.compile(r"(?: ?,)? (?:and |there is )?no need to (?:wait|hurry|rush)\b[^,.;!]*", re.IGNORECASE)
 
 
@@ -73,7 +77,9 @@ def in_words(cleaned: str) -> str:
     cleaned = _DOTS.sub(". ", _CLOSE.sub("the end", cleaned))
     for pattern, plain in _SYNONYMS:
         cleaned = pattern.sub(plain, cleaned)
-    cleaned = _MILLISECONDS.sub(lambda m: f"{int(m['n']) / 1000:g} s", cleaned)
+    cleaned = _MILLISECONDS.sub(
+        lambda m: f"{int(m['n']) / 1000:g} s" if m["unit"] else f"{int(m['n']) / 1000:g}", cleaned
+    )
     stamped = _STAMP.sub(lambda m: f"{60 * int(m['minutes']) + int(m['seconds'])} s", cleaned)
     ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", stamped)
     return " ".join(w.text for w in split(ranged))

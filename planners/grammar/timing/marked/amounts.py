@@ -71,7 +71,8 @@ _GOES = re.compile(
 )
 _ALONE = re.compile(
     rf"^(?:(?:by|to|at|just|only|barely|through|about|around|like|say|some|exactly|not|more|than|a|mere|maybe|max|"
-    rf"maximum|up|down|no|further|wider|farther) )*(?P<n>\d+(?:\.\d+)?|(?:{_WORD})(?:[ -](?:{_WORD}))?)"
+    rf"maximum|up|down|no|further|wider|farther) )*"
+    rf"(?P<n>\d+(?:\.\d+)?|(?:{_WORD}) tenths|(?:{_WORD})(?:[ -](?:{_WORD}))?)"
     rf"(?: (?:max|only|or so|tops|at (?:the )?most|instead|and no more))?$"
 )
 _METRES = {"mm": 0.001, "cm": 0.01, "milli": 0.001, "centi": 0.01, "f": METRES["ft"], "inch": METRES["in"]}
@@ -149,4 +150,6 @@ def number(said: str) -> float | None:
     if said in parts:
         return parts[said]
     words = said.split()
+    if words and words[-1] == "tenths" and (whole := number(" ".join(words[:-1]))) is not None:
+        return whole / 10
     return float(sum(NUMBERS[word] for word in words)) if words and all(word in NUMBERS for word in words) else None

@@ -237,14 +237,24 @@ def _is_last(moment: Moment) -> bool:
 
 def _reverse(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    if slots.told:
+    slots.used |= {own.said for own in slots.amounts if own.unit in ("deg", "%")}  # "from 80 degrees to 0"
+    moves, moment, whose = slots.movement(slots.queries[0]), plainly(slots.moment), slots.queries[0]
+    if slots.happening is not None or (slots.told and (moves is None or moves.turns)):
         return
-    back = slots.goals or slots.tell(_TRAVELS)  # "the wrong way round, from the wall to the sofa"
+    back = slots.goals or slots.told or slots.tell(_TRAVELS)  # "the wrong way round, from the wall to the sofa"
     if not back and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
         yield now(slots, f"let {slots.whom} turn the other way round")
+        return
+    reverse = Wanted(pace(ALL_OF_IT if whose.text == "everything" else whose_of(slots), "reverse"), Moment(), None)
+    if (
+        moves is not None
+        and moment.told
+        and (moment.start, moment.stop) != (round(moves.start, 2), round(moves.stop, 2))
+    ):
+        yield replace(reverse, also=(paced(slots, "begin", replace(moment, taken=moment.lasting is not None)),))
     else:
-        whose = slots.queries[0]
-        yield Wanted(pace(ALL_OF_IT if whose.text == "everything" else whose_of(slots), "reverse"), Moment(), None)
+        slots.repeated |= set(moment.said)
+        yield reverse
 
 
 _GOES_ON = re.compile(r"\b(?:keep\w*|goes|going|go|carr\w+|runs?) (?:it |him |her |\| )?(?:going|on)\b")
@@ -282,10 +292,15 @@ def _repeat(slots: Slots) -> Iterator[Wanted]:
 
 
 def _return(slots: Slots) -> Iterator[Wanted]:
-    if slots.goals and not slots.told:
+    moves = slots.movement(slots.queries[0])
+    if slots.goals and not slots.told and moves is None:
         return  # "roll to the wall and come back"
     slots.pass_goals()
     moment = plainly(slots.moment)
+    ends = moment.lasting is not None or moment.stop is not None
+    if moves is not None and not ends and slots.one("times", "%") and (factor := _factor(slots)) is not None:
+        moment = replace(moment, lasting=round((moves.stop - moves.start) / factor, 4), taken=True)
+        slots.repeated |= {own.said for own in slots.amounts}  # "back at double speed"
     if moment.always and any(tag == "to" for tag, _, _ in slots.spans):
         moment = replace(moment, stop="end", always=False)  # it is back by the end
     elif moment.start == "end":
@@ -302,7 +317,10 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
     if by is not None and isinstance(moment.start, float) and slots.happening is None:
         slots.repeated.add(by.said)  # "0.4 s earlier: it begins at 3.1"
     elif by is not None:
-        if (sign := _sign(slots)) is not None and slots.happening is None:
+        sign = _sign(slots)
+        if sign is None and slots.tell(_BETWEEN) and whose_of(slots).pick == "all" and slots.happening is None:
+            yield Wanted(ordered(whose_of(slots), "kept", gap=by.value), Moment(), None)
+        elif sign is not None and slots.happening is None:
             yield Wanted(pace(whose_of(slots), "later", seconds=sign * by.value), Moment(), None)
         elif slots.happening is not None and moment.empty and slots.happening.during.part != "until":
             yield paced(slots, "begin", replace(moment, start=by.value))
@@ -334,6 +352,7 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
     yield paced(slots, "begin", moment)
 
 
+_BETWEEN = re.compile(r"\b(?:between|apart|intervals?|stagger\w*|spaced?)\b")
 _LEAVES_IT = re.compile(r"\b(?:leav\w+|left|quit\w*|depart\w*|go of|leave of|off|from) \|")
 _BEFORE = re.compile(r"\b(?:before|until|till)\b")
 _ENDED_BY: dict[Part, Part] = {"until": "from", "until_end": "after"}
@@ -408,7 +427,9 @@ def _duration(slots: Slots) -> Iterator[Wanted]:
         return
     slots.pass_goals()
     moment = plainly(slots.moment)
-    if moment.lasting is not None and not moment.taken and any(said.startswith("for ") for said in moment.said):
+    moves = slots.movement(slots.queries[0])
+    goes_on = moment.lasting is not None and not moment.taken and any(said.startswith("for ") for said in moment.said)
+    if goes_on and (moves is None or moves.turns):
         return  # how long it goes on, or how long it takes
     if moment.lasting is None and moment.stop is None and (seconds := slots.one("s")) is not None:
         if slots.tell(re.compile(r"\b(?:longer|shorter|more|less|another|extra|additional|sooner|earlier|later)\b")):
@@ -539,7 +560,7 @@ def _longer(slots: Slots) -> Iterator[Wanted]:
     if slots.moment.lasting is None and not slots.amounts:
         yield Wanted(pace(whose_of(slots), "go_on"), Moment(stop=stop), None)
         return
-    moves, more = slots.movement(slots.queries[0]), slots.one("s")
+    moves, more = slots.movement(slots.queries[0]), slots.one("s", "")
     seconds = slots.moment.lasting if more is None else more.value
     if moves is None or seconds is None:
         return  # only the scene tells when it stops now

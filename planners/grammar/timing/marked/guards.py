@@ -17,7 +17,7 @@ from .slots import Slots
 _GREETING = re.compile(r"^(?:(?:hi|hello|hey|hiya|yo|ok|okay|so|and|well|right|sorry|oh|ah|hm+)(?: there)?(?: ,)? )+")
 _JOINED = re.compile(r"^(?:[,.;:!] |and |then |but )+")
 _THERE_AND_BACK = re.compile(
-    r"\b(?:to|against|at|into) (?:\||(?:the|a) \w+) and "
+    r"\b(?:to|against|(?<!begin )(?<!start )(?<!begins )(?<!starts )at|into) (?:\||(?:the|a) \w+) and "
     r"(?!(?:be |is |arrive|get|reach|stop|stay|done|there|end|finish))"
 )
 _THERE_IS = re.compile(
@@ -36,7 +36,8 @@ _OTHER_EDITS = re.compile(
 )
 _ADDED = re.compile(r"\b(?:add|insert)\b")  # "insert a pause", "add a half turn at the end"
 _FOR_ANOTHER = re.compile(r"\b(?:swap|exchange|trade|replace)\b")  # one colour for another
-_ADDABLE = ("pause", "spin", "repeat", "halt")
+_ADDABLE = ("pause", "spin", "repeat", "halt", "longer", "begin", "duration", "amount", "open", "close", "return")
+_EXCHANGED = ("order", "reverse")  # kinds that words for another edit say: "swap start and finish"
 _PLACES_IT = re.compile(
     r"\b(?:place|put|lay|hang|install|set)s? (?!\| ?(?:away|aside|out)\b)(?!.*\b(?:away|aside|out)\b)"
 )
@@ -47,7 +48,7 @@ _KEEPS_IT = re.compile(
 _LIT = re.compile(r"\b(?:off|out|on)$")
 _A_LIGHT = re.compile(r"\b(?:lamps?|lights?|lanterns?|candles?|bulbs?)$")
 _EXCEPT = re.compile(r"(?<!\bat )\b(?:everything|all|every|both|things?)\b.*\b(?:but|except|apart from)\b")
-_IN_PIECES = re.compile(r"\b(?:apart(?! from)|to pieces|in two)\b")
+_IN_PIECES = re.compile(r"\b(?:apart(?! from)|to pieces|in two(?! \w))\b")
 _REMOVALS = re.compile(r"\b(?:delete|remove|erase|get rid)\b")
 _A_STRETCH = re.compile(r"\b(?:first|second|last|latter|other|final) (?:half|third|quarter|part|stretch|leg|bit)\b")
 
@@ -92,7 +93,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     shades = sum(tag == "as" for tag, _, _ in slots.spans)
     if kind == "recolor" and shades > 1:
         asked = _FOR_ANOTHER.sub("make", asked)
-    if _OTHER_EDITS.search(_ADDED.sub("make", asked) if kind in _ADDABLE else asked) and kind != "order":
+    if _OTHER_EDITS.search(_ADDED.sub("make", asked) if kind in _ADDABLE else asked) and kind not in _EXCHANGED:
         return True
     if kind in ("reverse", "return") and _THERE_AND_BACK.search(slots.rest):
         return True  # "roll to the wall and come back"
@@ -112,7 +113,8 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"back": "return reverse close stay still hide order repeat pause",
     r"again": "repeat return close open stay still halt hide recolor reverse pause",
     r"invisible|hides?|hidden|disappears?|vanish|vanishes|gone": "hide remove",
-    r"(?<!the )shows?|shown|reveals?|visible": "hide recolor repeat",
+    r"(?<!the )shows?|shown": "hide recolor repeat reverse duration speed return",
+    r"reveals?|visible": "hide recolor repeat",
     r"shut|shuts|close|closes": "close stay still open begin order together speed reverse",
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt longer",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
@@ -128,6 +130,9 @@ _BACK_TO = re.compile(r"\bback(?= (?:to|by|on|in|at|near|against|next to|beside)
 _SAME_SPEED = re.compile(  # "at unchanged speed"
     r"\b(?:at|with) (?:an? |the |its )?(?:same|unchanged|unaltered|usual|normal|present|current|original) "
     r"(?:speed|pace|rate|velocity|tempo)\b|\b(?:same|unchanged|unaltered) (?:speed|pace|rate|velocity|tempo)\b"
+)
+_AT_ONCE = re.compile(
+    r"\bwithout (?:any |a |further )?(?:delay|pause|break|stop|stopping|hesitation|ado|wait|waiting)\b"
 )
 _MADE_QUICK = re.compile(r"\b(?:make (?:it|that) )?(?:quick|quickly|slow|slowly|fast)\b")
 _ROLLS_ON = re.compile(r"\bthen (?:\w+ ){0,2}(?:on|further|farther|onwards?)\b")
@@ -170,7 +175,9 @@ def says_more(kind: str, slots: Slots) -> bool:
         left = _BACK_TO.sub(" ", left)
     if kind in ("open", "close") and isinstance(slots.moment.start, float):
         left = _BY_HOW_MUCH.sub(" ", left)  # "a bit sooner, at 2 s"
-    left = _SAME_SPEED.sub(" ", left)
+    left = _AT_ONCE.sub(" ", _SAME_SPEED.sub(" ", left))
+    if kind in ("duration", "speed") and is_opened(slots.things[0]):
+        left = _BACK_IN.sub(" ", left)  # its way back in
     if kind in ("open", "close") and slots.moment.lasting is not None:
         left = _MADE_QUICK.sub(" ", left)
     if kind == "pause":

@@ -70,6 +70,7 @@ _LAST = re.compile(
 )
 _MIDDLE = re.compile(r"\b(?:middle|in between|between|centre|center)\b")
 Rank = int | Literal["last", "middle"]
+_RANKS: tuple[tuple[Rank, re.Pattern[str]], ...] = ((0, _FIRST), ("last", _LAST), ("middle", _MIDDLE))
 
 
 @dataclass(frozen=True)
@@ -264,10 +265,7 @@ def _of_rank(piece: str) -> Rank | None:
             return PLACES[words[at]]
     if any(pattern.search(piece) for pattern in (_SOONER, _LATER, _BEFORE_IT, _AFTER_IT)):
         return None
-    for rank, pattern in ((0, _FIRST), ("last", _LAST), ("middle", _MIDDLE)):
-        if pattern.search(piece):
-            return rank
-    return None
+    return next((rank for rank, pattern in _RANKS if pattern.search(piece)), None)
 
 
 def _relate(gaps: Sequence[str], tokens: Sequence[int], told: _Told) -> bool:

@@ -148,7 +148,11 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ("from", r"^(?:from|after|at) (?:the )?(?:off|get go|word go|very start)$", "from the start"),
     (
         "to",
-        r"^(?:when|as|with|until|till|by) the (?:(?:very )?end|final frame|closing second|last frame)$",
+        r"^(?:right |up |all the way |together |only )*(?:when|as|with|until|till|by|to|before|past)?(?: the)?"
+        rf"(?: very)? (?:(?:{_FILM} )?(?:end(?:s|ing)?|out point)|final frame|closing second|last frame|"
+        r"curtain(?: falls?| call)?|"
+        rf"credits(?: roll)?|tail(?: of (?:the |this )?{_FILM})?|picture goes (?:black|dark)|clock runs (?:down|out)|"
+        rf"screen goes (?:black|dark)|{_FILM} (?:ends|is over|finishes|stops)|fade(?: ?out)?)$",
         _TO_THE_END,
     ),
 )

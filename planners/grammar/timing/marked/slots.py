@@ -37,6 +37,8 @@ _EVENTS = (
 _OF_EVENT = re.compile(rf"^(?:the |its |his |her |a )?(?:\w+ )?{_EVENTS} (?:of|by|for) ")
 _WHOLE_OF = re.compile(r"(?<=\w) (?:leaf|blades?|front|panel)$")  # a part of it that moves as it does
 _PARTS = {"leaf": "door", "blade": "fan", "rotor": "fan", "propeller": "fan"}  # what moves as the whole does
+_BESIDE_IT = re.compile(r" (?:of|over|above|on|in|at|by|near|beside|behind|under|from) ")
+_IN_A_ROOM = re.compile(r"\b(?:dining|living|sitting|drawing|guest|bath)(?: room|room) (?=\w)")  # where it hangs
 _ITS_EVENT = re.compile(rf"(?: 's?)?(?: (?:whole|entire|full|complete|outward|return|own|\w+ward))? {_EVENTS}$")
 _STATE = re.compile(r"\b(?:open|opened|closed|shut|opening|closing) (?=[a-z])")  # before the name of what opens
 _JUST_EVENT = re.compile(rf"^(?:the |its |his |her |their |this |that |whole |entire |\w+ing )*{_EVENTS}$")
@@ -457,10 +459,11 @@ def _things(said: Iterator[str], thing: Thing, grouped: bool = False) -> tuple[t
         if _JUST_EVENT.match(name):
             continue
         bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
-        bare = re.sub(r" 's?$", "", bare)
+        bare = _IN_A_ROOM.sub("", re.sub(r" 's?$", "", bare))
         bare = _STATE.sub("", with_moving(bare)) if is_opened(bare) else with_moving(bare)
-        if (part := singular(bare.split()[-1])) in _PARTS:
-            bare = f"the {_PARTS[part]}" if len(bare.split()) < 3 else _WHOLE_OF.sub("", bare)
+        head = _BESIDE_IT.split(bare)[0].split()
+        if head and (part := singular(head[-1])) in _PARTS:
+            bare = f"the {_PARTS[part]}" if len(head) < 3 else _WHOLE_OF.sub("", bare)
         query = ALL_MOVING if grouped and _GROUP.match(bare) else thing(bare)
         if query is None and (shorter := _RANKS.sub("", bare)) != bare:
             bare = shorter
