@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from itertools import pairwise, starmap
@@ -230,9 +231,11 @@ class Judge:
     def _loses(self, ops: Sequence[Fields], wording: Sequence[str], held: Slots) -> bool:
         """Whether operations leave out what an instruction tells, and does not tell twice or of how it is now: only
         where they seem to, the scene is asked how that is."""
-        return leaves_out(wording, ops, spans=held.spans) and leaves_out(
-            wording, ops, held.said_twice(self._facts(held)), held.spans
-        )
+        if not leaves_out(wording, ops, spans=held.spans):
+            return False
+        moves = self._moves_how(ALL_MOVING)
+        end = math.inf if moves is None else moves.end
+        return leaves_out(wording, ops, held.said_twice(self._facts(held), end), held.spans)
 
     def _facts(self, held: Slots) -> tuple[float, ...]:
         """The numbers that tell how the things of an instruction move now, also those that it says stay as they are:

@@ -50,12 +50,20 @@ _FILM_BEGINS = re.compile(
 _CLOSE = re.compile(r"(?<=\b(?:to|ll|il|at) )the (?:close|finale)\b", re.IGNORECASE)
 _DOTS = re.compile(r"(?<=[a-z])\.\.+ ")
 _NUMBER = rf"(?:\d[\d.]*|half|{'|'.join(NUMBERS)})"
+_DIGITS = r"\d+(?:\.\d+)?"
 _SYNONYMS = tuple(
     (re.compile(rf"\b{said}\b", re.IGNORECASE), plain)
     for said, plain in (
         (r"(?:over|in) the course of the(?= (?:last|first))", "in the"),
         (r"the initial(?= [a-z0-9.]+ sec)", "the first"),
         (r"thereafter", "afterwards"),
+        (
+            rf"(?:for )?(?P<a>{_DIGITS}) ?s? ?(?:≤|<=|<) ?t ?(?:≤|<=|<) ?(?P<b>{_DIGITS}) ?(?:s\b)?",
+            r"from \g<a> s to \g<b> s",
+        ),
+        (rf"(?:for )?(?:all )?t ?(?:≥|>=|>) ?(?P<a>{_DIGITS}) ?(?:s\b)?", r"from \g<a> s on"),
+        (rf"(?:for )?(?:all )?t ?(?:≤|<=|<) ?(?P<a>{_DIGITS}) ?(?:s\b)?", r"until \g<a> s"),
+        (rf"(?P<a>{_DIGITS}(?: ?s)?) ?(?:…|→|\.\.\.?) ?(?:t ?= ?)?(?={_DIGITS})", r"\g<a> to "),
         (r"in (?:lieu|place) of", "instead of"),
         (r"(?:all|all along|all through) the (?=film|clip|video|movie)", "for the whole "),
         (rf"(?P<lead>at|by|for|in|to|from|after|up|until|around) like (?={_NUMBER}\b)", r"\g<lead> "),
@@ -68,6 +76,7 @@ _MILLISECONDS = re.compile(
     r"(?=(?:and|to|-|–) ?\d{1,5} ?(?:ms\b|millisec)))",
     re.IGNORECASE,
 )
+_WITHIN = re.compile(r" ?(?:±|\+/-) ?\d+(?:\.\d+)? ?(?:s|secs?|cm|mm|m|deg|degrees?|%|°)?(?![\w])", re.IGNORECASE)
 _NO_NEED = re.compile(r"(?: ?,)? (?:and |there is )?no need to (?:wait|hurry|rush)\b[^,.;!]*", re.IGNORECASE)
 
 
@@ -75,6 +84,7 @@ def in_words(cleaned: str) -> str:
     """The words and marks of an instruction, with spaces between."""
     cleaned = _FILM_ENDS.sub(r"\g<1> the end", _FILM_BEGINS.sub("at the start", _NO_NEED.sub("", cleaned)))
     cleaned = _DOTS.sub(". ", _CLOSE.sub("the end", cleaned))
+    cleaned = _WITHIN.sub("", cleaned)
     for pattern, plain in _SYNONYMS:
         cleaned = pattern.sub(plain, cleaned)
     cleaned = _MILLISECONDS.sub(

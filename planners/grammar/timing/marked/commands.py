@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 from .....gaussians import late_re as re
 from .....tools.when import During, Part
@@ -474,6 +475,9 @@ def _pause(slots: Slots) -> Iterator[Wanted]:
     if moment.lasting is None and (seconds := slots.one("s")) is not None:
         moment = replace(moment, lasting=seconds.value)
     begun = moment.start is not None or slots.happening is not None
+    if not begun and (moment.lasting is None) != (moment.stop is None) and (there := _there(slots)) is not None:
+        yield Wanted(replace(pace(whose_of(slots), "stop"), during=there), moment, None)
+        return
     if not begun and (moment.lasting is None) != (moment.stop is None):
         if (where := far_along(slots)) is not None:
             yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), moment, None)
@@ -509,24 +513,64 @@ def _halt(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     moment = plainly(slots.moment)
     if not is_opened(_noun(slots)) and not slots.told and (length := slots.one("m")) is not None:
+        yield from goes_as_far(slots) if _SHORT_OF.search(slots.said) else ()
         yield paced(slots, "part", Moment(), distance={"value": length.value})
         return
     if moment.lasting is not None:
         return
+    if (sooner := _stops_sooner(slots)) is not None:
+        yield sooner
+        return
     ended = moment.start is None and isinstance(moment.stop, float) and slots.happening is None
-    if ended:  # "it only runs until 2 s"
-        moment = replace(moment, start=moment.stop, stop=None)
-    if slots.amounts and slots.happening is None and moment.start is None and not ended:
-        if (where := far_along(slots)) is not None:  # "it jams at 40 degrees till the film ends"
-            yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), Moment(), None)
-    elif slots.told and (moment.start is not None or slots.happening is not None):
+    if ended and not slots.amounts and (moves := slots.movement(slots.queries[0])) and moment.stop < moves.stop:
+        moment = replace(moment, start=moment.stop, stop=None)  # "it only runs until 2 s"
+    begins = moment.start is not None or slots.happening is not None
+    if begins and moment.start != "end":
+        far = {own.said for own in slots.amounts if own.unit in ("times", "%", "deg", "m")}
+        slots.used |= far  # "half out, from 1.5 s on"
+        slots.repeated |= far
         yield paced(slots, "stop", replace(moment, stop=None) if moment.stop == "end" else moment)
-    elif (where := far_along(slots)) is not None:
+        return
+    where = _there(slots) or far_along(slots)  # "it jams at 40 degrees till the film ends"
+    if where is not None:
         yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), Moment(), None)
+    elif ended:
+        yield paced(slots, "stop", replace(moment, start=moment.stop, stop=None))
+
+
+_SHORT_OF = re.compile(r"\b(?:short|before|away)\b")
+
+
+def _there(slots: Slots) -> dict[str, Any] | None:
+    """The time from when something is at the other thing that is named, as fields: "it stops on the rug"; None if none
+    is named, or several."""
+    goals = [goal for goal in slots.goals if goal.way != "from" and not goal.query.last]
+    if len(goals) != 1 or is_opened(_noun(slots)) or slots.amounts or slots.tell(_HALFWAY):
+        return None
+    if goals[0].query.text in _TURNING_POINTS:
+        return {"state": "turning", "part": "from"}
+    return {"state": "closest", "anchors": (goals[0].query,), "part": "from"}
+
+
+_HALFWAY = re.compile(r"\b(?:half ?way|mid ?way|half)\b")
+_TURNING_POINTS = ("corner", "turn", "bend", "turning point")
+
+
+def _stops_sooner(slots: Slots) -> Wanted | None:
+    """What turns and stops so many seconds sooner than now; None for others."""
+    moves = slots.movement(slots.queries[0])
+    if moves is None or not moves.turns or slots.told or not slots.tell(_EARLIER):
+        return None
+    by = slots.one("s", "")
+    if by is None or moves.stop - by.value <= moves.start:
+        return None
+    slots.repeated.add(by.said)
+    return paced(slots, "stop", Moment(start=round(moves.stop - by.value, 4)))
 
 
 def _still(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
+    slots.used |= {own.said for own in slots.amounts if own.value == 0}  # "at 0 m/s"
     others = slots.happening is not None and _AS_OTHERS.search(slots.happening.said) is not None
     if not slots.told or slots.moment.always or others:
         yield Wanted(pace(whose_of(slots), "stop"), Moment(), None)
@@ -539,8 +583,10 @@ _AS_OTHERS = re.compile(r"\b(?:while|as|when) (?:the |all the |both )?(?:others?
 
 def _stay(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
-    if is_opened(_noun(slots)) and slots.moment.start != "end":
+    if is_opened(_noun(slots)):
         moves, moment = slots.movement(slots.queries[0]), slots.moment
+        slots.used |= {own.said for own in slots.amounts}  # "it stays at its 30 cm"
+        slots.repeated |= slots.used
         if isinstance(moment.start, float) and slots.happening is None:
             yield paced(slots, "stop", Moment(start=moment.start))
             return

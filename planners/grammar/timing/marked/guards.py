@@ -88,12 +88,17 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
         return True  # "turn the lamp off" stops no motion
     if _EXCEPT.search(f"{asked} {idle}") or _IN_PIECES.search(f"{asked} {idle}"):
         return True  # "everything but the fan", "take it apart"
-    if (_PROHIBITED if kind in STATIC else _REMOVALS).search(asked) or _UNWANTED.search(f"{idle} {asked}"):
+    cancels = kind in ("stay", "still", "halt")  # "cancel its way back"
+    if (_PROHIBITED if kind in STATIC else _REMOVALS).search(asked) and not cancels:
+        return True
+    if _UNWANTED.search(f"{idle} {asked}"):
         return True
     shades = sum(tag == "as" for tag, _, _ in slots.spans)
     if kind == "recolor" and shades > 1:
         asked = _FOR_ANOTHER.sub("make", asked)
-    if _OTHER_EDITS.search(_ADDED.sub("make", asked) if kind in _ADDABLE else asked) and kind not in _EXCHANGED:
+    if _OTHER_EDITS.search(_ADDED.sub("make", asked) if kind in _ADDABLE else asked) and not (
+        cancels or kind in _EXCHANGED
+    ):
         return True
     if kind in ("reverse", "return") and _THERE_AND_BACK.search(slots.rest):
         return True  # "roll to the wall and come back"
@@ -108,7 +113,7 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"wide|wider": "amount open stay duration begin reverse",
     r"far(?! (?:too|better|nicer|more|less|from|prettier|cooler|slower|faster|quicker|longer|shorter|earlier|later))|"
     r"farther|further": "amount",
-    r"earlier|sooner|later": "begin open close order longer duration",
+    r"earlier|sooner|later": "begin open close order longer duration halt",
     r"backwards?|reverse|reversed": "reverse return order",
     r"back": "return reverse close stay still hide order repeat pause",
     r"again": "repeat return close open stay still halt hide recolor reverse pause",
@@ -116,7 +121,7 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"(?<!the )shows?|shown": "hide recolor repeat reverse duration speed return",
     r"reveals?|visible": "hide recolor repeat",
     r"shut|shuts|close|closes": "close stay still open begin order together speed reverse",
-    r"(?:turn|turned|switch|switched) (?:\| )?off": "halt longer",
+    r"(?:turn|turned|switch|switched) (?:\| )?off": "halt longer still",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
 }
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
@@ -146,7 +151,11 @@ _BEFORE_IT = re.compile(  # "it waits until 2 s before it sets off"
 )
 _NEGATED = ("hide", "remove", "still", "stay", "halt", "pause", "longer", "amount")  # kinds that say what is not to be
 _NOT = re.compile(r"\b(?:not|no|never|without|invisible|nobody|nothing)\b")
-_NO_MORE = re.compile(r"\b(?:no|not|nothing) (?:more|further|farther|wider)(?: than (?:that|this))?\b")
+_NO_MORE = re.compile(
+    r"\b(?:no|not|nothing|never)\b(?: (?!then\b|and\b|but\b)\w+){0,3} (?:more|further|farther|wider|again)"
+    r"(?: than (?:that|this))?\b"
+)
+_HALF_OF_IT = re.compile(r"\b(?:first|second|last|latter|other) half of (?=\||the|its|his|her)")
 _DISLIKES = re.compile(r"\b(?:do|does) not (?:really |much |quite )?(?:like|love|care for|fancy|enjoy)\b")
 _TOO_FAST = re.compile(r"\b(?:not so|not as|not that) (?:fast|quick|quickly|hasty|wild|rushed|speedy|speed|slow)\b")
 _LATER = re.compile(r"\b(?:plus|later|delay|delayed|late|postpone|hold back|waits?|longer|behind)\b")
@@ -158,7 +167,7 @@ _TWO_ORDERS = re.compile(  # "open it, and once it is open paint it red"
     r"^(?:open|close|shut|push|pull|move|slide|roll|lift|spin|turn|stop|start|freeze|hide|remove|delete) \|.*"
     r"(?:,|\band\b|\bthen\b) ?(?:paint|make|turn|colou?r|hide|show|spin|move|stop|open|close) (?:it|him|her|them|\|)"
 )
-_SOUNDS = re.compile(r"(?:creak|squeak|groan|bang|slam|rattl|whine)")  # more than that it opens
+_SOUNDS = re.compile(r"(?:creak|squeak|groan|rattl|whine)")  # more than that it opens
 _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
 
 
@@ -188,7 +197,8 @@ def says_more(kind: str, slots: Slots) -> bool:
         left = _BEFORE_IT.sub(" ", HELD_BACK.sub(" ", left))
         if is_opened(slots.things[0]):
             left = _BACK_IN.sub(" ", left)  # the beginning of its closing
-    if kind in ("halt", "stay", "amount"):
+    if kind in ("halt", "stay", "still", "amount"):
+        left = _HALF_OF_IT.sub(" ", left)
         left = _AS_IT_DOES.sub(" ", _NO_MORE.sub(" ", left))
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY):
         return True
@@ -198,7 +208,7 @@ def says_more(kind: str, slots: Slots) -> bool:
         waits = _LATER.search(left) is not None or isinstance(slots.moment.stop, float) or _waits(slots)
         return kind != "begin" or not waits  # "not at once, it waits", "do not open it till 3 s"
     manner = _MANNER.search(left)
-    verb = None if manner is None else manner["verb"]
+    verb = None if manner is None or kind not in ("open", "close") else manner["verb"]
     return verb is not None and verb not in AUXILIARIES and (_SOUNDS.match(verb) is not None or not is_any_word(verb))
 
 

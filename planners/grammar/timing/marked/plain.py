@@ -49,6 +49,12 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ("for", rf"^of (?={_SECONDS})", ""),
     ("for", r" 's$", ""),
     ("from", rf"^in (?={_SECONDS}$)", "at "),
+    (
+        "in for to",
+        rf"^(?:for |in )?(?:as|so) long as (?:the |this )?(?:{_FILM}|picture) "
+        r"(?:lasts|runs|goes on|plays|is on|is running)$",
+        "the whole time",
+    ),
     ("in", r"^long as\b", "as long as"),
     ("in", r"^in (?=(?:along|together|step|sync|tandem|time|unison) )", ""),
     ("in", r"^(?:just |only )+(?=for|during|while|in|on)", ""),
@@ -109,8 +115,9 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ("from", r"^on (?:its|his|her|the) way(?: [a-z]+)?$", "when it is halfway"),
     (
         "in to",
-        r"^(?:for|during|through(?:out)?|(?:until|to) the end of) the (?:whole )?"
-        rf"(?:rest|remainder|remaining time|last bit)(?: of (?:the|this) {_FILM})?$",
+        r"^(?:(?:for|in|over|during|through(?:out)?|(?:until|to) the end of) )?(?:all )?the (?:whole )?"
+        r"(?:rest|remainder|remaining (?:time|frames|seconds)|last bit|time that is left)"
+        rf"(?: of (?:the|this|it) ?(?:{_FILM})?)?$",
         _TO_THE_END,
     ),
     (

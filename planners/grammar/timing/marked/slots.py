@@ -172,13 +172,15 @@ class Slots:
         named = map(self.thing, (*names_in(self.idle, self.thing), *shades))
         return tuple(query for query in named if query is not None and not query.last)
 
-    def said_twice(self, facts: Sequence[float]) -> set[int]:
+    def said_twice(self, facts: Sequence[float], end: float = math.inf) -> set[int]:
         """Where numbers stand that say nothing new: those of amounts that a time tells, too, and in words about what
         stays or is not wanted those that are how it is now.
 
         Args:
             facts: seconds of how it is now.
+            end: seconds of the end of the scene: what goes on until then may be told in numbers.
         """
+        lasts = isinstance(self.moment.stop, float) and abs(self.moment.stop - end) < NEAR
         marked = {at for _, start, stop in self.spans for at in range(start, stop)}
         found = {at for at, word in enumerate(self.words) if word in PLACES and at not in marked}  # "1. blue, 2. red"
         for tag, start, stop in self.spans:
@@ -189,6 +191,8 @@ class Slots:
                 found |= set(range(start, stop))
             if tag == "keep" and not facts:
                 found |= set(range(start, stop))
+            if tag in TIMES and lasts:
+                found |= {at for at in range(start, stop) if abs(self._number(at) - end) < NEAR}
             if tag in TIMES and _ITS_TURN.search(said):
                 found |= {
                     at for at in range(start, stop - 1) if self.words[at + 1] in ("degree", "degrees", "deg", "°")
@@ -285,7 +289,9 @@ def slots(
     if any(_EVERYTHING.search(text(span)) for span in named) or _is_divided(words, named, thing, kind):
         return None
     goals = tuple(_goals(words, spans, text, thing))
-    if kind not in (*LOOKS, "order") and any(goal.query.last and not _is_own(goal.name, kind) for goal in goals):
+    if kind not in (*LOOKS, "order", "still", "stay") and any(
+        goal.query.last and not _is_own(goal.name, kind) for goal in goals
+    ):
         return None
     names, queries = _things(map(text, named), thing, kind in COURSES and moves(ALL_MOVING))
     painted = None if names else _painted(map(text, (span for span in spans if span[0] == "as")), thing)
@@ -318,7 +324,7 @@ def slots(
     numbers = any(
         _is_number(word, then)
         for word, then in pairwise([*left, ""])
-        if (kind, word) != ("still", "zero") and not (kind == "order" and word in PLACES)
+        if not (kind in _AT_REST and word in ("zero", "0")) and not (kind == "order" and word in PLACES)
     )
     if len(colors) > (kind == "recolor") or numbers:
         return None
@@ -381,7 +387,8 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
 
 
 _IN_ORDER = bag("first then next last finally lastly followed")
-_JOINTS = bag("and , or nor neither plus & both the as well with along")
+_AT_REST = ("still", "halt", "pause", "stay")  # kinds that a speed of zero tells
+_JOINTS = bag("and , or nor neither plus + / & both the as well with along")
 _AGAIN = bag("lose remove delete hide take get rid of away out too also then drop bin scrap ditch to see")  # of a look
 _BEHIND_NAMES = bag(
     "on in at under beside behind below above from near by to next of with and , ' 's that which who there here over "

@@ -29,7 +29,13 @@ _KEEPING = re.compile(
     r"(?!(?:time|moment|instant|second|frame) (?:as|that|when)\b)"
 )
 _PLAINER = (  # times in plainer words
-    (re.compile(r"^(?:for |during |in )?(?:just |exactly |precisely |only )*(?=(?:as|so) long as\b)"), ""),
+    (
+        re.compile(
+            r"^(?:for |during |in )?(?:just |exactly |precisely |only )*(?=(?:as|so) long as\b(?! (?:the |this )?"
+            r"(?:film|clip|video|movie|scene|shot|picture)\b))"
+        ),
+        "",
+    ),
     (re.compile(r"\b(?:a|one) second (?=has|is|have)"), "1 seconds "),
     (
         re.compile(
