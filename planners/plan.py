@@ -199,6 +199,10 @@ class Observation(Protocol):
         """How what a query names moves; None if it does not, or if that cannot be told."""
         ...
 
+    def has(self, query: Query) -> bool:
+        """Whether a scene with motion surely has what a query names; no of others, where that is not asked."""
+        ...
+
     def lacks(self, query: Query) -> bool:
         """Whether a scene with motion has nothing that a query names; no of others, where that is not asked."""
         ...

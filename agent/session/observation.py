@@ -114,6 +114,10 @@ class GraphObservation:
         """None: a written graph does not tell how something moves."""
         return None
 
+    def has(self, query: Query) -> bool:
+        """No: it is not asked of a written graph, which has no motion."""
+        return False
+
     def lacks(self, query: Query) -> bool:
         """No: it is not asked of a written graph, which has no motion."""
         return False

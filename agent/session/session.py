@@ -302,6 +302,12 @@ class Session:
         found = self._in_motion(query, moves=True)
         return None if found is None else movement_of(self.scene, found)
 
+    def has(self, query: Query) -> bool:
+        """Whether a scene with motion surely has what a query names; no of others. Embeds the scene if it is not
+        embedded yet."""
+        found = self._in_motion(query)
+        return found is not None and found.verdict == "found"
+
     def lacks(self, query: Query) -> bool:
         """Whether a scene with motion has nothing that a query names; no of others. Embeds the scene if it is not
         embedded yet."""

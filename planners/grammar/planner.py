@@ -248,7 +248,7 @@ def judge_of(scene: Observation | None, reader: TimeReader | None = None) -> Jud
         reader: reads its times, names and commands; None: a new one.
     """
     reader = TimeReader(_operations, _thing) if reader is None else reader
-    return Judge(reader) if scene is None else Judge(reader, scene.moves, scene.movement)
+    return Judge(reader) if scene is None else Judge(reader, scene.moves, scene.movement, scene.has)
 
 
 def _unknown(query: Query) -> None:

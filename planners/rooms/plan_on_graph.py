@@ -90,6 +90,10 @@ class _Later:
     def movement(self, query: Query) -> Movement | None:
         return self.before.movement(query)
 
+    def has(self, query: Query) -> bool:
+        """As the scene's own."""
+        return self.before.has(query)
+
     def lacks(self, query: Query) -> bool:
         return self.before.lacks(query)
 

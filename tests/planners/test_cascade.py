@@ -68,6 +68,9 @@ class Blind:
     def movement(self, query: Query) -> None:
         return None
 
+    def has(self, query: Query) -> bool:
+        return False
+
     def lacks(self, query: Query) -> bool:
         raise AssertionError("nothing here is about motion")
 

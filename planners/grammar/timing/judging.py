@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from itertools import pairwise, starmap
 
@@ -16,6 +16,7 @@ from ....tools.registry import OPS
 from ....tools.when import When
 from ...plan import Movement
 from ..learned.marks import Span
+from ..learned.seen import hues
 from ..parsing import Refusal
 from ..tagging.words import bag
 from ..vocabulary.nouns import is_known, is_opened
@@ -135,10 +136,17 @@ class Judge:
     Args:
         reader: reads its times, names and commands.
         moves, movement: tell what moves in the scene, and how; None if there is none.
+        has: tells whether the scene surely has what is named.
     """
 
-    def __init__(self, reader: TimeReader, moves: Moves | None = None, movement: MovementOf | None = None) -> None:
-        self._reader, self._moves, self._movement = reader, moves, movement
+    def __init__(
+        self,
+        reader: TimeReader,
+        moves: Moves | None = None,
+        movement: MovementOf | None = None,
+        has: Callable[[Query], bool] | None = None,
+    ) -> None:
+        self._reader, self._moves, self._movement, self._has = reader, moves, movement, has
         self._likeliest: dict[tuple[str, float], tuple[Fields, ...] | None] = {}
 
     def likeliest(self, cleaned: str, least: float = 0.0) -> tuple[Fields, ...] | None:
@@ -235,7 +243,18 @@ class Judge:
             return False
         moves = self._moves_how(ALL_MOVING)
         end = math.inf if moves is None else moves.end
-        return leaves_out(wording, ops, held.said_twice(self._facts(held), end), held.spans)
+        free = held.said_twice(self._facts(held), end) | set(self._own_colors(held))
+        return leaves_out(wording, ops, free, held.spans)
+
+    def _own_colors(self, held: Slots) -> Iterator[int]:
+        """Where colours stand that the thing of an instruction has now, in words about what is not wanted, what stays,
+        or nothing: "red while it rolls, and blue otherwise"."""
+        query = held.queries[0]
+        for tag, start, stop in held.spans:
+            for at in range(start, stop) if tag in ("not", "keep", "off") else ():
+                shade = query.model_copy(update={"colors": (held.words[at],)})
+                if held.words[at] in hues() and self._has is not None and self._has(shade):
+                    yield at
 
     def _facts(self, held: Slots) -> tuple[float, ...]:
         """The numbers that tell how the things of an instruction move now, also those that it says stay as they are:

@@ -39,7 +39,8 @@ _FOR_ANOTHER = re.compile(r"\b(?:swap|exchange|trade|replace)\b")  # one colour 
 _ADDABLE = ("pause", "spin", "repeat", "halt", "longer", "begin", "duration", "amount", "open", "close", "return")
 _EXCHANGED = ("order", "reverse")  # kinds that words for another edit say: "swap start and finish"
 _PLACES_IT = re.compile(
-    r"\b(?:place|put|lay|hang|install|set)s? (?!\| ?(?:away|aside|out)\b)(?!.*\b(?:away|aside|out)\b)"
+    r"\b(?:place|put|lay|hang|install|set)s? (?!(?:\||it|him|her|them|the \w+(?: \w+)?) ?back\b)"
+    r"(?!\| ?(?:away|aside|out)\b)(?!.*\b(?:away|aside|out)\b)"
 )
 _KEEPS_IT = re.compile(
     r"^(?:please |just |only )*(?:keep|leave) (?!.*\b(?:hidden|out|invisible|away|off|unseen|gone)\b)|"
@@ -208,7 +209,7 @@ def says_more(kind: str, slots: Slots) -> bool:
         waits = _LATER.search(left) is not None or isinstance(slots.moment.stop, float) or _waits(slots)
         return kind != "begin" or not waits  # "not at once, it waits", "do not open it till 3 s"
     manner = _MANNER.search(left)
-    verb = None if manner is None or kind not in ("open", "close") else manner["verb"]
+    verb = None if manner is None or kind not in ("open", "close", "duration", "speed") else manner["verb"]
     return verb is not None and verb not in AUXILIARIES and (_SOUNDS.match(verb) is not None or not is_any_word(verb))
 
 

@@ -28,17 +28,17 @@ def leaves_out(
     What is not wanted, and what comes back, may be left out.
 
     Args:
-        free: where numbers stand that say nothing new.
+        free: where numbers and colours stand that say nothing new.
         spans: the marks in the words; None: the likeliest.
     """
     spans = marked(words) if spans is None else spans
-    if _loses_colors(words, ops, spans):
+    if _loses_colors(words, ops, free, spans):
         return True
     said = " ".join(words)
     return (TIMED.search(said) or _A_SECOND.search(said)) is not None and _loses_numbers(words, ops, free, spans)
 
 
-def _loses_colors(words: Sequence[str], ops: Sequence[Fields], spans: Sequence[Span]) -> bool:
+def _loses_colors(words: Sequence[str], ops: Sequence[Fields], free: Set[int], spans: Sequence[Span]) -> bool:
     """Whether a look is for a time, and another colour that is told stands nowhere: "red while it rolls, else blue"."""
     if not any(op["op"] == "recolor" and op.get("when") is not None for op in ops):
         return False
@@ -50,7 +50,7 @@ def _loses_colors(words: Sequence[str], ops: Sequence[Fields], spans: Sequence[S
     for at, word in enumerate(words):
         around = {*words[max(0, at - 4) : at], *words[at + 1 : at + 3]}
         beside = held & hues() & {*words[max(0, at - 1) : at], *words[at + 1 : at + 2]}  # "mint green" is one colour
-        if word in hues() and at not in idle and word not in held and not beside and not around & _NOT_WANTED:
+        if word in hues() and at not in idle | free and word not in held and not beside and not around & _NOT_WANTED:
             return True
     return False
 
@@ -82,7 +82,7 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
     shares = [{v and 1 / v, 100 * v, 1 - v, 100 * (1 - v), 100 * (v - 1)} for v in exact]
     held = exact.union({0.0}, {360 * v for v in exact}, *shares)  # degrees of turns
     for at, (word, then) in enumerate(zip(words, (*words[1:], ""), strict=True)):
-        if is_known(singular(then)) or then in _NO_NUMBER or (at and words[at - 1] == "other"):
+        if is_known(singular(then)) or then in _NO_NUMBER or then in _PARTS_OF_IT or (at and words[at - 1] == "other"):
             continue  # "ahead of the other two"
         told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
         seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
@@ -96,6 +96,7 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
                 yield at
 
 
+_PARTS_OF_IT = bag("walks legs stretches falls drops runs rolls swings turns movements halves books ones others")
 _A_SECOND = re.compile(r"\b(?:every|each|per|a) (?:second|sec)\b")
 _AT = ("at", "by", "until", "till", "from", "before", "after")
 _NO_NUMBER = (

@@ -100,7 +100,7 @@ def _is_name(words: Sequence[str]) -> bool:
     return is_known(last) or (words[0] == "the" and 1 < len(words) <= _UNKNOWN)
 
 
-_LIST = re.compile(r" , and | and | , ")
+_LIST = re.compile(r" , and | and | , | \+ | & | / ")
 
 
 def with_colors(thing: Thing, words: Sequence[str], spans: Sequence[Span]) -> Thing:
@@ -119,9 +119,13 @@ def with_colors(thing: Thing, words: Sequence[str], spans: Sequence[Span]) -> Th
     def read(name: str) -> Query | None:
         bare = [word for word in name.split() if word not in ("the", "one", "'s")]
         if not bare or not set(bare) <= hues():
-            several = [own for own in _LIST.split(name) if own]
-            if len(several) > 1 and all(set(own.split()) - {"the", "one"} <= hues() for own in several):
-                first, *others = (read(own) for own in several)
+            *several, last = (own for own in _LIST.split(name) if own) if name else ("",)
+            whole = last.split() or [""]
+            own_noun = whole[-1] if is_known(whole[-1]) and whole[-1] not in hues() else ""
+            shades = set(whole) - {"the", "one", own_noun}
+            if several and shades <= hues() and all(set(own.split()) - {"the", "one"} <= hues() for own in several):
+                said = [f"the {own.removeprefix('the ')} {own_noun}".strip() if own_noun else own for own in several]
+                first, *others = (thing(own) if own_noun else read(own) for own in (*said, last))
                 return None if first is None else first.model_copy(update={"also": tuple(o for o in others if o)})
             return thing(name)
         query = thing(f"the {' '.join(bare)} {noun or 'one'}")

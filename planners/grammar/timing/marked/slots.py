@@ -38,6 +38,10 @@ _OF_EVENT = re.compile(rf"^(?:the |its |his |her |a )?(?:\w+ )?{_EVENTS} (?:of|b
 _WHOLE_OF = re.compile(r"(?<=\w) (?:leaf|blades?|front|panel)$")  # a part of it that moves as it does
 _PARTS = {"leaf": "door", "blade": "fan", "rotor": "fan", "propeller": "fan"}  # what moves as the whole does
 _BESIDE_IT = re.compile(r" (?:of|over|above|on|in|at|by|near|beside|behind|under|from) ")
+_GROUP_OF = re.compile(
+    r"^(?:the |that |this )?(?:whole |entire )?(?:row|lot|trio|set|shelf|stack|group|bunch|line|gang|series|"
+    r"collection) of (?:the )?(?=(?:\w+ )?\w+s$)"
+)
 _IN_A_ROOM = re.compile(r"\b(?:dining|living|sitting|drawing|guest|bath)(?: room|room) (?=\w)")  # where it hangs
 _ITS_EVENT = re.compile(rf"(?: 's?)?(?: (?:whole|entire|full|complete|outward|return|own|\w+ward))? {_EVENTS}$")
 _STATE = re.compile(r"\b(?:open|opened|closed|shut|opening|closing) (?=[a-z])")  # before the name of what opens
@@ -204,6 +208,7 @@ class Slots:
             if tag in _IDLE:
                 found |= {at for at in range(start, stop - 1) if tag == "off" and _counts(self.words[at + 1])}
                 found |= {at for at in range(start + 1, stop) if tag == "off" and self.words[at - 1] in _NUMBERED}
+                found |= {at for at in range(start, stop - 1) if tag == "off" and self.words[at + 1] in _NO_SECONDS}
                 found |= {at + 1 for at in range(start, stop - 1) if tag == "keep" and self.words[at] == "the"}
         return found
 
@@ -324,7 +329,9 @@ def slots(
     numbers = any(
         _is_number(word, then)
         for word, then in pairwise([*left, ""])
-        if not (kind in _AT_REST and word in ("zero", "0")) and not (kind == "order" and word in PLACES)
+        if not (kind in _AT_REST and word in ("zero", "0"))
+        and not (kind == "hide" and word in ("0", "1"))
+        and not (kind == "order" and word in PLACES)
     )
     if len(colors) > (kind == "recolor") or numbers:
         return None
@@ -387,7 +394,10 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
 
 
 _IN_ORDER = bag("first then next last finally lastly followed")
-_AT_REST = ("still", "halt", "pause", "stay")  # kinds that a speed of zero tells
+_ZERO = ("zero", "0")
+_SAYS_SO = {  # numbers that say nothing but the kind of a wish: "at speed 0", "visible = 0", "1. blue, 2. red"
+    "still": _ZERO, "halt": _ZERO, "pause": _ZERO, "stay": _ZERO, "hide": (*_ZERO, "1"), "order": tuple(PLACES),
+}  # fmt: skip
 _JOINTS = bag("and , or nor neither plus + / & both the as well with along")
 _AGAIN = bag("lose remove delete hide take get rid of away out too also then drop bin scrap ditch to see")  # of a look
 _BEHIND_NAMES = bag(
@@ -432,6 +442,7 @@ def _counts(then: str) -> bool:
     return then.isalpha() and then not in _UNITS and then not in NUMBERS
 
 
+_NO_SECONDS = bag("m cm mm meter meters metre metres km kg degree degrees deg percent % am pm minutes hours years days")
 _NUMBERED = bag(
     "requirement tc cue note p no number version scene shot reel bar chapter page line step rule item point class year "
     "room grade level part day week take slide figure table question exercise - #"
@@ -466,6 +477,7 @@ def _things(said: Iterator[str], thing: Thing, grouped: bool = False) -> tuple[t
         if _JUST_EVENT.match(name):
             continue
         bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
+        bare = _GROUP_OF.sub("all the ", bare)
         bare = _IN_A_ROOM.sub("", re.sub(r" 's?$", "", bare))
         bare = _STATE.sub("", with_moving(bare)) if is_opened(bare) else with_moving(bare)
         head = _BESIDE_IT.split(bare)[0].split()
@@ -512,7 +524,7 @@ def _goals(words: Sequence[str], spans: Sequence[Span], text: Callable[[Span], s
         )  # fmt: skip
 
 
-_HALFWAY = re.compile(r"\b(?:half ?way|mid ?way)\b")
+_HALFWAY = re.compile(r"\b(?:half ?way|mid ?way|mid(?: |-)?point|mid [a-z]+|middle of (?:the |its |his )?way)\b")
 
 
 _OWN = re.compile(  # where something is anyway: "back into its frame", "to where it lay"
