@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -521,9 +522,10 @@ def _halt(slots: Slots) -> Iterator[Wanted]:
     if (sooner := _stops_sooner(slots)) is not None:
         yield sooner
         return
-    ended = moment.start is None and isinstance(moment.stop, float) and slots.happening is None
-    if ended and not slots.amounts and (moves := slots.movement(slots.queries[0])) and moment.stop < moves.stop:
-        moment = replace(moment, start=moment.stop, stop=None)  # "it only runs until 2 s"
+    stop = moment.stop if isinstance(moment.stop, float) else math.inf
+    ended = moment.start is None and math.isfinite(stop) and slots.happening is None
+    if ended and not slots.amounts and (moves := slots.movement(slots.queries[0])) and stop < moves.stop:
+        moment = replace(moment, start=stop, stop=None)  # "it only runs until 2 s"
     begins = moment.start is not None or slots.happening is not None
     if begins and moment.start != "end":
         far = {own.said for own in slots.amounts if own.unit in ("times", "%", "deg", "m")}

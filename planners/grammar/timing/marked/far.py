@@ -18,9 +18,9 @@ from .wanted import Wanted, now, paced, plainly, whose_of
 HALFWAY = {"state": "halfway", "part": "from"}
 _HALF_OF_IT = 0.5
 _HALF = re.compile(
-    r"\b(?:half ?way|mid(?: |-)?(?:point|fall|swing|height|drop|flight|air|way|roll|walk|turn|slide)|"
-    r"middle of (?:the |its |his )?way|half(?: of)? (?:the|its|his|her|that|this)(?: \w+)? (?:way|fall|drop|walk|swing)|"
-    r"midway|half)\b"
+    r"\b(?:half ?way|midway|half|mid(?: |-)?(?:point|fall|swing|height|drop|flight|air|way|roll|walk|turn|slide)|"
+    r"middle of (?:the |its |his )?way|half(?: of)? (?:the|its|his|her|that|this)(?: \w+)? "
+    r"(?:way|fall|drop|walk|swing))\b"
 )
 _FURTHER = r"(?:more|further|farther|wider|longer|extra|additional|another|deeper|higher)"
 _SHORTER = r"(?:less|shorter|fewer|short|narrower|lower)"

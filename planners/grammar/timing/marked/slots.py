@@ -326,13 +326,7 @@ def slots(
     colors = dict.fromkeys(_color(text(span)) for span in wanted)
     marked = {at for _, start, stop in spans for at in range(start, stop)}
     left = [word for at, word in enumerate(words) if at not in marked]
-    numbers = any(
-        _is_number(word, then)
-        for word, then in pairwise([*left, ""])
-        if not (kind in _AT_REST and word in ("zero", "0"))
-        and not (kind == "hide" and word in ("0", "1"))
-        and not (kind == "order" and word in PLACES)
-    )
+    numbers = any(_is_number(word, then) for word, then in pairwise([*left, ""]) if word not in _SAYS_SO.get(kind, ()))
     if len(colors) > (kind == "recolor") or numbers:
         return None
     asking = {at for tag, start, stop in spans if tag in ("x", "y", "by") for at in range(start, stop)}
