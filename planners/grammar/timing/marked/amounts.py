@@ -11,7 +11,7 @@ from .....gaussians.world.lengths import METRES
 from ...vocabulary.quantities import NUMBERS
 from ..moments import DURATION, seconds_of
 
-Unit = Literal["s", "m", "deg", "turns", "turns/s", "times", "%", ""]  # the last: a number alone
+Unit = Literal["s", "m", "m/s", "deg", "turns", "turns/s", "times", "%", ""]  # the last: a number alone
 
 _WORD = "|".join(sorted((word for word in NUMBERS if word.isalpha()), key=len, reverse=True))
 _N = (
@@ -23,7 +23,7 @@ _FULL = (
     r"further))*"
 )
 _ROUNDS = r"(?:turns?|revolutions?|revs?|rotations?|rounds?|spins?|circles?|twirls?|pirouettes?|laps?|times|cycles?)"
-_EACH = r"(?: (?:around|round|about|over))?(?: ?/ ?| (?:per|a|an|each|every|by|in a|in one|to the) )"
+_EACH = r"(?: (?:around|round|about|over))?(?: ?/ ?| (?:per|a|an|each|every|by|in a|in one|in each|in every|once every|to the) )"
 _SECOND = r"(?:s|secs?|seconds?)"
 _OFTEN = {"once": 1.0, "twice": 2.0, "thrice": 3.0}
 _TABLE: tuple[tuple[Unit, str], ...] = (  # tried in their order
@@ -33,6 +33,10 @@ _TABLE: tuple[tuple[Unit, str], ...] = (  # tried in their order
     ("turns/s", rf"(?P<rpm>{_N}) ?(?:rpm|{_ROUNDS} (?:per|a) minute)"),
     ("turns/s", rf"(?P<deg>{_N}) ?(?:degrees?|deg|°){_EACH}{_SECOND}"),
     ("turns/s", rf"(?P<n>{_N}) (?:per|each|every) {_SECOND}"),
+    (
+        "m/s",
+        rf"(?P<n>{_N}) ?(?P<unit>cm|m|(?:centi)?met(?:re|er)s?)(?: ?/ ?| (?:per|a|each|every) )(?:s|secs?|seconds?)",
+    ),
     ("deg", rf"(?P<n>{_N})(?: (?:full|whole|more))? ?(?:degrees?|deg|°)"),
     ("deg", r"(?P<right>right angle)"),
     ("deg", rf"(?P<rad>{_N}) ?(?:rad|radians?)"),
@@ -69,11 +73,22 @@ _GOES = re.compile(
     rf"\b(?:[x×n] ?=? ?(?P<x>\d+)|(?P<n>{_WORD}|\d+) (?!seconds?\b|secs?\b|times\b)(?:complete |full |whole )?"
     r"[a-z]+s)\b"
 )
+_SPINS: tuple[tuple[Unit, re.Pattern[str]], ...] = (
+    ("deg", re.compile(r"\b(?P<n>90|180|270|360|450|540|720|1080)\b")),
+    (
+        "turns",
+        re.compile(
+            rf"\b(?P<n>once|twice|thrice|{_WORD}|\d+)\b(?: (?:whole|full|single|complete))*(?: times?| of them| ones?)?$"
+        ),
+    ),
+    ("turns", re.compile(r"\b(?P<n>once|twice|thrice)\b")),
+)
 _ALONE = re.compile(
-    rf"^(?:(?:by|to|at|just|only|barely|through|about|around|like|say|some|exactly|not|more|than|a|mere|maybe|max|"
-    rf"maximum|up|down|no|further|wider|farther) )*"
+    rf"^(?:(?:by|to|at|of|[a-z] =|=|just|only|barely|through|about|around|like|say|some|exactly|not|more|than|a|mere|"
+    rf"maybe|max|maximum|up|down|no|further|wider|farther) )*"
     rf"(?P<n>\d+(?:\.\d+)?|(?:{_WORD}) tenths|(?:{_WORD})(?:[ -](?:{_WORD}))?)"
-    rf"(?: (?:max|only|or so|tops|at (?:the )?most|instead|and no more))?$"
+    rf"(?: (?:max|only|or so|tops|at (?:the )?most|instead|and no more|"
+    rf"of (?:now|its|the present|what it is)(?: \w+)*))?$"
 )
 _METRES = {"mm": 0.001, "cm": 0.01, "milli": 0.001, "centi": 0.01, "f": METRES["ft"], "inch": METRES["in"]}
 
@@ -95,6 +110,16 @@ def amount(phrase: str) -> Amount | None:
             return Amount(value, unit, found[0])
     if (alone := _ALONE.match(phrase)) is not None and (value := number(alone["n"])) is not None:
         return Amount(value, "", alone["n"])
+    return None
+
+
+def spins(phrase: str) -> Amount | None:
+    """How often something turns, where that is told in a number alone: "one time", "a full 360", "three of them"; None
+    if it is not."""
+    for unit, pattern in _SPINS:
+        if (found := pattern.search(phrase)) is not None:
+            value = _OFTEN.get(found["n"]) or number(found["n"])
+            return None if value is None else Amount(value, unit, found[0])
     return None
 
 
@@ -127,7 +152,7 @@ def _value(unit: Unit, found: re.Match[str]) -> float | None:
         value = number(told.get("n") or told.get("rpm") or told["deg"])
     if value is None:
         return None
-    if unit == "m":
+    if unit in ("m", "m/s"):
         return value * next((scale for start, scale in _METRES.items() if told["unit"].startswith(start)), 1.0)
     per = number(told["per"]) if "per" in told else 1.0
     if "rpm" in told or "deg" in told:

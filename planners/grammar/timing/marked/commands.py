@@ -17,7 +17,7 @@ from ..command import Command, pace
 from ..happenings import IT, Happening
 from ..moments import Moment
 from .far import far_along, goes_as_far, how_far
-from .guards import ASKED_AS_NOT
+from .guards import ASKED_AS_NOT, NO_MORE
 from .orders import ordered, told_order
 from .slots import ALL_MOVING, Slots
 from .steps import gap_of, in_step, in_turn, opened
@@ -68,9 +68,10 @@ _FOLLOWS = re.compile(
     r"rac\w+)\w* (?:right )?(?:after|behind)|tag along)\b"
 )
 _ROUND = re.compile(r"\b(?:circl\w+|orbit\w*|round|around|laps?|loops?)\b")
+_HOPS = re.compile(r"\b(?:hop|hops|hopping|jump\w*|leap\w*)\b")
 _OTHERWISE = re.compile(  # moves that marks do not tell apart
-    r"\b(?:hop\w*|jump\w*|bounc\w+|bob\w*|wobbl\w+|sway\w*|shak\w+|swing\w*|tip\w*|toppl\w+|fall\w*|knock\w*|"
-    r"nod\w*|leap\w*|"
+    r"\b(?:bounc\w+|bob\w*|wobbl\w+|sway\w*|shak\w+|swing\w*|tip\w*|toppl\w+|fall\w*|knock\w*|"
+    r"nod\w*|"
     r"rock\w*|danc\w+|drop\w*|swap\w*|exchang\w+|trad\w+|places|throw\w*|kick\w*(?! off)|sits?|tumbl\w+|crash\w*)\b"
 )
 _SEEN = re.compile(
@@ -109,7 +110,7 @@ def commands(kind: str, slots: Slots) -> Iterator[Wanted]:
         return
     if kind != "order" and _WHICH_ONE.search(slots.rest):
         return
-    if kind not in _NEGATIVE and _NOT.search(ASKED_AS_NOT.sub(" ", slots.rest)):
+    if kind not in _NEGATIVE and _NOT.search(NO_MORE.sub(" ", ASKED_AS_NOT.sub(" ", slots.rest))):
         return
     for wanted in made(slots):
         if not slots.unused():
@@ -170,6 +171,9 @@ def _move(slots: Slots) -> Iterator[Wanted]:
         yield now(slots, f"let {slots.whom} drive around {goal.name}")
         return
     ways = [way for way, words in _WAYS.items() if words.search(slots.said)]
+    if _HOPS.search(slots.rest) and goal is None and set(ways) <= {"up"}:
+        yield now(slots, f"let {slots.whom} hop{'' if length is None else f' {length.value:g} m'}")
+        return
     if goal is not None and not (len(ways) == 1 and length is not None and goal.way == ""):
         how = f" by {length.value:g} m" if length is not None else ""
         new = any(tag == "x" and slots.words[start] in ("a", "an") for tag, start, _ in slots.spans)  # is put in
@@ -210,7 +214,14 @@ def _beside_another(slots: Slots) -> Wanted | None:
 
 
 _TO_A_HEIGHT = re.compile(r"\bto (?:\d[\d.]*|half a|one|two|three) ?(?:m|cm|met\w+|centimet\w+)\b")
-_WAYS = {"up": _UP, "down": _DOWN, "to the left": _LEFT, "to the right": _RIGHT}
+_WAYS = {
+    "up": _UP, "down": _DOWN, "to the left": _LEFT, "to the right": _RIGHT,
+    "forward": re.compile(r"\b(?:forwards?|ahead)\b"), "backwards": re.compile(r"\bbackwards?\b"),
+    "back": re.compile(r"\bback\b(?! (?:to|in|into|at|by|on)\b)"),
+    "towards the viewer": re.compile(
+        r"\b(?:to|towards?|nearer|closer)\b (?:to )?(?:the )?(?:viewer|camera|screen|audience)\b"
+    ),
+}  # fmt: skip
 
 
 # -- turns and repeats -------------------------------------------------------------------------------------------------
@@ -388,6 +399,13 @@ def _speed(slots: Slots) -> Iterator[Wanted]:
         slots.used |= {own.said for own in slots.amounts}
         yield from _duration(slots)
         return
+    if (rate := slots.one("m/s")) is not None:
+        moves = slots.movement(slots.queries[0])
+        if moves is not None and moves.metres > 0:
+            slots.repeated.add(rate.said)
+            factor = rate.value * (moves.stop - moves.start) / moves.metres
+            yield paced(slots, "speed", factor=round(factor, 4))
+        return
     if (factor := _factor(slots)) is not None:
         yield paced(slots, "speed", factor=round(factor, 4))
 
@@ -396,7 +414,7 @@ def _factor(slots: Slots) -> float | None:
     """How many times as fast; None if that is not told."""
     said = _TOO_SLOW.sub(" faster ", _TOO_FAST.sub(" slower ", slots.said))
     slow, fast = _SLOWER.search(said) is not None, _FASTER.search(said) is not None
-    told = slots.one("times", "%", "turns")
+    told = slots.one("times", "%", "turns", "")
     if told is None:
         strictly = re.search(r"\b(?:faster|quicker|speed (?:\S+ )*up|hurry|accelerat\w+)\b", said) is not None
         if slow and not strictly:

@@ -152,7 +152,7 @@ _BEFORE_IT = re.compile(  # "it waits until 2 s before it sets off"
 )
 _NEGATED = ("hide", "remove", "still", "stay", "halt", "pause", "longer", "amount")  # kinds that say what is not to be
 _NOT = re.compile(r"\b(?:not|no|never|without|invisible|nobody|nothing)\b")
-_NO_MORE = re.compile(
+NO_MORE = re.compile(
     r"\b(?:no|not|nothing|never)\b(?: (?!then\b|and\b|but\b)\w+){0,3} (?:more|further|farther|wider|again)"
     r"(?: than (?:that|this))?\b"
 )
@@ -183,6 +183,8 @@ def says_more(kind: str, slots: Slots) -> bool:
         left = f"{left} {then['rest']}"  # "let it stand for a second, then shut it"
     if kind == "move" and len(slots.things) > 1:
         left = _BACK_TO.sub(" ", left)
+    if kind == "move" and any(own.unit == "m" for own in slots.amounts):
+        left = _BACK_IN.sub(" ", left)  # "push it back by 20 cm"
     if kind in ("open", "close") and isinstance(slots.moment.start, float):
         left = _BY_HOW_MUCH.sub(" ", left)  # "a bit sooner, at 2 s"
     left = _AT_ONCE.sub(" ", _SAME_SPEED.sub(" ", left))
@@ -200,12 +202,12 @@ def says_more(kind: str, slots: Slots) -> bool:
             left = _BACK_IN.sub(" ", left)  # the beginning of its closing
     if kind in ("halt", "stay", "still", "amount"):
         left = _HALF_OF_IT.sub(" ", left)
-        left = _AS_IT_DOES.sub(" ", _NO_MORE.sub(" ", left))
+        left = _AS_IT_DOES.sub(" ", NO_MORE.sub(" ", left))
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY):
         return True
     if _WISHED.search(f"{slots.asked} {idle}") or _TWO_ORDERS.search(left):
         return True
-    if kind not in _NEGATED and _NOT.search(_DISLIKES.sub(" ", _TOO_FAST.sub(" ", _NO_MORE.sub(" ", left)))):
+    if kind not in _NEGATED and _NOT.search(_DISLIKES.sub(" ", _TOO_FAST.sub(" ", NO_MORE.sub(" ", left)))):
         waits = _LATER.search(left) is not None or isinstance(slots.moment.stop, float) or _waits(slots)
         return kind != "begin" or not waits  # "not at once, it waits", "do not open it till 3 s"
     manner = _MANNER.search(left)

@@ -80,7 +80,8 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
     """Where the numbers stand that are in no operation."""
     exact = {abs(value) for op in ops for value in _numbers(op)}
     shares = [{v and 1 / v, 100 * v, 1 - v, 100 * (1 - v), 100 * (v - 1)} for v in exact]
-    held = exact.union({0.0}, {360 * v for v in exact}, *shares)  # degrees of turns
+    units = {scale * v for v in exact for scale in (360, 60, 1000)}  # degrees and minutes of turns, millimetres
+    held = exact.union({0.0}, units, *shares)
     for at, (word, then) in enumerate(zip(words, (*words[1:], ""), strict=True)):
         if is_known(singular(then)) or then in _NO_NUMBER or then in _PARTS_OF_IT or (at and words[at - 1] == "other"):
             continue  # "ahead of the other two"

@@ -20,7 +20,7 @@ from ..ending import MovementOf
 from ..happenings import IT, Happening
 from ..manner import Thing
 from ..moments import Moment, seconds_of
-from .amounts import Amount, amount, repeats
+from .amounts import Amount, amount, repeats, spins
 from .kinds import COURSES
 from .names import MOVING, with_colors, with_moving
 from .names import named as names_in
@@ -281,6 +281,8 @@ def slots(
         if span[0] == "by" and not is_a_time(text(span), kind):
             found = repeats(text(span)) if kind == "repeat" else None
             found = found or amount(f"{text(span)} around" if kind == "spin" else text(span))
+            if kind == "spin" and (found is None or found.unit in ("", "s")):
+                found = spins(text(span)) or found
             if found is None:
                 vague = not any(map(tells_number, text(span).split()))
                 beside = any(own[0] == "by" and own != span and amount(text(own)) is not None for own in spans)
@@ -289,7 +291,7 @@ def slots(
                 if kind in ("pause", "halt", "amount") and _HALFWAY.search(text(span)) is not None:
                     continue  # "halfway" is told by words
                 return None
-            amounts += [] if any(found.value == own.value and found.unit == own.unit for own in amounts) else [found]
+            amounts += [] if any(_is_same(found, own) for own in amounts) else [found]
     named = [span for span in spans if span[0] == "x"]
     if any(_EVERYTHING.search(text(span)) for span in named) or _is_divided(words, named, thing, kind):
         return None
@@ -335,6 +337,12 @@ def slots(
         names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said,
         words, spans, thing, moves, movement, redundant=redundant,
     )  # fmt: skip
+
+
+def _is_same(one: Amount, other: Amount) -> bool:
+    """Whether two amounts are the same: "at half its speed, at 50 percent"."""
+    first, second = (own.value / 100 if own.unit == "%" else own.value for own in (one, other))
+    return first == second and {one.unit, other.unit} in ({one.unit}, {"%", "times"})
 
 
 def _named_elsewhere(

@@ -13,6 +13,7 @@ from ...vocabulary.nouns import is_opened
 from ..command import Command, pace
 from ..happenings import Happening
 from ..moments import Moment
+from .amounts import Amount
 from .slots import Slots
 from .wanted import Wanted
 
@@ -87,6 +88,10 @@ def in_step(slots: Slots) -> Wanted | None:
         Happening(During(state=state, of=other), f"as it is {state}") for state in ("opening", "closing")
     )
     length, angle = slots.one("m"), slots.one("deg")
+    moves, share = slots.movement(other), slots.one("times")
+    if length is None and moves is not None and share is not None and moves.metres:  # "half as far"
+        length = Amount(round(moves.metres * share.value, 4), "m", share.said)
+        slots.repeated.add(share.said)
     how_far: dict[str, Any] = {} if length is None else {"distance": {"value": length.value}}
     how_far |= {} if angle is None else {"degrees": angle.value}
     steps = [opened(query, Moment(), opening, **how_far) for query in slots.queries]

@@ -31,6 +31,13 @@ _RID_OF_IT = re.compile(
     r"(?:get rid of (?:it|them)|(?:take|throw) (?:it|them) (?:away|out)|"
     r"(?:remove|delete|bin|ditch|scrap|lose) (?:it|them))\b"
 )
+_RID = re.compile(
+    r"\b(?:do|does|done|away|out|off|down|dispense) with\b|\b(?:without|minus|superfluous)\b|"
+    r"\b(?:delet\w+|remov\w+|eras\w+|omit\w*|leav\w+ (?:\w+ )?out|left out|be missing|go missing)\b|"
+    r"\bthere (?:should|ought|must|shall|were|be|is to|are to)\b.{0,12}\b(?:no|not|never)\b|"
+    r"\b(?:not|no longer|hardly) (?:\w+ )?(?:want\w*|need\w*|required|necessary|welcome)\b|\bnot have\b|^no \w|"
+    r"\bwith no\b|\bnot (?:contain|seen)\b|\bpack\b.{0,8}\bbags\b|\bone does not need\b"
+)
 _UNSEEN = re.compile(  # that something is not to be seen is a wish, too
     r"\b(?:must|should|may|can|need|shall|to) (?:not|never) (?:appear|show|exist|be (?:seen|shown|there|visible|in))\b"
 )
@@ -92,6 +99,8 @@ def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float, kind: 
     if _RID_OF_IT.search(f"{asked} . {said}") and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"
     plainly = _DENIED.search(asked) is None and _ASKS.search(said) is None
+    if kind == "remove" and chance >= SURELY and _ASKS.search(said) is None and _RID.search(asked):
+        return True  # "I would rather have the room without the lamp"
     if kind == "move" and chance >= SURE and plainly and _ELSEWHERE.search(asked):
         return True  # "the ball should roll to the lamp instead"
     if chance >= CERTAINLY and plainly and not _IS.search(asked):
