@@ -23,7 +23,9 @@ _FULL = (
     r"further))*"
 )
 _ROUNDS = r"(?:turns?|revolutions?|revs?|rotations?|rounds?|spins?|circles?|twirls?|pirouettes?|laps?|times|cycles?)"
-_EACH = r"(?: (?:around|round|about|over))?(?: ?/ ?| (?:per|a|an|each|every|by|in a|in one|in each|in every|once every|to the) )"
+_EACH = (
+    r"(?: (?:around|round|about|over))?(?: ?/ ?| (?:per|a|an|each|every|by|in (?:a|one|each|every)|once every|to the) )"
+)
 _SECOND = r"(?:s|secs?|seconds?)"
 _OFTEN = {"once": 1.0, "twice": 2.0, "thrice": 3.0}
 _TABLE: tuple[tuple[Unit, str], ...] = (  # tried in their order
@@ -78,7 +80,8 @@ _SPINS: tuple[tuple[Unit, re.Pattern[str]], ...] = (
     (
         "turns",
         re.compile(
-            rf"\b(?P<n>once|twice|thrice|{_WORD}|\d+)\b(?: (?:whole|full|single|complete))*(?: times?| of them| ones?)?$"
+            rf"\b(?P<n>once|twice|thrice|{_WORD}|\d+)\b(?: (?:whole|full|single|complete))*"
+            r"(?: times?| of them| ones?)?$"
         ),
     ),
     ("turns", re.compile(r"\b(?P<n>once|twice|thrice)\b")),

@@ -403,8 +403,8 @@ def _speed(slots: Slots) -> Iterator[Wanted]:
         moves = slots.movement(slots.queries[0])
         if moves is not None and moves.metres > 0:
             slots.repeated.add(rate.said)
-            factor = rate.value * (moves.stop - moves.start) / moves.metres
-            yield paced(slots, "speed", factor=round(factor, 4))
+            times = rate.value * (moves.stop - moves.start) / moves.metres
+            yield paced(slots, "speed", factor=round(times, 4))
         return
     if (factor := _factor(slots)) is not None:
         yield paced(slots, "speed", factor=round(factor, 4))
