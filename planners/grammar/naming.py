@@ -14,8 +14,10 @@ from ...gaussians.world import kinds
 from ...gaussians.world.words import singular
 from .meaning.changes import Fields
 from .tagging.spelling import is_common, misspelled_name
+from .timing.verbs import SENSES, has_form
 from .vocabulary import nouns
 
+_SAID_FIRST = ("scale", "set", "speed", "slow", "time")  # what is done, where no article stands before a name
 _FEELS = re.compile(  # words that say what one thinks of a thing, and not which it is: no "garage door" is a door
     r"wee|yon|yonder|poor|dear|cute|silly|daft|blasted|bloody|damn|darn|blessed|beloved|trusty|sorry|"
     r"[a-z]{3,}(?:tly|rly|ous|ful|ish|some)",
@@ -32,6 +34,9 @@ def named_there(ops: Sequence[Fields], lacks: Callable[[Query], bool]) -> Iterat
 
     def renamed(query: Query) -> Query:
         others = [] if query.last else [query.model_copy(update={"text": text}) for text in _as_near(query.text)]
+        beside = tuple(own for own in query.relations if not any(anchor.text == "wall" for anchor in own.anchors))
+        if beside != query.relations and query.text:  # "the bookshelf of the left wall", which stands before it
+            others.append(query.model_copy(update={"relations": beside}))
         return next((other for other in others if not lacks(other)), query) if others and lacks(query) else query
 
     for op in ops:
@@ -54,6 +59,12 @@ def _as_near(text: str) -> Iterator[str]:
     known = next((at for at, word in enumerate(words) if not _FEELS.fullmatch(word)), len(words))
     if 0 < known < len(words):
         yield " ".join(words[known:])
+    if (
+        len(words) > 1
+        and nouns.is_known(words[-1])
+        and (words[0] in _SAID_FIRST or has_form(words[0], tuple(SENSES), "plain"))
+    ):
+        yield " ".join(words[1:])  # "scale robot speed by 1.5"
     kind = kinds.find(text)
     if kind is not None and singular(kind.name) != text:  # "the ventilator" is the fan
         yield singular(kind.name)

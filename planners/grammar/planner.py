@@ -197,7 +197,7 @@ def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     if not may_be_timed(cleaned):
-        return _wished(cleaned, previous)
+        return _wished(cleaned, previous, scene)
     reader = TimeReader(_operations, _thing)
     judge = judge_of(scene, reader)
     if judge.contradicts_itself(cleaned):
@@ -303,13 +303,14 @@ def _in_time(
     return outcome
 
 
-def _wished(cleaned: str, previous: str | None) -> _Outcome:
-    """As `_timeless`; where no rule reads it, what it most likely wishes to look different or to be gone.
+def _wished(cleaned: str, previous: str | None, scene: Observation | None) -> _Outcome:
+    """As `_timeless`; where no rule reads it, what it most likely wishes to look different or to be gone, or of what
+    moves in a scene.
 
     Raises:
         Refusal: as `_timeless`.
     """
-    judge = judge_of(None)
+    judge = judge_of(scene)
     try:
         outcome = _timeless(cleaned, previous)
     except Refusal as refusal:

@@ -43,6 +43,7 @@ Moves = Callable[[Query], bool | None]  # whether what a query names moves in th
 _SURELY = 0.7  # probability from which it speaks against another change of a motion
 _SAID_SO = 0.5  # probability from which a kind of wish speaks against operations of another one
 _WISHED = ("recolor", "delete")
+_OF_MOTION = ("pace", "articulate")
 _OF_A_KIND = (
     "opacity", "delete", "insert", "merge", "exchange", "recolor", "restyle", "articulate", "rotate", "scale", "move",
     "spin", "pace",
@@ -308,13 +309,16 @@ class Judge:
 
     def wished(self, cleaned: str) -> tuple[Fields, ...] | None:
         """The operations of a wish that has no words of time: for another look of something, or that it be gone, at
-        all times or at a time in bare numbers; None if that is not most likely asked for."""
+        all times or at a time in bare numbers, or that what moves do so otherwise; None if that is not most likely
+        asked for."""
         found = self.likeliest(cleaned, SURE)
         if found is None or all(op.get("when") is not None for op in found):
             return found
         once = all(op["op"] in _WISHED and op.get("when") is None for op in found)
         words = in_words(cleaned).split(" ")
         kind, chance = next(iter(likely(cleaned)), ("", 0.0))
+        if all(op["op"] in _OF_MOTION and self._does_move(op["target"]) for op in found):
+            return found
         return found if once and is_wished(words, marked(words), chance, kind) else None
 
     def is_of_another_kind(self, cleaned: str, ops: Sequence[Fields], least: float = _SAID_SO) -> bool:

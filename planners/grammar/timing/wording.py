@@ -58,6 +58,10 @@ _SYNONYMS = tuple(
         (r"the initial(?= [a-z0-9.]+ sec)", "the first"),
         (r"thereafter", "afterwards"),
         (
+            r"no sooner (?P<be>is|has|does|was|had) (?P<who>(?:the|my|our) (?:[a-z]+ )?[a-z]+) (?P<what>[a-z ]+?) than",
+            r"as soon as \g<who> \g<be> \g<what> ,",
+        ),
+        (
             rf"(?:for )?(?P<a>{_DIGITS}) ?s? ?(?:≤|<=|<) ?t ?(?:≤|<=|<) ?(?P<b>{_DIGITS}) ?(?:s\b)?",
             r"from \g<a> s to \g<b> s",
         ),

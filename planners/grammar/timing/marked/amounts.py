@@ -19,8 +19,8 @@ _N = (
     rf"(?:an? |one |two )?thirds?(?: of an?)?|(?:{_WORD})(?: (?:{_WORD}))?(?: and a half)?|an?)"
 )
 _FULL = (
-    r"(?: (?:full|whole|complete|entire|quick|slow|little|gentle|lazy|short|small|graceful|single|proper|more|"
-    r"further))*"
+    r"(?: (?:full|whole|complete|entire|quick|slow|little|gentle|lazy|short|small|graceful|single|proper|good|solid|"
+    r"mere|more|further))*"
 )
 _ROUNDS = r"(?:turns?|revolutions?|revs?|rotations?|rounds?|spins?|circles?|twirls?|pirouettes?|laps?|times|cycles?)"
 _EACH = (
@@ -61,7 +61,7 @@ _FACTORS = {  # by how the word begins
     "twice": 2.0, "doub": 2.0, "twof": 2.0, "two fold": 2.0, "trip": 3.0, "thri": 3.0, "quad": 4.0, "hal": 0.5,
     "quar": 0.25, "third": 1 / 3, "two thirds": 2 / 3, "three quarters": 0.75,
 }  # fmt: skip
-_MORE = re.compile(r"\b(?:more|extra|further|additional) (?=(?:seconds?|secs?)\b)")
+_MORE = re.compile(r"\b(?:more|extra|further|additional|good|solid|full|whole|mere) (?=(?:seconds?|secs?)\b)")
 _ANOTHER = re.compile(r"\banother (?=(?:seconds?|secs?)\b)")
 _AGAIN = re.compile(
     r"\b(?:again|once more|anew|newly|afresh|encore|duplicate|repetition|repeat performance)\b|"

@@ -157,6 +157,10 @@ def _move(slots: Slots) -> Iterator[Wanted]:
     if slots.tell(_OTHERWISE) or _TO_A_HEIGHT.search(slots.said):
         return
     step, whole = slots.happening, " ".join(slots.words)
+    if step is not None and step.until is not None and step.during.part == "while":  # "as it turns, until it stops"
+        begun = step.during.model_copy(update={"part": "from"})
+        slots = replace(slots, happening=replace(step, during=begun))
+        step = slots.happening
     begins = step is not None and (step.during.state, step.during.part) == ("moving", "from")
     if step is not None and begins and step.during.of not in (None, *slots.queries) and _BOTH_THERE.search(whole):
         slots = replace(slots, happening=replace(step, during=step.during.model_copy(update={"part": "while"})))
@@ -506,6 +510,10 @@ def _pause(slots: Slots) -> Iterator[Wanted]:
     if isinstance(moment.stop, float) and moment.start is None and slots.happening is None:
         moment = replace(moment, start=0.0)  # "for the first second"
     both = moment.stop is not None and (moment.start is not None or slots.happening is not None)
+    moves = slots.movement(slots.queries[0])
+    if both and moves is not None and moves.turns and slots.told_of("to", moves.stop):  # "then on until 4 s as before"
+        yield replace(paced(slots, "stop", moment), also=(paced(slots, "stop", Moment(start=moves.stop)),))
+        return
     if moment.lasting is not None or both or _has_ends(slots.happening):
         yield paced(slots, "stop", moment)
 
@@ -659,7 +667,8 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     if verb == "close" and isinstance(moment.stop, float) and _SHUT_TILL.search(" ".join(slots.words)):
         yield paced(slots, "begin", Moment(start=moment.stop))  # "hold the door shut till 2 s"
         return
-    held = verb == "close" and moment.start is None and slots.happening is None and _HELD.search(slots.rest) is not None
+    wide = slots.happening is None or slots.happening.during.state in ("fully_open", "open")
+    held = verb == "close" and moment.start is None and wide and _HELD.search(slots.rest) is not None
     if held and moment.lasting is not None:  # "give the open door a one second hold, then swing it shut, closed by 4.5"
         once_open = Happening(During(state="fully_open", part="from"), "once it is open")
         ends = Moment(start=moment.lasting, stop=moment.stop, said=("then",))

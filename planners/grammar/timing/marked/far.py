@@ -55,6 +55,7 @@ def far_along(slots: Slots) -> dict[str, Any] | None:
 def goes_as_far(slots: Slots) -> Iterator[Wanted]:
     """The commands of a wish that something goes, opens or turns as far as is told."""
     slots.pass_goals()
+    _leave_out_how_far_it_goes(slots)
     if not is_opened(slots.queries[0].text):
         yield from _turns(slots)
     if (how := how_far(slots)) is None:
@@ -71,6 +72,21 @@ def goes_as_far(slots: Slots) -> Iterator[Wanted]:
         yield now(slots, f"let {slots.whom} only move {how.removeprefix('by ')}")
     elif how == "halfway":
         yield now(slots, f"let {slots.whom} go half the way")
+
+
+def _leave_out_how_far_it_goes(slots: Slots) -> None:
+    """Leaves out of several amounts those that tell how far something goes now: "it goes 30 cm, reduce that to 10"."""
+    moves = slots.movement(slots.queries[0])
+    if moves is None or len(slots.amounts) < 2:
+        return
+    here = {"deg": moves.degrees, "m": moves.metres, "turns": moves.degrees / 360}
+    said = [own for own in slots.amounts if own.unit in here and abs(own.value - here[own.unit]) < _AS_NOW]
+    if len(said) < len(slots.amounts):
+        slots.amounts = tuple(own for own in slots.amounts if own not in said)
+        slots.known |= {own.said for own in said}
+
+
+_AS_NOW = 0.01  # metres, degrees and turns by which what is told may differ from how it is
 
 
 def _turns(slots: Slots) -> Iterator[Wanted]:

@@ -117,7 +117,10 @@ def with_colors(thing: Thing, words: Sequence[str], spans: Sequence[Span]) -> Th
     noun = singular(named[0]) if named and len(set(map(singular, named))) == 1 else ""
 
     def read(name: str) -> Query | None:
-        bare = [word for word in name.split() if word not in ("the", "one", "'s")]
+        bare = [word for word in name.split() if word not in ("the", "one", "'s", "that", "this", "those")]
+        alone = name in _OF_DRAWERS or (bare[:1] != ["middle"] and name == f"the {bare[0] if bare else ''}")
+        if len(bare) == 1 and bare[0] in _OF_DRAWERS and alone and is_opened(noun):  # "middle and bottom drawer"
+            return thing(f"the {bare[0]} {noun}")
         if not bare or not set(bare) <= hues():
             *several, last = (own for own in _LIST.split(name) if own) if name else ("",)
             whole = last.split() or [""]

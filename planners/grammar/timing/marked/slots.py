@@ -90,6 +90,7 @@ class Slots:
         used: what of this a command holds.
         repeated: amounts that a time tells, too.
         redundant: words of times that tell nothing beside the others: "from 2 s, for 1 s, until 3 s".
+        known: amounts that only tell how it is now.
     """
 
     names: tuple[str, ...]
@@ -109,6 +110,7 @@ class Slots:
     used: set[str] = field(default_factory=set)
     repeated: set[str] = field(default_factory=set)
     redundant: tuple[str, ...] = ()
+    known: set[str] = field(default_factory=set)
 
     @property
     def told(self) -> bool:
@@ -189,7 +191,7 @@ class Slots:
         found = {at for at, word in enumerate(self.words) if word in PLACES and at not in marked}  # "1. blue, 2. red"
         for tag, start, stop in self.spans:
             said = " ".join(self.words[start:stop])
-            if tag in ("by", *TIMES) and any(own in said for own in self.repeated):
+            if tag in ("by", *TIMES) and any(own in said for own in self.repeated | self.known):
                 found |= set(range(start, stop))
             if tag in TIMES and any(own in said for own in self.redundant):
                 found |= set(range(start, stop))
@@ -211,6 +213,12 @@ class Slots:
                 found |= {at for at in range(start, stop - 1) if tag == "off" and self.words[at + 1] in _NO_SECONDS}
                 found |= {at + 1 for at in range(start, stop - 1) if tag == "keep" and self.words[at] == "the"}
         return found
+
+    def told_of(self, tag: str, seconds: float) -> bool:
+        """Whether a mark with a tag holds a number of seconds."""
+        return any(
+            abs(self._number(at) - seconds) < NEAR for own, a, b in self.spans if own == tag for at in range(a, b)
+        )
 
     def _number(self, at: int) -> float:
         """The number at a word, with "and a half" behind it; infinity if there is none."""
@@ -272,6 +280,8 @@ def slots(
 
     spans = [_joined(span, words, kind) for span in sorted(spans, key=lambda span: span[1])]
     thing = with_colors(thing, words, spans)
+    if kind == "amount":
+        spans = [_as_amount(span, text(span)) for span in spans]
     time = time_of(words, spans, text, thing, kind)
     if time is None:
         return None
@@ -373,6 +383,20 @@ def _joined(span: Span, words: Sequence[str], kind: str) -> Span:
         return tag, start, stop + 1
     joined = tag == "y" and kind in LOOKS and start > 1 and words[start - 1] in ("and", "nor")
     return ("x", start, stop) if joined else span
+
+
+def _as_amount(span: Span, said: str) -> Span:
+    """A mark of how far something is to go: also what "is enough", and "to 10"."""
+    tag, start, stop = span
+    enough = tag in ("not", "off") and _ENOUGH.search(said) is not None and amount(_ENOUGH.sub("", said)) is not None
+    return ("by", start, stop) if enough or (tag == "to" and _TO_A_NUMBER.match(said)) else span
+
+
+_ENOUGH = re.compile(
+    r"\b(?:(?:is|are|will be|would be|ought to be|should be|'s) )?(?:quite |more than |just )?(?:plenty|enough|ample|"
+    r"suffic\w+|(?:the )?(?:limit|max|maximum)|as far as (?:it|we) (?:go|goes|want)|will do|would do|does it)\b"
+)
+_TO_A_NUMBER = re.compile(r"^(?:down |up |only |just )*to (?:only |just )?\d+(?:\.\d+)?(?: (?:cm|m|degrees?|deg|°))?$")
 
 
 def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind: str) -> bool:

@@ -76,7 +76,8 @@ def in_step(slots: Slots) -> Wanted | None:
     if not all(is_opened(query.text) and not slots.moves(query) for query in slots.queries):
         return None
     other: Query | None = None
-    if slots.happening is not None and slots.happening.during.part == "while" and slots.moment.empty:
+    as_it_moves = slots.happening is not None and slots.happening.during.state in ("moving", "opening")
+    if slots.happening is not None and as_it_moves and slots.happening.during.part == "while" and slots.moment.empty:
         other = slots.happening.during.of
     elif not slots.told and len(slots.goals) == 1 and _AS_ONE.search(slots.rest):
         other = slots.goals[0].query

@@ -142,15 +142,17 @@ def time_of(
             phrase = _SECOND_TIME.sub("", _EACH_TIME.sub("", phrase))
         if kind in _OF_SEVERAL and (_TOGETHER.match(phrase) or set(phrase.split()) <= PLACES_IN_TURN):
             continue  # "first bottom, then middle"; "together and shuts together"
+        said = phrase
         for pattern, plain in _PLAINER:
             phrase = pattern.sub(plain, phrase)
+        said = text(span) if said == phrase else phrase
         tag = _plainer_tag(tag, phrase, " ".join(words[max(0, span[1] - 4) : span[1]]), kind, moment, happening)
         if tag == "to" and kind in LOOKS and _AT_A_NUMBER.match(phrase) and not _COMES_BACK.search(" ".join(words)):
             return None  # "gold once the cat has sat down at 3 s" does not end then
         phrase, delay = delayed(LEADING.sub("", phrase))
         if tag == "from" and kind == "pause" and (before := _JUST_BEFORE.match(phrase)) is not None:
             phrase = f"when {phrase[before.end() :]}"  # a rest before its turn begins where that did
-        told = _told(tag, phrase, text(span) if delay is None else phrase, thing, happening)
+        told = _told(tag, phrase, said if delay is None else phrase, thing, happening)
         if told is None and times > 1 and _says_nothing(phrase, thing):
             continue
         if told is None:

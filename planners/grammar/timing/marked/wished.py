@@ -38,6 +38,9 @@ _RID = re.compile(
     r"\b(?:not|no longer|hardly) (?:\w+ )?(?:want\w*|need\w*|required|necessary|welcome)\b|\bnot have\b|^no \w|"
     r"\bwith no\b|\bnot (?:contain|seen)\b|\bpack\b.{0,8}\bbags\b|\bone does not need\b"
 )
+_NOT_RID = re.compile(
+    r"\b(?:not|never|nobody|no one)\b.*\b(?:gone|removed|deleted|away|taken|thrown|erased|disappear)\b"
+)
 _UNSEEN = re.compile(  # that something is not to be seen is a wish, too
     r"\b(?:must|should|may|can|need|shall|to) (?:not|never) (?:appear|show|exist|be (?:seen|shown|there|visible|in))\b"
 )
@@ -57,7 +60,10 @@ _ASKS = re.compile(  # or tells
     r"yesterday|ago|used to|tomorrow|earlier|last (?:week|month|year|time|night))\b"
 )
 _FOR_GOOD = re.compile(
-    r"\b(?:always|for ?ever|permanent(?:ly)?|for good|once and for all|from now on|for keeps|remain so|stay(?:s|ing)? "
+    r"\b(?:always|throughout|definitive(?:ly)?|"
+    r"(?:for|over|in|during) (?:all of )?the (?:whole|entire|full) (?:film|clip|video|movie|time|scene)|"
+    r"from (?:the )?(?:first|start|beginning)(?: \w+)? to (?:the )?(?:last|end|finish)|"
+    r"for ?ever|permanent(?:ly)?|for good|once and for all|from now on|for keeps|remain so|stay(?:s|ing)? "
     r"(?:so|that way|like that))\b"
 )
 _CHOICE = re.compile(rf"\b(?:{HUES}) or (?:\w+ )?(?:{HUES})\b")
@@ -99,7 +105,8 @@ def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float, kind: 
     if _RID_OF_IT.search(f"{asked} . {said}") and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"
     plainly = _DENIED.search(asked) is None and _ASKS.search(said) is None
-    if kind == "remove" and chance >= SURELY and _ASKS.search(said) is None and _RID.search(asked):
+    asks = _ASKS.search(said) is not None or said.endswith("?") or _NOT_RID.search(said) is not None
+    if kind == "remove" and chance >= SURELY and not asks and _RID.search(asked):
         return True  # "I would rather have the room without the lamp"
     if kind == "move" and chance >= SURE and plainly and _ELSEWHERE.search(asked):
         return True  # "the ball should roll to the lamp instead"
