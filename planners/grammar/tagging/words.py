@@ -55,7 +55,8 @@ _CONTRACTIONS = {
     "cld": "could", "wld": "would", "shld": "should", "ur": "your", "n": "and", "em": "them", "'em": "them",
     "ya": "you", "wot": "what", "cuz": "because", "bc": "because", "tho": "though", "abit": "a bit", "alot": "a lot",
     "teh": "the", "hte": "the", "adn": "and", "nad": "and", "b4": "before", "lil": "little", "bot": "robot",
-    "dinnae": "do not", "disnae": "does not", "tae": "to", "efter": "after", "hauf": "half", "frae": "from",
+    "telly": "tv", "dinnae": "do not", "disnae": "does not", "tae": "to", "efter": "after", "hauf": "half",
+    "frae": "from",
 }  # fmt: skip
 # In the singular behind a number above one these are parts of a name: "a two-seater sofa".
 _COUNTED = frozenset({"two", "three", "four", "five", "six", "eight", "ten", "twelve"})

@@ -197,7 +197,7 @@ _BOTH_THERE = re.compile(  # "sets off when the robot does, and they both get th
 )
 _ARRIVES = re.compile(
     r"\b(?:arriv\w+|there|reach\w*|gets? (?:to|in)|finish\w*|lands?|parks?|ends? (?:up )?together|both|sync\w*|same "
-    r"times|side by side|comes? in)\b"
+    r"times|side by side|comes? in|pull\w* (?:in|up)|together\b.*\btogether)\b"
 )
 
 
@@ -211,12 +211,17 @@ def _beside_another(slots: Slots) -> Wanted | None:
         return None
     place = next(goal for goal in others if goal is not movers[0])
     slots.pass_goals()
+    lags = slots.moment.lasting is not None and _BEHIND_IT.search(slots.rest) is not None
+    if lags:  # "comes in half a second behind the robot"
+        happening = Happening(During(state="moving", of=movers[0].query, part="from"), f"after {movers[0].name}")
+        return Wanted(f"move {slots.whom} to {place.name}", Moment(start=slots.moment.lasting), happening)
     words = " ".join(slots.words)
     part: Part = "while" if _ARRIVES.search(words) and not slots.told else "from"
     happening = Happening(During(state="moving", of=movers[0].query, part=part), f"as {movers[0].name} does")
     return Wanted(f"move {slots.whom} to {place.name}", plainly(slots.moment), happening)
 
 
+_BEHIND_IT = re.compile(r"\b(?:behind|after) \|")
 _TO_A_HEIGHT = re.compile(r"\bto (?:\d[\d.]*|half a|one|two|three) ?(?:m|cm|met\w+|centimet\w+)\b")
 _WAYS = {
     "up": _UP, "down": _DOWN, "to the left": _LEFT, "to the right": _RIGHT,
@@ -394,6 +399,9 @@ def _sign(slots: Slots) -> float | None:
 def _speed(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     if (rate := slots.one("turns/s")) is not None:
+        factors = {own.said for own in slots.amounts if own.unit in ("times", "%")}
+        slots.used |= factors  # "double time, two turns a second"
+        slots.repeated |= factors
         yield now(slots, f"spin {slots.whom} {rate.value:g} turns per second")
         return
     if (seconds := slots.one("s")) is not None and not slots.told:
@@ -576,11 +584,12 @@ def _there(slots: Slots) -> dict[str, Any] | None:
     if len(goals) != 1 or is_opened(_noun(slots)) or slots.amounts or slots.tell(_HALFWAY):
         return None
     if goals[0].query.text in _TURNING_POINTS:
-        return {"state": "turning", "part": "from"}
+        return {"state": "turning", "part": "after" if _TURNS_FIRST.search(" ".join(slots.words)) else "from"}
     return {"state": "closest", "anchors": (goals[0].query,), "part": "from"}
 
 
 _HALFWAY = re.compile(r"\b(?:half ?way|mid ?way|half)\b")
+_TURNS_FIRST = re.compile(r"\b(?:mak\w+|does|doing|takes|after|completes) (?:its|his|her|the) turn\b")
 _TURNING_POINTS = ("corner", "turn", "bend", "turning point")
 
 
@@ -681,6 +690,9 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     if verb == "open" and (together := in_step(slots)) is not None:
         yield together
         return
+    if (apart := _beside_what_opens(slots, verb)) is not None:
+        yield apart
+        return
     if slots.goals or slots.moment.start == "end" or _IN_TURN.search(" ".join(slots.words)):
         return  # as another one does, or how it is at the end, or one after the other
     if _TOO.search(" ".join(slots.words)) and not slots.told:
@@ -705,6 +717,26 @@ def _opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     else:
         command = f"{verb} {slots.whom}" if how is None else f"open {slots.whom} {how}"
         yield Wanted(command, plainly(moment), slots.happening)
+
+
+def _beside_what_opens(slots: Slots, verb: str) -> Wanted | None:
+    """What opens so many seconds before or after another thing does: "half a second ahead of the top one"; None for
+    others."""
+    by = [own for own in slots.amounts if own.unit == "s"]
+    goals = [goal for goal in slots.goals if is_opened(goal.query.text)]
+    moves = slots.movement(goals[0].query) if len(goals) == 1 else None
+    sign = -1 if _AHEAD.search(slots.rest) else 1 if _AFTER_IT.search(slots.rest) else 0
+    if verb != "open" or slots.told or len(by) != 1 or moves is None or not sign or slots.moves(slots.queries[0]):
+        return None
+    start = moves.start + sign * by[0].value
+    if start < 0:
+        return None
+    slots.used |= {by[0].said, goals[0].name}
+    slots.repeated.add(by[0].said)
+    return opened(whose_of(slots), Moment(start=round(start, 4)), None)
+
+
+_AHEAD = re.compile(r"\b(?:before|ahead of|prior to|sooner than|earlier than) \|")
 
 
 # -- one after the other -----------------------------------------------------------------------------------------------

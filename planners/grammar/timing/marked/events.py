@@ -13,6 +13,7 @@ from ...tagging.words import bag
 from ..happenings import IT, Happening
 from ..manner import Thing
 from ..moments import Moment
+from .names import named
 
 _PRONOUNS = bag("it he she they him her them its his their this that")
 _BEFORE = re.compile(r"^(?:right |just |only )*(?:until|till|til|before|by|up to|prior to|no later than)\b")
@@ -97,6 +98,35 @@ def told_by_event(tag: str, phrase: str, thing: Thing) -> tuple[Moment | None, H
     elif found.through == "while" and _AFTER.match(phrase):
         part = "after"
     return None, Happening(During(state=state, anchors=anchors, of=of, part=part), phrase)
+
+
+def told_by_leg(tag: str, phrase: str, thing: Thing) -> Happening | None:
+    """The time that words with a tag of time tell by a leg of a way, before a turn or behind it: "during its second
+    walk", "when the first leg is over"; None for others."""
+    found = _LEG.search(phrase)
+    if found is None or found["rank"] == "third":
+        return None
+    before = named(phrase[: found.start()], thing)
+    whose = thing(found["who"] or before[0]) if found["who"] or before else IT
+    first = found["rank"] == "first"
+    ends = tag == "to" or _BEFORE.match(phrase) is not None
+    if whose is None:
+        return None
+    if tag in ("from", "to") and _STARTS.search(phrase[found.end() :]):  # "when the second walk begins"
+        edge = During(state="moving", of=whose, part="until" if ends else "from")
+        turned = During(state="turning", of=whose, part="until_end" if ends else "after")
+        return Happening(edge if first else turned, phrase)
+    if tag == "from" and _STOPS.search(phrase[found.end() :]):
+        phrase = f"after {phrase}"
+    return _leg(first, ends, whose, phrase)
+
+
+_LEG = re.compile(
+    r"\b(?:(?P<who>(?:the|my|our) (?:[a-z]+ )?[a-z]+) 's|its|his|her|the) "
+    r"(?P<rank>first|second|last|final|third) (?:walk|leg|stretch|straight)\b"
+)
+_STARTS = re.compile(r"^ (?:begins?|starts?|is beginning|gets? going|sets? in)\b")
+_STOPS = re.compile(r"^ (?:ends?|stops?|is (?:over|done|finished)|finishes)\b")
 
 
 def _of_film(last: bool, ends: bool, phrase: str) -> Moment:

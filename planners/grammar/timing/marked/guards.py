@@ -36,6 +36,7 @@ _OTHER_EDITS = re.compile(
 )
 _ADDED = re.compile(r"\b(?:add|insert)\b")  # "insert a pause", "add a half turn at the end"
 _FOR_ANOTHER = re.compile(r"\b(?:swap|exchange|trade|replace)\b")  # one colour for another
+_COPIES = re.compile(r"\b(?:copy|copies)\b")
 _ADDABLE = ("pause", "spin", "repeat", "halt", "longer", "begin", "duration", "amount", "open", "close", "return")
 _EXCHANGED = ("order", "reverse")  # kinds that words for another edit say: "swap start and finish"
 _PLACES_IT = re.compile(
@@ -79,6 +80,10 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
         )
     ):
         return True
+    if kind in ("hide", "remove") and hues() & {
+        word for tag, a, b in slots.spans if tag == "keep" for word in slots.words[a:b]
+    }:
+        return True  # "both get the same black material"
     if kind in ("hide", "remove") and (_PLACES_IT.search(asked) or _KEEPS_IT.search(f"{asked} {idle}")):
         return True  # "place three bottles on the table", "keep the crib, nothing else"
     if (there := _THERE_IS.search(" ".join(slots.words))) is not None and there["noun"] not in " ".join(things).split():
@@ -97,7 +102,8 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     shades = sum(tag == "as" for tag, _, _ in slots.spans)
     if kind == "recolor" and shades > 1:
         asked = _FOR_ANOTHER.sub("make", asked)
-    if _OTHER_EDITS.search(_ADDED.sub("make", asked) if kind in _ADDABLE else asked) and not (
+    edits = _ADDED.sub("make", asked) if kind in _ADDABLE else asked
+    if _OTHER_EDITS.search(_COPIES.sub(" ", edits) if kind in ("open", "together") else edits) and not (
         cancels or kind in _EXCHANGED
     ):
         return True
@@ -137,6 +143,8 @@ _SAME_SPEED = re.compile(  # "at unchanged speed"
     r"\b(?:at|with) (?:an? |the |its )?(?:same|unchanged|unaltered|usual|normal|present|current|original) "
     r"(?:speed|pace|rate|velocity|tempo)\b|\b(?:same|unchanged|unaltered) (?:speed|pace|rate|velocity|tempo)\b"
 )
+_SLOWLY = re.compile(r"\b(?:nice|good|real|really) (?:and )?(?:slow|easy|quick|fast)\b")
+_IN_STEP = re.compile(r"\b(?:sync\w*|together|unison|tandem|in step|mirror\w*|cop(?:y|ies)|doubles?|same|as)\b")
 _AT_ONCE = re.compile(
     r"\bwithout (?:any |a |further )?(?:delay|pause|break|stop|stopping|hesitation|ado|wait|waiting)\b"
 )
@@ -175,6 +183,10 @@ _MANNER = re.compile(r"\| (?P<verb>[a-z]+) (?:open|shut|closed|apart)\b")
 def says_more(kind: str, slots: Slots) -> bool:
     """Whether a word without a mark tells of another wish: "one second earlier, and slower"."""
     idle, left = slots.idle, ASKED_AS_NOT.sub(" ", _WHY_NOT.sub(" ", slots.rest))
+    if kind == "move":
+        left = _SLOWLY.sub(" ", left)
+    if kind in ("open", "together") and is_opened(slots.things[0]) and _IN_STEP.search(left):
+        left = _BACK_IN.sub(" ", left)
     if kind == "open" and slots.happening is not None and slots.happening.during.of not in (None, IT, *slots.queries):
         left = _BACK_IN.sub(" ", left)  # as another one does
     if kind not in ("recolor", "hide") and "then" in idle and hues() & set(idle.split()):

@@ -87,7 +87,8 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
             continue  # "ahead of the other two"
         told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
         seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
-        seconds |= word == "one" and at > 0 and words[at - 1] in _AT and not then.isalpha()  # "starting at one"
+        alone = word == "one" and at > 0 and words[at - 1] in _AT and not then.isalpha()  # "starting at one"
+        seconds |= alone and " ".join(words[max(0, at - 2) : at]) != "one by"
         seconds &= word != "a" or (at > 0 and words[at - 1] in ("for", "over", "within", "in"))
         if told != 1 or (seconds and word in ("1", "one", "a")):
             rate = words[max(0, at - 1)] in ("every", "each", "per")

@@ -100,6 +100,8 @@ def _is_name(words: Sequence[str]) -> bool:
     return is_known(last) or (words[0] == "the" and 1 < len(words) <= _UNKNOWN)
 
 
+PARTS = {"leaf": "door", "blade": "fan", "rotor": "fan", "propeller": "fan"}  # what moves as the whole does
+_FELLOW = re.compile(r"(?<=[a-z]) (?:guy|dude|fella|fellow|buddy|chap|lad|thingy|dearest)$")  # behind a name
 _LIST = re.compile(r" , and | and | , | \+ | & | / ")
 
 
@@ -115,12 +117,18 @@ def with_colors(thing: Thing, words: Sequence[str], spans: Sequence[Span]) -> Th
     marked = (words[start:stop] for tag, start, stop in spans if tag in ("x", "y"))
     named = [word for own in marked for word in own if is_known(word) and word not in _NO_THINGS | hues()]
     noun = singular(named[0]) if named and len(set(map(singular, named))) == 1 else ""
+    noun = noun or next((own for own in map(singular, words) if not named and is_opened(own)), "")
 
     def read(name: str) -> Query | None:
+        name = _FELLOW.sub("", name)
+        if (part := singular(name.split()[-1]) if name else "") in PARTS:  # "from when the blades stand still"
+            name = f"the {PARTS[part]}"
         bare = [word for word in name.split() if word not in ("the", "one", "'s", "that", "this", "those")]
         alone = name in _OF_DRAWERS or (bare[:1] != ["middle"] and name == f"the {bare[0] if bare else ''}")
         if len(bare) == 1 and bare[0] in _OF_DRAWERS and alone and is_opened(noun):  # "middle and bottom drawer"
             return thing(f"the {bare[0]} {noun}")
+        if noun and name.endswith(" one") and is_opened(noun) and thing(name) is None:
+            return thing(f"{name.removesuffix('one')}{noun}")  # "the lowest one"
         if not bare or not set(bare) <= hues():
             *several, last = (own for own in _LIST.split(name) if own) if name else ("",)
             whole = last.split() or [""]

@@ -59,8 +59,9 @@ _TABLE: tuple[tuple[str, str, str], ...] = (  # tags, none: all; words; what the
     ("in", r"^in (?=(?:along|together|step|sync|tandem|time|unison) )", ""),
     ("in", r"^(?:just |only )+(?=for|during|while|in|on)", ""),
     (
-        "in",
-        r"^for (?P<whose>the|its|his|her) (?P<event>turn|fall|roll|walk|swing|drop|opening|closing|slide)$",
+        "in from",
+        r"^(?:just |only )?(?:for|during) (?P<whose>the|its|his|her) "
+        r"(?P<event>turn|fall|roll|walk|swing|drop|opening|closing|slide)(?: itself)?$",
         r"during \g<whose> \g<event>",
     ),
     ("", r"\bthe (?:edge|border|rim|side) of (?=the )", ""),
@@ -194,7 +195,8 @@ _NOT_MOVING = re.compile(
 _OVER = re.compile(
     r"^(?: ?(?:is|are|'s|was|has|have|had)(?: been)?)?(?: all)? (?:done|through|up|complete|finished|inside|past|by|"
     r"over|gone|in place|parks?|parked|quits?|dies|settles?|settled|docks?|docked|dead|dies down|gives? up|calms? down|"
-    r"comes? to (?:rest|a standstill))(?: .*)?$"
+    r"(?:[a-z]+ )?to (?:rest|a standstill|a stop|a halt)|pulled up|drawn up|cuts?(?: out)?|conks out|powers down|"
+    r"(?:switches|shuts|turns) off)(?: .*)?$"
 )
 _PATH = (
     r"(?:by|past|over|across|through|along|around|round|about|away|off|in|into|out|up|down|to|towards?|at|near|home)"

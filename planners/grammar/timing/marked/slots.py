@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import islice, pairwise
+from itertools import chain, islice, pairwise
 
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
@@ -22,7 +22,7 @@ from ..manner import Thing
 from ..moments import Moment, seconds_of
 from .amounts import Amount, amount, repeats, spins
 from .kinds import COURSES
-from .names import MOVING, with_colors, with_moving
+from .names import MOVING, PARTS, with_colors, with_moving
 from .names import named as names_in
 from .orders import PLACES
 from .times import TIMES
@@ -36,7 +36,6 @@ _EVENTS = (
 )
 _OF_EVENT = re.compile(rf"^(?:the |its |his |her |a )?(?:\w+ )?{_EVENTS} (?:of|by|for) ")
 _WHOLE_OF = re.compile(r"(?<=\w) (?:leaf|blades?|front|panel)$")  # a part of it that moves as it does
-_PARTS = {"leaf": "door", "blade": "fan", "rotor": "fan", "propeller": "fan"}  # what moves as the whole does
 _BESIDE_IT = re.compile(r" (?:of|over|above|on|in|at|by|near|beside|behind|under|from) ")
 _GROUP_OF = re.compile(
     r"^(?:the |that |this )?(?:whole |entire )?(?:row|lot|trio|set|shelf|stack|group|bunch|line|gang|series|"
@@ -239,12 +238,14 @@ _THROUGHOUT = re.compile(
 )
 _UNLESS = re.compile(
     r"\b(?:except|unless|apart from|only if)\b|"
-    r"(?<!wonder )(?<!see )(?<!know )(?<!ask )(?<!check )\bif (?:it|he|she|they|the)\b"
+    r"(?<!wonder )(?<!see )(?<!know )(?<!ask )(?<!check )(?<!as )\bif (?:it|he|she|they|the)\b"
+    r"(?! (?:is|are|was|would be|be|makes?|'s)? ?(?:no|not|all|any|okay|ok|fine|possible|too|animation|suits)\b)"
 )
 _ASKED_OF = re.compile(
     r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b|"
     r"\b(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b"
 )
+_AS_FAST = re.compile(r"\b(?:twice|double|half|times) (?:as|the) (?:fast|quick|slow|speed)\b")
 _NOT_UNTIL = re.compile(r"\bnot (?:before|until|till) (?:the|my|a) \w+ \w+")
 
 
@@ -253,6 +254,8 @@ def asks_more(words: Sequence[str], tag: str) -> bool:
     said = " ".join(words)
     if tag == "not":
         return _UNLESS.search(said) is not None or _NOT_UNTIL.search(said) is not None
+    if tag == "keep" and _AS_FAST.search(said) is not None:
+        return True  # "and going twice as fast as it is"
     if tag == "keep" and " but " in said and amount(said.split(" but ")[1]) is not None:
         return True  # "same roll but twice as fast"
     return tag == "off" and (_ASKED_OF.search(said) is not None or _UNLESS.search(said) is not None)
@@ -314,14 +317,14 @@ def slots(
     painted = None if names else _painted(map(text, (span for span in spans if span[0] == "as")), thing)
     if painted is not None:
         names, queries = (painted[0],), (painted[1],)  # "I would like a pink bed"
-    if not names:
-        names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
     if not names and any(
-        ((query := thing(text(span))) is None and text(span) not in ("its", "his", "her"))
+        ((query := thing(text(span))) is None and text(span) not in _PRONOUNS)
         or (query is not None and query.last and " " in text(span))
         for span in named
     ):
         return None  # what it is about is not understood
+    if not names:
+        names, queries = _things(iter(_named_elsewhere(words, spans, thing, time[1])), thing)
     of = None if time[1] is None else time[1].during.of
     if not names and of is not None and of.text and kind not in LOOKS:  # "once the blue volume falls, its fall ..."
         own = re.search(rf"\bthe (?:[a-z]+ )?{re.escape(of.text)}\b", time[1].said if time[1] is not None else "")
@@ -468,14 +471,16 @@ def _counts(then: str) -> bool:
     return then.isalpha() and then not in _UNITS and then not in NUMBERS
 
 
-_NO_SECONDS = bag("m cm mm meter meters metre metres km kg degree degrees deg percent % am pm minutes hours years days")
+_NO_SECONDS = bag(
+    "m cm mm meter meters metre metres km kg degree degrees deg percent % am pm minutes hours years days hz rpm"
+)
 _NUMBERED = bag(
     "requirement tc cue note p no number version scene shot reel bar chapter page line step rule item point class year "
     "room grade level part day week take slide figure table question exercise - #"
 )
 _UNITS = bag(
-    "s sec secs second seconds m cm mm meter meters metre metres degree degrees deg percent turn turns time times rpm "
-    "and or to until till from at by in half"
+    "hz hertz rps fps s sec secs second seconds m cm mm meter meters metre metres degree degrees deg percent turn "
+    "turns time times rpm and or to until till from at by in half"
 )
 
 
@@ -492,6 +497,20 @@ def _color(said: str) -> str:
     )
 
 
+def _divided(name: str) -> tuple[str, ...]:
+    """The names that a name for several stands for: "the two lower drawers"."""
+    if (drawer := _NUMBERED_DRAWER.match(name)) is not None:
+        return (f"the {_DRAWERS[str(NUMBERS.get(drawer['at'], drawer['at']))]} drawer",)
+    return ("the middle drawer", "the bottom drawer") if _LOWER.match(name) else (name,)
+
+
+_LOWER = re.compile(r"^(?:both (?:of )?)?(?:the )?(?:(?:two )?(?:lower|bottom)|lower two|bottom two) (?:two )?drawers$")
+_NUMBERED_DRAWER = re.compile(r"^(?:the )?drawer (?:number |no ?\.? ?|# ?)?(?P<at>one|two|three|1|2|3)$")
+_DRAWERS = {"1": "top", "2": "middle", "3": "bottom"}
+_PRONOUNS = ("its", "his", "her", "this one", "that one", "same", "the same", "this", "that")
+_CRIES = bag("boom bang poof bam wham pow presto abracadabra voila tada hey")
+
+
 def _things(said: Iterator[str], thing: Thing, grouped: bool = False) -> tuple[tuple[str, ...], tuple[Query, ...]]:
     """Names of things and what they mean, each once, without pronouns and what they do: "the ball 's roll".
 
@@ -499,16 +518,16 @@ def _things(said: Iterator[str], thing: Thing, grouped: bool = False) -> tuple[t
         grouped: whether "all three" are all that moves.
     """
     found = dict[str, Query]()
-    for name in said:
-        if _JUST_EVENT.match(name):
+    for name in chain.from_iterable(map(_divided, said)):
+        if _JUST_EVENT.match(name) or name in _CRIES:
             continue
         bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
         bare = _GROUP_OF.sub("all the ", bare)
         bare = _IN_A_ROOM.sub("", re.sub(r" 's?$", "", bare))
         bare = _STATE.sub("", with_moving(bare)) if is_opened(bare) else with_moving(bare)
         head = _BESIDE_IT.split(bare)[0].split()
-        if head and (part := singular(head[-1])) in _PARTS:
-            bare = f"the {_PARTS[part]}" if len(head) < 3 else _WHOLE_OF.sub("", bare)
+        if head and (part := singular(head[-1])) in PARTS:
+            bare = f"the {PARTS[part]}" if len(head) < 3 else _WHOLE_OF.sub("", bare)
         query = ALL_MOVING if grouped and _GROUP.match(bare) else thing(bare)
         if query is None and (shorter := _RANKS.sub("", bare)) != bare:
             bare = shorter

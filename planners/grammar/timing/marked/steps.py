@@ -22,7 +22,7 @@ SPACED = re.compile(rf"\b(?:{_APART}|delay)\b")  # words by which seconds are th
 _LATER = re.compile(rf"\b(?:{_APART}|after|later|behind)\b")  # of things that open
 _AS_ONE = re.compile(
     r"\b(?:same|together|with|as|like|sync\w*|step|unison|tandem|parallel|copy|copies|copying|mirror\w*|match\w*|"
-    r"accompan\w+|follow\w*|alongside|simultaneous\w*|join\w*|both|does)\b"
+    r"accompan\w+|follow\w*|alongside|simultaneous\w*|join\w*|both|does|doubles?)\b"
 )
 _STAYS = re.compile(
     r"\b(?:stays?|remains?|leave|left|keeps?|holds?) (?:\w+ )?(?:open|out)\b|\bnot (?:close|shut|go back)\b|"
@@ -73,9 +73,15 @@ def in_turn(things: Sequence[Query], slots: Slots) -> Iterator[Wanted]:
 
 def in_step(slots: Slots) -> Wanted | None:
     """What opens, and closes, when another does: "the middle drawer, in sync with the top one"; None for others."""
-    if not all(is_opened(query.text) and not slots.moves(query) for query in slots.queries):
-        return None
+    movers = [query for query in slots.queries if slots.moves(query)]
+    follow = tuple(query for query in slots.queries if query not in movers)
     other: Query | None = None
+    if len(movers) == 1 and follow and not slots.told and _AS_ONE.search(" ".join(slots.words)):
+        other = movers[0]  # "the middle drawer doubles the top one"
+    elif movers:
+        return None
+    if not all(is_opened(query.text) for query in slots.queries):
+        return None
     as_it_moves = slots.happening is not None and slots.happening.during.state in ("moving", "opening")
     if slots.happening is not None and as_it_moves and slots.happening.during.part == "while" and slots.moment.empty:
         other = slots.happening.during.of
@@ -95,7 +101,7 @@ def in_step(slots: Slots) -> Wanted | None:
         slots.repeated.add(share.said)
     how_far: dict[str, Any] = {} if length is None else {"distance": {"value": length.value}}
     how_far |= {} if angle is None else {"degrees": angle.value}
-    steps = [opened(query, Moment(), opening, **how_far) for query in slots.queries]
+    steps = [opened(query, Moment(), opening, **how_far) for query in follow]
     if not _STAYS.search(words) and _CLOSES.search(_OPENS_ALONE.sub(" ", words)):
-        steps += [opened(query, Moment(), closing, "close") for query in slots.queries]
+        steps += [opened(query, Moment(), closing, "close") for query in follow]
     return replace(steps[0], also=tuple(steps[1:]))

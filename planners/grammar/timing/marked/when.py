@@ -16,7 +16,7 @@ from ..happenings import IT, Happening
 from ..manner import Thing
 from ..moments import DURATION, End, Moment
 from .amounts import amount
-from .events import is_told_by_event, told_by_event
+from .events import is_told_by_event, told_by_event, told_by_leg
 from .names import named as names_in
 from .numbered import numbered
 from .times import LASTS, LEADING, TIMES, UNTIL, delayed, joined, told_by
@@ -52,6 +52,8 @@ _PLAINER = (  # times in plainer words
         ),
         "is fully open",
     ),
+    (re.compile(r"^all over(?: and| ,)? ?"), ""),
+    (re.compile(rf"^(?:until|till|not (?:until|till|before)) (?={DURATION} (?:after|once|past|from) )"), ""),
     (re.compile(r"\b(?:couple(?: of)?) (?=seconds?\b)"), "two "),
     (
         re.compile(r"^(?P<lead>(?:by|until|till|before|at) the )(?P<rank>first|second|third|fourth|fifth)$"),
@@ -65,6 +67,7 @@ _PLAINER = (  # times in plainer words
         r"\g<lead>",
     ),
 )
+_HALFWAY = re.compile(r"\b(?:half ?way|mid|midway|middle|half)\b")
 _ARRIVES = re.compile(
     r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?|home|parks?|"
     r"complet\w+|back|again|return\w*|re ?\w+s)\b"
@@ -97,7 +100,7 @@ _EACH_TIME = re.compile(
     r"(?:lasting |taking |in |for )?| each(?: time)?$"
 )
 _TOGETHER = re.compile(
-    r"^one (?:after|behind) (?:the )?(?:other|another)$|^one by one$|^in turn$|"
+    r"^one (?:after|behind) (?:the )?(?:other|another)$|^one by one$|^in turn$|^out and (?:back )?in(?: again)?$|"
     r"^(?:(?:both|all|in|and|out|shuts?|opens?|close[sd]?|times|again|back) )*together\b(?! with\b)[a-z ]*$"
 )
 PLACES_IN_TURN = bag("first then next last lastly finally and the one ones top middle bottom upper lower drawer , ;")
@@ -176,6 +179,9 @@ def time_of(
             if event is None:
                 return None
         happening = event or happening
+    numbers = isinstance(moment.start, float) and isinstance(moment.stop, float) and moment.start >= 0
+    if numbers and happening is not None and happening.during.part == "while" and happening.until is None:
+        happening = None  # "together with the top one, 1 to 2 s": the numbers tell it
     if kind in LOOKS and moment.start == 0.0 and moment.stop is not None:
         moment = replace(moment, start=None)
     return moment, happening
@@ -266,6 +272,8 @@ def _told(
             return None, _as_well(happening, other, tag, phrase)
         if phrase.split()[-1] in ("does", "do"):
             return None, Happening(During(state="moving", of=other, part="until" if tag == "to" else "from"), phrase)
+    if (leg := told_by_leg(tag, phrase, thing)) is not None:
+        return None if _HALFWAY.search(phrase) else (None, leg)
     for plainer in dict.fromkeys((phrase, _ONLY.sub("", phrase))):
         told = told_by(tag, plainer, thing)
         if told is not None:

@@ -41,6 +41,7 @@ _RID = re.compile(
 _NOT_RID = re.compile(
     r"\b(?:not|never|nobody|no one)\b.*\b(?:gone|removed|deleted|away|taken|thrown|erased|disappear)\b"
 )
+_ANY_AT_ALL = re.compile(r"^no\b.*\?$")  # "no black chairs?"
 _UNSEEN = re.compile(  # that something is not to be seen is a wish, too
     r"\b(?:must|should|may|can|need|shall|to) (?:not|never) (?:appear|show|exist|be (?:seen|shown|there|visible|in))\b"
 )
@@ -105,7 +106,7 @@ def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float, kind: 
     if _RID_OF_IT.search(f"{asked} . {said}") and _DENIED.search(asked) is None:
         return True  # "the lamp is ugly, get rid of it"
     plainly = _DENIED.search(asked) is None and _ASKS.search(said) is None
-    asks = _ASKS.search(said) is not None or said.endswith("?") or _NOT_RID.search(said) is not None
+    asks = any(pattern.search(said) is not None for pattern in (_ASKS, _NOT_RID, _ANY_AT_ALL))
     if kind == "remove" and chance >= SURELY and not asks and _RID.search(asked):
         return True  # "I would rather have the room without the lamp"
     if kind == "move" and chance >= SURE and plainly and _ELSEWHERE.search(asked):
