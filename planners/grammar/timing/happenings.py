@@ -197,6 +197,8 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
             if found is None:
                 continue
             state, course = found
+            if state == "touches" and re.fullmatch(_WHILE, word) and clause.sense in MOTION:
+                state, course = "moving", _LASTS  # "while it walks over to the bed"
             if state == "closing" and course in (_SHUTS, _EVENT) and _FROM_THEN.match(word):
                 course = _BEGINS  # "from the moment when it goes back in"
             anchors = (manner.whom,) if manner.whom is not None and state not in ALONE else ()

@@ -71,7 +71,7 @@ _ALL_ELSE = re.compile(
     r"\b(?:everything|all) (?:else(?! (?:being|stays|remains|is to|as))|but)\b|\b(?:remove|delete|hide) the rest\b"
 )
 _ALWAYS = re.compile(
-    r"\b(?:throughout|always|all the time|(?:whole|entire|full) "
+    r"\b(?:throughout|always|all the time|all (?:film|clip|video|movie)\b|(?:whole|entire|full) "
     r"(?!seconds?\b|secs?\b|turns?\b|rounds?\b)\w+|at all times|at any (?:time|point)|all through|for ever|forever|"
     r"from (?:the )?(?:first|start|beginning) (?:\w+ )?to (?:the )?(?:last|finish|end))\b"
 )
@@ -94,6 +94,7 @@ _NEVER_LEAVES = re.compile(  # "walks all the way to the bed without ever leavin
     r"\b(?:walks?|rolls?|drives?|goes|moves?|slides?|travels?|runs?)\b.*\bwithout (?:ever |once |even )?"
     r"(?:leaving (?:its|his|her|the) (?:spot|place|position)|moving|budging|stirring)\b"
 )
+_FIRST_AND_LAST = re.compile(r"\bbefore (?:the )?(?:\w+ ){1,3}(?:and|but|yet)\b[^.]{0,25}\bafter it\b")
 _THROUGHOUT_OR_NOT = ("recolor", "hide", "spin", "duration", "speed")  # kinds of which "throughout" is no other time
 _LOCKED = re.compile(  # "lock the ball to its spot while it rolls to the wall"
     r"\b(?:lock(?:ed|s)?|pin(?:ned|s)?|nailed|stuck|glued|motionless|stands? still|stays? (?:still|put))\b.{0,60}"
@@ -106,7 +107,9 @@ _BOTH_AT_ONCE = re.compile(
     rf"\b{_MOVES}\b.{{0,40}}\b(?:and|but|yet|while)\b.{{0,30}}\b{_AT_REST}\b.{{0,20}}\b(?:at the same time|"
     rf"simultaneously|all at once)\b|"
     rf"\b{_AT_REST}\b.{{0,30}}\b(?:and|but|yet|while)\b.{{0,30}}\b{_MOVES}\b.{{0,40}}\b(?:at the same time|"
-    rf"simultaneously|all at once)\b"
+    rf"simultaneously|all at once)\b|"
+    rf"\b{_MOVES}\b.{{0,40}}\b(?:and|but|yet)\b.{{0,8}}\b(?:at|in) the (?:same|very same) (?:time|moment|instant)\b"
+    rf".{{0,20}}\b{_AT_REST}\b"
 )
 _AT_A_RATE = re.compile(
     r"\b(?:once|twice|thrice|turns?|rounds?|revolutions?) (?:in|every|per|each) (?!a circle)", re.IGNORECASE
@@ -122,6 +125,11 @@ def wording_of(said: str) -> list[str]:
 
 def _apart(start: float, stop: float) -> float:
     return stop - start
+
+
+def _times(spans: Sequence[Span]) -> int:
+    """How many marks tell a time."""
+    return sum(tag in TIMES for tag, _, _ in spans)
 
 
 def _turns_of(moves: Movement) -> tuple[float, ...]:
@@ -173,9 +181,10 @@ class Judge:
         for spans in others:
             if not named <= self._named_by(wording, spans):
                 continue  # a thing that is named stays
-            if (found := self._marked_so(cleaned, wording, spans, max(least, SURE))) is not None and not leaves_out(
-                wording, found, spans=first
-            ):
+            if kind in STATIC and _times(first) and not _times(spans):
+                continue  # and a time
+            found = self._marked_so(cleaned, wording, spans, max(least, SURE))
+            if found is not None and not leaves_out(wording, found, spans=first, timed=False):
                 return found
         return None
 
@@ -222,7 +231,7 @@ class Judge:
             with suppress(Refusal, UserError, ValidationError):
                 found = self._ops(wanted)
                 if found and not self._loses(found, wording, held) and not self.is_still(found):
-                    return of_one_movement(held.meant, found)
+                    return of_one_movement(held.meant, found, held.aside)
         return None
 
     def _goes_without_time(self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]) -> bool:
@@ -288,7 +297,7 @@ class Judge:
         """Whether something is to be so all the time, and otherwise at a time or as well: "keep it shut throughout, and
         have it open at 2 s"."""
         said = with_nouns(in_words(cleaned))
-        if any(pattern.search(said) is not None for pattern in (_BOTH_WAYS, _NEVER_LEAVES, _LOCKED)):
+        if any(pattern.search(said) is not None for pattern in (_BOTH_WAYS, _NEVER_LEAVES, _LOCKED, _FIRST_AND_LAST)):
             return True
         if _ALWAYS.search(said) is None:
             return _BOTH_AT_ONCE.search(said) is not None

@@ -33,6 +33,8 @@ def when_of(moment: Moment, during: During | None, kind: str, op: Fields) -> Whe
         kind: as `Command` has it.
     """
     lasting, gradual = moment.lasting, False
+    if kind == "look" and lasting is not None and during is not None and during.part == "while":
+        during = during.model_copy(update={"part": "from"})  # "for one second, when all books are down"
     start: End | None = moment.start
     goes = kind == "path" or op.get("turns") is not None
     last = isinstance(start, float) and (start < 0 or any(map(_TO_THE_END.search, moment.said)))
@@ -79,9 +81,16 @@ def closes_when_open(ops: Sequence[Fields], happening: Happening) -> bool:
     return once and all(op.get("change") == ("close" if op["op"] == "articulate" else "stop") for op in ops)
 
 
-def of_one_movement(said: str, ops: Sequence[Fields]) -> tuple[Fields, ...]:
+def of_one_movement(said: str, ops: Sequence[Fields], aside: str = "") -> tuple[Fields, ...]:
     """Operations with the movement of which words tell how long it takes, or how much later it is: "let the drawer
-    close slower" says nothing of how it opens."""
+    close slower" says nothing of how it opens.
+
+    Args:
+        said: the words that ask for something.
+        aside: those about how it is now, which count where these tell of neither movement.
+    """
+    if _OPENS.search(said) is None and _CLOSES.search(said) is None:
+        said = aside
     if _BOTH.search(said):
         return tuple(ops)
     said = HELD_BACK.sub(" ", said)
@@ -114,7 +123,7 @@ HELD_BACK = re.compile(
 _OPENS = re.compile(r"\b(?:open(?:s|ing)?|(?<!be drawn )(?<!being drawn )out|emerg\w+|extension)\b")
 _CLOSES = re.compile(
     r"\b(?:clos(?:e|es|ing)|shut(?:s|ting)?|back(?: in)?|(?:go|goes|slides?|comes?|going|sliding) in|"
-    r"return|retreat|retraction|homecoming)\b"
+    r"way home|return|retreat|retraction|homecoming)\b"
 )
 _THEN_LATER = r"(?: (?!and\b|,|\.)\S+){0,6}? (?:earlier|sooner|later)\b"
 _OPENS_LATER = re.compile(rf"{_OPENS.pattern}{_THEN_LATER}")

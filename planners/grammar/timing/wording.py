@@ -22,7 +22,7 @@ def spelt_out(said: str) -> str:
     def verb(found: re.Match[str]) -> str:
         return "has" if has_form(found["then"], tuple(SENSES), "past") and found["then"] != "open" else "is"
 
-    return _SHORT_VERB.sub(lambda m: f" {verb(m)} {m['then']}", _FILLER.sub(" ", said))
+    return " ".join(_SHORT_VERB.sub(lambda m: f" {verb(m)} {m['then']}", _FILLER.sub(" ", said)).split())
 
 
 _FILLER = re.compile(r"(?: ,)? (?:uh|um|uhm|er|erm|hmm|(?<! as )well)(?: ,)?(?= )")
@@ -75,6 +75,21 @@ _SYNONYMS = tuple(
         (r"(?P<word>until|while|when) ?, (?:and|but) only (?P=word) ?,?", r"\g<word>"),
     )
 )
+_DIGIT_WORDS = "one|two|three|four|five|six|seven|eight|nine"
+_HUNDRED = re.compile(
+    r"\b(?P<count>an?|one|two|three)(?: full| whole| good)? hundred"
+    rf"(?:(?: and|,)? (?P<more>(?:{'|'.join(NUMBERS)})(?:[ -](?:{_DIGIT_WORDS}))?))?\b",
+    re.IGNORECASE,
+)
+
+
+def _hundreds(found: re.Match[str]) -> str:
+    """A number from a hundred on in digits."""
+    more = re.split(r"[ -]", found["more"]) if found["more"] else []
+    count = NUMBERS.get(found["count"].lower(), 1)
+    return str(100 * count + sum(NUMBERS[word.lower()] for word in more))
+
+
 _MILLISECONDS = re.compile(
     r"(?<![\d.])(?P<n>\d{1,5}) ?(?:(?P<unit>(?:ms|msecs?|milliseconds?)\b)|"
     r"(?=(?:and|to|-|–) ?\d{1,5} ?(?:ms\b|millisec)))",
@@ -94,6 +109,7 @@ def in_words(cleaned: str) -> str:
     cleaned = _MILLISECONDS.sub(
         lambda m: f"{int(m['n']) / 1000:g} s" if m["unit"] else f"{int(m['n']) / 1000:g}", cleaned
     )
+    cleaned = _HUNDRED.sub(_hundreds, cleaned)
     stamped = _STAMP.sub(lambda m: f"{60 * int(m['minutes']) + int(m['seconds'])} s", cleaned)
     ranged = phrases.RANGE.sub(lambda m: f"from {m['a'] or m['c']} to {m['b'] or m['d']} s", stamped)
     return " ".join(w.text for w in split(ranged))

@@ -30,6 +30,7 @@ _SECOND = r"(?:s|secs?|seconds?)"
 _OFTEN = {"once": 1.0, "twice": 2.0, "thrice": 3.0}
 _TABLE: tuple[tuple[Unit, str], ...] = (  # tried in their order
     ("turns/s", rf"(?P<n>{_N}){_FULL} {_ROUNDS}{_EACH}(?:(?P<per>{_N}) )?{_SECOND}"),
+    ("turns/s", rf"(?:each|every|per) {_SECOND} (?P<n>{_N}){_FULL} {_ROUNDS}"),
     ("turns/s", rf"(?P<often>once|twice|thrice){_EACH}(?:(?P<per>{_N}) )?{_SECOND}"),
     ("turns/s", rf"(?P<n>{_N}) ?(?:hz|hertz|rps)"),
     ("turns/s", rf"(?P<rpm>{_N}) ?(?:rpm|{_ROUNDS} (?:per|a) minute)"),

@@ -363,6 +363,13 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
         return
     if moment.lasting is not None:
         moment = replace(moment, taken=True)
+    moves = slots.movement(slots.queries[0])
+    if moves is not None and moves.turns and moment.stop is None and _STOPS_AGAIN.search(slots.idle):
+        told = any(slots.told_of(tag, moves.stop) for tag in ("keep", "off", "not"))
+        yield replace(
+            paced(slots, "begin", moment), also=(paced(slots, "stop", Moment(start=moves.stop)),) if told else ()
+        )
+        return
     if slots.happening is not None and moment.empty and slots.happening.during.part in _ENDED_BY:
         part = _ENDED_BY[slots.happening.during.part]  # "postpone it until the blue one has landed"
         slots.happening = replace(slots.happening, during=slots.happening.during.model_copy(update={"part": part}))
@@ -375,6 +382,7 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
 
 
 _BETWEEN = re.compile(r"\b(?:between|apart|intervals?|stagger\w*|spaced?)\b")
+_STOPS_AGAIN = re.compile(r"\b(?:stops?|stopping|rests?|at rest|ends?|ending|finish\w*|off|still|halts?)\b")
 _LEAVES_IT = re.compile(r"\b(?:leav\w+|left|quit\w*|depart\w*|go of|leave of|off|from) \|")
 _BEFORE = re.compile(r"\b(?:before|until|till)\b")
 _ENDED_BY: dict[Part, Part] = {"until": "from", "until_end": "after"}
@@ -580,7 +588,11 @@ _SHORT_OF = re.compile(r"\b(?:short|before|away)\b")
 def _there(slots: Slots) -> dict[str, Any] | None:
     """The time from when something is at the other thing that is named, as fields: "it stops on the rug"; None if none
     is named, or several."""
-    goals = [goal for goal in slots.goals if goal.way != "from" and not goal.query.last]
+    goals = [goal for goal in slots.goals if not goal.query.last]
+    passed = next((part for part, words in _PASSES.items() if words.search(slots.rest)), None)
+    if passed is not None and len(goals) == 1 and not slots.amounts and not is_opened(_noun(slots)):
+        return {"state": passed, "anchors": (goals[0].query,), "part": "after" if passed == "on" else "from"}
+    goals = [goal for goal in goals if goal.way != "from"]
     if len(goals) != 1 or is_opened(_noun(slots)) or slots.amounts or slots.tell(_HALFWAY):
         return None
     if goals[0].query.text in _TURNING_POINTS:
@@ -589,6 +601,10 @@ def _there(slots: Slots) -> dict[str, Any] | None:
 
 
 _HALFWAY = re.compile(r"\b(?:half ?way|mid ?way|half)\b")
+_PASSES = {
+    "on": re.compile(r"\b(?:leav\w+|left|off|past|beyond|out of|after|across|clears?|clearing) \|"),
+    "touches": re.compile(r"\b(?:reach\w*|entering|enters|onto|arriv\w+ (?:at|on)|edge of|touch\w*|hit\w*|meet\w*) \|"),
+}
 _TURNS_FIRST = re.compile(r"\b(?:mak\w+|does|doing|takes|after|completes) (?:its|his|her|the) turn\b")
 _TURNING_POINTS = ("corner", "turn", "bend", "turning point")
 

@@ -36,6 +36,7 @@ _OTHER_EDITS = re.compile(
 )
 _ADDED = re.compile(r"\b(?:add|insert)\b")  # "insert a pause", "add a half turn at the end"
 _FOR_ANOTHER = re.compile(r"\b(?:swap|exchange|trade|replace)\b")  # one colour for another
+_PAIR = re.compile(r"\b(?:them both|both of (?:them|these|those)|the two of them|the pair of them)\b")
 _COPIES = re.compile(r"\b(?:copy|copies)\b")
 _ADDABLE = ("pause", "spin", "repeat", "halt", "longer", "begin", "duration", "amount", "open", "close", "return")
 _EXCHANGED = ("order", "reverse")  # kinds that words for another edit say: "swap start and finish"
@@ -80,6 +81,9 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
         )
     ):
         return True
+    single = len(slots.queries) == 1 and slots.queries[0].pick == "one" and not slots.queries[0].also
+    if kind in ("recolor", "hide", "remove") and single and _PAIR.search(" ".join(slots.words)):
+        return True  # "vase I do not like and table also not, take them both away"
     if kind in ("hide", "remove") and hues() & {
         word for tag, a, b in slots.spans if tag == "keep" for word in slots.words[a:b]
     }:

@@ -21,7 +21,11 @@ CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|
 
 
 def leaves_out(
-    words: Sequence[str], ops: Sequence[Fields], free: Set[int] = frozenset(), spans: Sequence[Span] | None = None
+    words: Sequence[str],
+    ops: Sequence[Fields],
+    free: Set[int] = frozenset(),
+    spans: Sequence[Span] | None = None,
+    timed: bool = True,
 ) -> bool:
     """Whether a number beside a time, or a colour, that an instruction tells stands in no operation.
 
@@ -30,12 +34,14 @@ def leaves_out(
     Args:
         free: where numbers and colours stand that say nothing new.
         spans: the marks in the words; None: the likeliest.
+        timed: whether numbers count only in an instruction that has a time with its unit.
     """
     spans = marked(words) if spans is None else spans
     if _loses_colors(words, ops, free, spans):
         return True
     said = " ".join(words)
-    return (TIMED.search(said) or _A_SECOND.search(said)) is not None and _loses_numbers(words, ops, free, spans)
+    counts = not timed or TIMED.search(said) is not None or _A_SECOND.search(said) is not None
+    return counts and _loses_numbers(words, ops, free, spans)
 
 
 def _loses_colors(words: Sequence[str], ops: Sequence[Fields], free: Set[int], spans: Sequence[Span]) -> bool:

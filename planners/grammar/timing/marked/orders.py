@@ -27,6 +27,7 @@ _TOLD = re.compile(
 )
 _JOINTS = re.compile(r"[,.;:!?=>→-]|\b(?:and|then|but|with|while|so|n)\b")
 _BARE_JOINT = re.compile(r"^(?:[,.;:&/>→=-]|\b(?:and|then|next|or|nor|both|plus|lastly|finally)\b| )*$")
+_COMES_NEXT = bag("follows comes goes next then last first second third opens")  # "middle follows"
 _SOURCES = bag("off from")  # before what things fall from
 _BEHIND = bag("and then one first last next before after comes goes falls drops at in to")
 _RANKS_OF_PLACE = bag("top middle bottom upper lower upmost lowest topmost highest")  # among things of a kind
@@ -331,7 +332,10 @@ def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterato
         whole = [mark for mark in marks if not set(words[mark[0] : mark[1]]) <= _RANKS_OF_PLACE | {"the", "one"}]
         ranked = (at for at, word in enumerate(words) if word in _RANKS_OF_PLACE)
         inside = {at for start, stop in marks for at in range(start, stop)}
-        places = ((at, at + 1) for at in ranked if at in inside or f"{noun}s" in words)
+        places = (
+            (at, at + 1) for at in ranked
+            if at in inside or f"{noun}s" in words or (words[at + 1 : at + 2] or [""])[0] in _COMES_NEXT
+        )  # fmt: skip
         marks = whole + [own for own in places if not any(start <= own[0] < stop for start, stop in whole)]
         words = [
             f"the {word} {noun}" if word in _RANKS_OF_PLACE and singular(then) != noun else word

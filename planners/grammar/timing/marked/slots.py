@@ -160,6 +160,11 @@ class Slots:
         """All words but those about what is not wanted, what stays, or nothing."""
         return self._without(*_IDLE)
 
+    @cached_property
+    def aside(self) -> str:
+        """The words about how something is now and is not wanted."""
+        return " ".join(" ".join(self.words[a:b]) for tag, a, b in self.spans if tag == "not")
+
     def _without(self, *tags: str) -> str:
         """The words that stand in no mark with one of some tags."""
         left_out = {at for tag, a, b in self.spans if tag in tags for at in range(a, b)}
@@ -317,6 +322,9 @@ def slots(
     painted = None if names else _painted(map(text, (span for span in spans if span[0] == "as")), thing)
     if painted is not None:
         names, queries = (painted[0],), (painted[1],)  # "I would like a pink bed"
+    if kind == "recolor" and (same := _looks_the_same(words, spans, thing)):
+        more = _things(iter(same), thing)
+        names, queries = (*names, *more[0]), (*queries, *more[1])
     if not names and any(
         ((query := thing(text(span))) is None and text(span) not in _PRONOUNS)
         or (query is not None and query.last and " " in text(span))
@@ -356,6 +364,15 @@ def _is_same(one: Amount, other: Amount) -> bool:
     """Whether two amounts are the same: "at half its speed, at 50 percent"."""
     first, second = (own.value / 100 if own.unit == "%" else own.value for own in (one, other))
     return first == second and {one.unit, other.unit} in ({one.unit}, {"%", "times"})
+
+
+def _looks_the_same(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> tuple[str, ...]:
+    """What is to look like the thing that is named first: "the sofa green, and the coffee table the same green"."""
+    kept = (" ".join(words[a:b]) for tag, a, b in spans if tag == "keep")
+    return next((names_in(said, thing)[:1] for said in kept if _THE_SAME.search(said)), ())
+
+
+_THE_SAME = re.compile(r"^(?:, )?and (?:the|my|our|that) .*\bthe same\b")
 
 
 def _named_elsewhere(

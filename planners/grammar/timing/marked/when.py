@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from .....gaussians import late_re as re
@@ -67,6 +67,15 @@ _PLAINER = (  # times in plainer words
         r"\g<lead>",
     ),
 )
+_UNTIL_THEN = re.compile(r"^(?:until|till) ")
+_DEICTIC = re.compile(
+    r"^(?:from|at|in|on) (?:this|that) (?:very |same )?(?:moment|point|instant|time)(?: on(?:wards?)?)?$"
+)
+_THERE_BY = re.compile(r"^(?:and )?(?:be |is |are )?there (?:for|by|at|on) (?=\d|one\b|two\b|three\b|four\b|five\b)")
+_MUST_BE_THERE = re.compile(
+    r"^(?:, )?(?:it|he|she|they) (?:(?:must|should|has to|have to|is to|needs to|shall|will|ought to) )?"
+    r"(?:be|stand|sit|have arrived|is|has arrived)\b(?: (?:there|in place|home|over there)| \||$)"
+)
 _HALFWAY = re.compile(r"\b(?:half ?way|mid|midway|middle|half)\b")
 _ARRIVES = re.compile(
     r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?|home|parks?|"
@@ -121,8 +130,7 @@ def time_of(
     """The time that marks tell; None if one of them is not understood, or if they contradict each other."""
     moment, happening = Moment(), None
     times = sum(tag in TIMES for tag, _, _ in spans)
-    for span in spans:
-        tag, phrase = span[0], text(span)
+    for span, tag, phrase in _divided(spans, text):
         if tag == "by" and is_a_time(phrase, kind):
             tag = "from"
         lasts = happening is not None and happening.during.part == "while"
@@ -148,8 +156,16 @@ def time_of(
         said = phrase
         for pattern, plain in _PLAINER:
             phrase = pattern.sub(plain, phrase)
-        said = text(span) if said == phrase else phrase
+        said = text(span) if said == phrase == text(span) else phrase
+        if _THERE_BY.match(phrase) or (kind == "move" and _MUST_BE_THERE.match(" ".join(words[span[2] : span[2] + 6]))):
+            tag, phrase = "to", _THERE_BY.sub("at ", phrase)
         tag = _plainer_tag(tag, phrase, " ".join(words[max(0, span[1] - 4) : span[1]]), kind, moment, happening)
+        if tag == "from" and kind == "close":
+            phrase = _UNTIL_THEN.sub("at ", phrase)  # "leave it open till four, then close it"
+        if _DEICTIC.match(phrase):
+            if moment.start is not None or happening is not None:
+                continue  # "at 2.5 s: from that instant ..."
+            said = phrase = _spoken_of(words, spans, span)
         if tag == "to" and kind in LOOKS and _AT_A_NUMBER.match(phrase) and not _COMES_BACK.search(" ".join(words)):
             return None  # "gold once the cat has sat down at 3 s" does not end then
         phrase, delay = delayed(LEADING.sub("", phrase))
@@ -175,7 +191,7 @@ def time_of(
             resting = kind == "pause" and moment.lasting is not None and _begins(happening)
             if resting and event.during.part == "until":
                 continue  # "for a second after its walk, before it turns"
-            event = happening.ended(event) or event.ended(happening)
+            event = _both(happening, event)
             if event is None:
                 return None
         happening = event or happening
@@ -185,6 +201,51 @@ def time_of(
     if kind in LOOKS and moment.start == 0.0 and moment.stop is not None:
         moment = replace(moment, start=None)
     return moment, happening
+
+
+_SAID_BEFORE = re.compile(r" [.;:?!] ")
+_RIGHT = re.compile(r" , (?:yes|right|see|ok|okay)$")
+
+
+def _divided(spans: Sequence[Span], text: Callable[[Span], str]) -> Iterator[tuple[Span, str, str]]:
+    """Each mark with its tag and its words; one that tells a beginning and an end as two."""
+    for span in spans:
+        both = _BOTH_ENDS.match(text(span)) if span[0] in TIMES else None
+        if both is None:
+            whole = _AS_ONE.match(text(span)) if span[0] in TIMES else None
+            yield span, "in" if whole else span[0], f"while {text(span)[whole.end() :]}" if whole else text(span)
+        else:
+            yield span, "from", both["a"]
+            yield span, "to", both["b"]
+
+
+def _both(one: Happening, other: Happening) -> Happening | None:
+    """The time that two tell: from one until the other, or from when something has happened, while something is so;
+    None if they do not go together."""
+    found = one.ended(other) or other.ended(one)
+    for begins, lasts in ((one, other), (other, one)) if found is None else ():
+        if begins.during.part in ("from", "after") and lasts.during.part == "while" and lasts.until is None:
+            return begins.ended(replace(lasts, during=lasts.during.model_copy(update={"part": "until_end"})))
+    return found
+
+
+_BOTH_ENDS = re.compile(
+    r"^(?:beginning|starting) (?:with|at|from|on) (?P<a>.+?) and (?:ending|finishing|stopping) (?:with|at|on|when) "
+    r"(?P<b>.+)$"
+)
+_AS_ONE = re.compile(
+    r"^(?:start|begin)\w* and (?:finish|end|stop)\w* (?:exactly |together )?(?:when|as|while) (?=the\b|it\b)"
+)
+
+
+def _spoken_of(words: Sequence[str], spans: Sequence[Span], span: Span) -> str:
+    """What an instruction says before a mark that points to it, as a time: "the ball touches the wall, yes? From this
+    moment ..."."""
+    before = _RIGHT.sub("", " ".join(words[: span[1]]).strip(" ,.;:?!"))
+    told = re.split(r" [.;:?!] | , (?:yes|right|see|ok|okay)\b", f"{before} ")[
+        0 if before.endswith("yes") else -1
+    ].strip(" ,.")
+    return f"when {told}" if any(tag in ("x", "y", "not", "off") for tag, _, _ in spans) else ""
 
 
 def with_both_ends(
@@ -254,6 +315,8 @@ def _plainer_tag(tag: str, phrase: str, before: str, kind: str, moment: Moment, 
         tag = "to"
     if tag == "in" and _AT_A_SECOND.match(phrase) and kind not in LOOKS:
         tag = "from"
+    if tag == "for" and begun and before.endswith(" there"):
+        return "to"  # "off at 2.5 and there for 4.5"
     return "for" if tag in ("from", "to") and LASTS.match(phrase) else tag
 
 
