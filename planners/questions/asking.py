@@ -31,6 +31,7 @@ from .reading.time.everyday import everyday
 from .reading.time.frames import UNIT, plain
 from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
+from .reading.time.situated import situated
 from .reading.time.sorting import sorted_events
 from .reading.time.supposed.plainly import LEAST, SURE, goes_first, supposed
 from .reading.words import plain_words
@@ -107,7 +108,7 @@ def route(text: str, survey: Survey, timeline: Timeline | None = None) -> Readin
             still = Answer(answer=None, answer_type="text", text=STATIC, confidence=0.9, source="none")
             return Reading(still, "motion")
         return found
-    return _timed(text, survey, timeline)
+    return _timed(situated(text), survey, timeline)
 
 
 _DECIMAL = re.compile(r"(?<=\d),(?=\d{1,2}(?![\d,]))")  # "4,2 s", as much of the world writes it

@@ -22,6 +22,7 @@ _ASKED = {  # the kind of question that asks when something happens
 }  # fmt: skip
 _OF_ANOTHER = ("reaches", "on", "leaves")  # kinds that name another thing
 _PRONOUNS = bag("it he she they")
+_ENTERS = re.compile(r"\b(?:enters?|entering|gets? on(?:to)?|rolls? on(?:to)?|comes? on(?:to)?)\b")
 _INTRODUCED = re.compile(r"^(?P<before>[^:]+): ?(?P<events>.+?)[.?!]*$")
 _BEHIND = re.compile(r"^(?P<events>[^:]+): ?(?P<before>.+?)[.?!]*$")  # "..., ..., ...: sort these"
 _JOINTS = re.compile(r" ?(?:[,;/]|\bthen\b|\band\b(?= ))(?: and| or)? ?")
@@ -63,6 +64,8 @@ def _asked_when(phrase: str, who: str) -> str | None:
     event = next((own for own in told if own is not None and own.kind in _ASKED and own.chance >= _SURELY), None)
     if event is None:
         return None
+    if _ENTERS.search(phrase) and event.y:
+        return question_of("when_reaches", event.x or who, event.y)
     x = event.x if event.x and event.x not in _PRONOUNS else who
     y = event.y if event.kind in _OF_ANOTHER else ""
     return question_of(_ASKED[event.kind], x, y, event.kind) if x else None

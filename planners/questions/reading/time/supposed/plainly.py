@@ -109,7 +109,7 @@ def _plainly(
             return  # "any window I could open"
         said = replace(said, x="it")
     if leg:
-        if said.time or kind not in _OF_A_LEG:
+        if (said.time and not _UP_TO_THE_TURN.match(said.time)) or kind not in _OF_A_LEG:
             return
         said = replace(said, time=leg, times=(leg,))
     times = dict.fromkeys(_times(kind, said.times)) if said.time and kind != "gap" else ("",)
@@ -160,14 +160,14 @@ _WHOLE_FILM = re.compile(  # a time that is all of the film
     r"^(?:(?:during|in|over|throughout|within|for|across|through) (?:the|this|these|all(?: of)? the|its|his|her) "
     r"(?:(?:whole|entire|full|complete) )?(?:(?:five|5) seconds|(?:\w+ )?"
     r"(?:(?:five|5) ?s(?:ec(?:ond)?s?)? )?(?:film|clip|video|scene|time|movie|"
-    r"footage|recording|shot|"
+    r"footage|recording|shot|proceedings|events|"
     r"sequence|interval of motion|motion|movement|run|journey|trip))(?: is to be| long)?|throughout|ever|overall|"
     r"in total|altogether|in all|"
     r"at any (?:point|time|moment)|at all|all told|at some (?:point|time|moment)|from (?:start|beginning|"
     r"first) to (?:finish|end|last)|the (?:whole|entire|full) (?:while|time)|"
     r"(?:during|in|over|from) 0(?: ?s)? (?:to |- ?)?5 ?s(?:ec\w*)?|(?:when|once) its (?:all )?(?:over|done)|"
     r"(?:during|in|over|throughout|within|for|across|through) (?:[a-z]+ ){0,4}(?:film|clip|video|movie|footage|"
-    r"recording|recorded|filmed|take)|"
+    r"proceedings|recording|recorded|filmed|take)|"
     r"(?:by|in|at|before) the (?:very )?end|finally|eventually|in the end|at last|when (?:it|all|"
     r"everything) is (?:all )?(?:over|done)|"
     r"when all is (?:said and )?done|before the (?:clip|film|video|scene) (?:ends|is over)|at the finish)$"
@@ -203,17 +203,26 @@ _FURTHEST = re.compile(
 )
 _BEFORE_BACK = re.compile(
     r"^(?:before|until|till) (?:it |he |she )?(?:\w+ )?(?:goes|going|comes|coming|sliding|slides|moving|moves|"
-    r"gets|is|starts|closing|closes|shuts|shutting)\b"
+    r"heads|heading|gets|is|starts|closing|closes|shuts|shutting)\b"
 )
 
 
+_UP_TO_THE_TURN = re.compile(r"^(?:before|until|till|up to|after) (?:the |its |his |her )?(?:corner|turn|bend)$")
+_MIDWAY = re.compile(r"^(?:half ?way|mid ?way|in the middle)\b")
+_ONCE_OUT = re.compile(
+    r"^(?:(?:once|after|when|having) )?(?:it |he |she )?(?:has |is |having )?(?:been )?"
+    r"(?:come|slid|pulled|gone|opened|fully|drawn)(?: \w+)? ?(?:out|open)?$"
+)
 _STRAIGHT = re.compile(r"\b(?:crow|straight|beeline)\b")
 _EDGES = ("", "at the start", "at the end")
 _ALL_OF_IT = re.compile(  # of a movement
     r"^(?:across|over|during|in|for|throughout) (?:its|his|her|their|the) (?:whole|entire|full|complete) \w+$|"
     r"^(?:between|from) (?:start(?:ing)?|beginning|first \w+|release) (?:and|to|until) (?:stop(?:ping)?|rest|"
     r"finish(?:ing)?|end|"
-    r"(?:full |final |a )?(?:stop|rest|halt|standstill))$"
+    r"(?:full |final |a )?(?:stop|rest|halt|standstill))$|"
+    r"^(?:from|between) (?:its|his|her|the) (?:very )?(?:first |initial )?"
+    r"(?:start|motion|movement|beginning|departure|release|move|push) (?:to|and|until|till) (?:its|his|her|the) "
+    r"(?:very )?(?:final |last |full |complete )?(?:stop|halt|rest|end|standstill|arrival)$"
 )
 _TILL_IT_STOPS = re.compile(
     r"^(?:before|until|till) (?:it|he|she) (?:gave up|gives up|lay still|lies still|stop\w*|"
@@ -228,7 +237,11 @@ def _plain_time(kind: str, said: str) -> str:
     said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", re.sub(r"^(?:given|assuming) (?=t\b|\d)", "at ", said))
     if kind in ("turns", "far", "often") and _TILL_IT_STOPS.match(said):
         return ""
+    if (kind == "far_turns" and _MIDWAY.match(said)) or (kind == "long_open" and _ONCE_OUT.match(said)):
+        return ""
     if _ALL_OF_IT.match(said) or (kind in ("far_opens", "far_turns") and _AT_MOST.match(said)):
+        return ""
+    if kind in ("long_still", "long_open") and _BEFORE_BACK.match(said):
         return ""
     if kind == "long_on" and said.startswith(("before it ", "until it ")):
         return ""
@@ -271,6 +284,13 @@ def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     if _SUMMED.search(said):
         found["far"] = found.get("far", 0.0) + found.pop("far_opens", 0.0)
     kind = max(found, key=found.__getitem__)
+    if _TIMECODE.search(said):
+        for place, time in (("where_ends", "when_stops"), ("where_starts", "when_starts")):
+            found[time] = found.get(time, 0.0) + found.pop(place, 0.0)
+        kind = max(found, key=found.__getitem__)
+    if re.search(r"\bcross\w*", said):
+        found["long_on"] = found.get("long_on", 0.0) + found.pop("long_reach", 0.0)
+        kind = max(found, key=found.__getitem__)
     if kind == "where_ends" and _WHERE_IS.match(said):
         return "where_at", found[kind] + found["where_at"]
     if kind in ("fast", "fast_most"):
@@ -278,9 +298,11 @@ def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     return kind, found[kind]
 
 
+_TIMECODE = re.compile(r"\b(?:time ?code|time ?stamp|(?:at )?(?:what|which) (?:time|second|moment|instant))\b")
 _LEG = re.compile(
-    r"(?:(?:during|for|on|in|over|of|along|while on) )?(?:the|its|his|her|'s) (?P<rank>first|opening|initial|second|"
-    r"last|final) (?:straight |walking )?(?:leg|stretch|part|bit|section|stage|walk|straight)"
+    r"(?:(?:during|for|on|in|over|of|along|while on) )?(?:the|that|this|its|his|her|'s) "
+    r"(?P<rank>first|opening|initial|second|last|final) (?:straight |walking )?"
+    r"(?:leg|stretch|part|bit|section|stage|walk|straight)"
     r"(?: of (?:the|its|his|her) (?:walk|way|trip|path|journey|route))?"
 )
 _LEGS = {"second": "after it has turned", "last": "after it has turned", "final": "after it has turned"}
@@ -325,18 +347,19 @@ def _asks_why(kind: str, said: str) -> bool:
 
 _CAUSES = re.compile(
     r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|"
+    r"\bwhat (?:induce[sd]|prompt(?:s|ed)|trigger(?:s|ed)|led|got|sets|set) (?:the|it|him|her)\b|"
     r"\b(?:motives?|intentions?|intended|meant to|on whose)\b|"
     r"(?<!\bby )\bcolou?rs?\b"
 )
 _FEELS = re.compile(
-    r"\b(?:is|was|were|are|be|been|feel|feels|felt|feeling|get|gets|got) (?:the |it |he |she |they )?(?:[a-z]+ ){0,3}?"
+    r"\bfeel(?:s|ing)?\b|\b(?:is|was|were|are|be|been|felt|get|gets|got) (?:the |it |he |she |they )?(?:[a-z]+ ){0,3}?"
     r"(?:frightened|afraid|scared|happy|unhappy|sad|angry|tired|exhausted|bored|hurt|lonely|nervous|shy|proud|ashamed|"
     r"jealous|hungry|thirsty|cold|sleepy|dizzy|worried|excited|upset|in pain)\b"
 )
 _A_STRETCH = re.compile(r"\b(?:first|second|last|final) (?:leg|stretch|part|half|bit|section|stage)\b")
 _YES_OR_NO = re.compile(
     r"\b(?:yes or no|true or (?:false|not|nah)|right or wrong|is (?:that|this) (?:so|right|true|correct)|confirm|"
-    r"am i right|that right|is it true)\b"
+    r"am i right|that right|is it true)\b|, (?:right|correct|yes|true) \?$"
 )
 _REASONS = re.compile(
     r"\b(?:reason|explain|because of|caus(?:e|es|ed|ing)|blame|on purpose|who(?:m|se)?|somebody|someone)\b"
@@ -351,6 +374,8 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
     """The words of a question by their marks; None if two things stand where one can, or a time would be lost."""
     found: dict[str, list[str]] = {tag: [] for tag in ("x", "y", "t", "u", "off")}
     inside = set[int]()
+    before = ("", *words)  # the word before each
+    spans = [(tag, a - (tag == "t" and before[a] in _CONJUNCTIONS), b) for tag, a, b in spans]
     for tag, start, stop in spans:
         found[tag].append(" ".join(words[start:stop]).strip(" ,.?"))
         inside |= set(range(start, stop))
@@ -363,6 +388,8 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
     first = next((word for at, word in enumerate(words) if at not in idle and word.isalpha()), "")
     events = [name for name in found["x"] if _AN_EVENT.match(name)]
     found["x"] = [name for name in found["x"] if name not in events and not _ONES.match(name)]
+    if not found["x"] and (own := _THAT_ONE.search(" ".join(found["off"]))) is not None:
+        found["x"] = [own[0]]  # "oh, the green one! when does it let go?"
     rest = _TAG.sub(" ", " ".join((rest, *events)))
     if not found["x"]:  # "one of the toys was in a sulk, which was it?"
         plain = (word for aside in found["off"] for word in aside.split())
@@ -375,7 +402,7 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
     if not found["t"] and len(found["off"]) == 1 and (blinked := _BLINKED.search(found["off"][0])) is not None:
         found["t"], found["off"] = [blinked["time"]], []  # "I blinked at 1.4 s, which book was falling?"
     asides = (words[start:stop] for tag, start, stop in spans if tag == "off" and not _is_apart(words, start, stop))
-    if len(found["t"]) > 2 or any(_TIMED.search(" ".join(aside)) for aside in asides):
+    if len(found["t"]) > 2 or any(_TIMED.search(_ASKS_WHEN.sub("", " ".join(aside))) for aside in asides):
         return None
     unit = _IN_UNIT.search(re.sub(r"metre", "meter", " ".join(found["u"])))
     return Said(
@@ -385,10 +412,12 @@ def _said(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names
     )  # fmt: skip
 
 
+_ASKS_WHEN = re.compile(r"^when ,")  # "when, to the best of your knowledge, ..."
 _TAG = re.compile(  # "it opens, doesn't it?", "yes or no"
     r" ,? ?(?:or )?(?:is|are|was|does|do|did|has|have|will|would|could|can) "
     r"(?:not (?:it|he|she|they)|(?:it|he|she|they)"
-    r"(?: not)?)(?: \?)?$|,? ?\b(?:yes ?(?:or|/) ?no|y ?/ ?n|true or (?:false|not)|right or wrong)\b|, true \?$"
+    r"(?: not)?)(?: \?)?$|,? ?\b(?:yes ?(?:or|/) ?no|y ?/ ?n|true or (?:false|not)|right or wrong)\b|"
+    r", true \?$|,? or \?$"
 )
 
 
@@ -411,6 +440,8 @@ _TIMED = re.compile(
 _ONES = re.compile(r"^(?:the |that |this |which )?ones?$")
 _BLINKED = re.compile(r"^(?:i|we) [a-z ]+? (?P<time>at \d+(?:\.\d+)?(?: ?s(?:ec(?:ond)?s?)?)?)$")
 _ONE = re.compile(r"\bone$")
+_THAT_ONE = re.compile(r"\bthe (?:red|green|blue|yellow|white|black|brown|grey|gray|orange|purple|pink) one\b")
+_CONJUNCTIONS = ("til", "till", "until", "before", "once")
 
 
 def _named(said: str, names: Collection[str]) -> str:
@@ -521,7 +552,8 @@ _ALLOWED: Mapping[str, frozenset[str]] = {
     "fastest": bag("most than faster every each other"),
     "when_closest": bag("most least"), "when_starts": bag("first"), "when_stops": bag("last final again"),
     "when_reaches": bag("first"), "when_falls": bag("first"), "where_starts": bag("first initial"),
-    "turns": bag("every each"), "often": bag("every each"), "fast_most": bag("most"), "gap": _ORDERS | {"between"},
+    "turns": bag("every each"), "often": bag("every each again back"), "fast_most": bag("most"),
+    "gap": _ORDERS | {"between"},
     "long_still": bag("before first only"), "long_reach": bag("before until"),
     "if_to_end": bag("until last second final"), "turn_way": bag("other"),
     "what_still": bag("only else other"), "what_moves": bag("only else other"),
@@ -538,7 +570,7 @@ _DEEDS = tuple(
         (r"stop(?:s|ped|ping)?|finish\w*|halt\w*|rest|standstill|end(?:s|ed)?|done|still", "stop"),
         (r"clos(?:e|es|ed|ing)|shut(?:s|ting)?", "close"),
         (r"open(?:s|ed|ing)?", "open"),
-        (r"turn(?:s|ed|ing)?", "turn"),
+        (r"turn(?:s|ed|ing)?|rotat\w+|pivot\w*|swivel\w*", "turn"),
     )
 )  # fmt: skip
 _OFTEN = (
@@ -635,10 +667,10 @@ def _in_order(said: Said) -> Iterator[str]:
     yield f"in what order do {said.x if said.x and said.x not in _PRONOUNS else 'things'} {deed}"
 
 
-_ARE_THERE = re.compile(
-    r"\b(?:are there|is there|(?:have|has) (?:we|you|it|they)(?: got)?|got|there are|altogether|exist)\b"
+_MOVING = re.compile(
+    r"\b(?:mov\w*|motion|go|goes|roll\w*|walk\w*|spin\w*|slid\w*|shift\w*|budg\w+|stir\w*|travel\w*|wobbl\w+|"
+    r"action|animat\w+|active|dynamic|still|act|do|does|com\w+|run\w*|driv\w+|chang\w+|leav\w+)\b"
 )
-_MOVING = re.compile(r"\b(?:mov\w*|motion|go|goes|roll\w*|walk\w*|spin\w*|slid\w*)\b")
 
 
 _LEFT_UP = re.compile(r"\b(?:left|still|remain\w*|stay\w*) (?:up|on the (?:shelf|board|high))\b")
@@ -656,7 +688,7 @@ def _counted(said: Said) -> Iterator[str]:
     ):
         deed = "have fallen"
     noun = _PLURAL.sub("", said.x) if said.x and said.x not in _PRONOUNS else "things"
-    if deed == "move" and not said.time and _ARE_THERE.search(said.rest) and not _MOVING.search(said.rest):
+    if deed == "move" and not said.time and not _MOVING.search(said.rest):
         yield f"how many {noun} are there"
         return
     yield f"how many {noun} {deed}"
@@ -763,6 +795,8 @@ def _singular(form: str) -> str:
 
 
 def _what_on(said: Said) -> Iterator[str]:
+    if re.search(r"\b(?:inside|within)\b", said.rest):
+        return
     if said.y:
         yield f"which {_several(said.x)} are on {said.y}" if _is_kind(said.x) else f"what is on {said.y}"
     elif said.x:
@@ -773,7 +807,8 @@ _OUT = re.compile(r"\b(?:pulled|slid|hang\w*|extended|wide|all the way|fully|com
 
 
 def _long_still(said: Said) -> Iterator[str]:
-    if said.x and not said.time and _OUT.search(said.rest):  # "how long does it sit there pulled all the way out"
+    back = not said.time or _BEFORE_BACK.match(said.time) is not None
+    if said.x and back and _OUT.search(said.rest):  # "how long does it sit there pulled all the way out"
         yield f"how long does {said.x} stay fully open"
     elif said.x:
         yield f"how long does {said.x} stand still"
@@ -796,7 +831,7 @@ def _long_open(said: Said) -> Iterator[str]:
 
 _SUMMED = re.compile(
     r"\b(?:strokes both|both (?:strokes|directions)|total|altogether|cumulative|sum|summed|"
-    r"adds|added|add|combined|both ways|there and back|out and back|overall)\b"
+    r"adds|added|add|adding|combined|both ways|there and back|out and back|overall|outward and return|both walks)\b"
 )
 
 
@@ -821,6 +856,8 @@ def _over(said: Said) -> Iterator[str]:
         yield f"does {said.x} {'pass' if passes else 'cross'} {said.y}"
 
 
+_OUTWARD = re.compile(r"\b(?:out|outward|outwards|opening|extension)\b")
+_INWARD = re.compile(r"\b(?:back|return|inward|inwards|closing|retraction|in)\b")
 _RESTS = re.compile(r"\b(?:pause|break|rest|hold|wait|stay|dwell)\b")
 
 
@@ -834,6 +871,12 @@ _BEGINS = re.compile(r"\b(?:starting|start|onset|departure|release|trigger|begin
 _ENDS = re.compile(r"\b(?:stopping|end|stop|landing|impact|touchdown)\b")
 
 
+def _is_there(word: str, names: Collection[str]) -> bool:
+    """Whether a noun is that of a thing of the scene, or another word for it: "volume"."""
+    kind = kinds_of_things.find(singular(word))
+    return singular(word) in names or (kind is not None and any(own in names for own in kind.name.split()))
+
+
 def _event_in(said: str, names: Collection[str], noun: str) -> tuple[str, str] | None:
     """Who does what in the words for an event, and "" for what is said of another one; None if nobody is named."""
     found = _EVENT_OF.match(said)
@@ -844,7 +887,7 @@ def _event_in(said: str, names: Collection[str], noun: str) -> tuple[str, str] |
         who[-1] = noun
     if is_color_word(who[-1]):
         who.append(noun)
-    if (singular(who[-1]) not in names and who[-1] != "one") or who == ["one"]:
+    if (not _is_there(who[-1], names) and who[-1] != "one") or who == ["one"]:
         return None
     falls = _deed(f"{told} {said}", "") in ("fall", "land")
     if _ENDS.search(told):
@@ -858,7 +901,7 @@ def _event_in(said: str, names: Collection[str], noun: str) -> tuple[str, str] |
 
 def _gap(said: Said) -> Iterator[str]:
     parts = (*said.times, said.x, said.y)
-    nouns = (word for part in parts for word in part.split() if word in said.names and not is_color_word(word))
+    nouns = (word for part in parts for word in part.split() if _is_there(word, said.names) and not is_color_word(word))
     noun = next(nouns, "one")
     told = [event for part in parts if part and (event := _event_in(part, said.names, noun))]
     if len(told) == 2 and told[0][0] != told[1][0]:
@@ -866,7 +909,10 @@ def _gap(said: Said) -> Iterator[str]:
         deed = deed or then or {"fall": "falling", "land": "landing"}.get(_deed(said.rest, ""), "starting")
         yield f"how much time is there between {one} {deed} and {other} {then or deed}"
         return
-    if len(said.times) == 2 and _RESTS.search(said.rest):
+    rests = len(said.times) == 2 and _RESTS.search(said.rest) is not None
+    if rests and _OUTWARD.search(said.times[0]) and _INWARD.search(said.times[1]):
+        yield f"how long does {said.x or 'it'} stay fully open"
+    elif rests:
         yield f"how long is the pause between {said.times[0]} and {said.times[1]}"
     elif len(said.times) == 2:
         yield f"how much time is there between {said.times[0]} and {said.times[1]}"
@@ -877,6 +923,14 @@ def _gap(said: Said) -> Iterator[str]:
         yield f"how much time is there between {said.x} {deed} and {said.y} {deed}"
 
 
+def _long_reach(said: Said) -> Iterator[str]:
+    if _AFTER_TURN.match(said.time):  # "after the turn, the walk to the bed takes how long?"
+        yield f"how long does {said.x} move after it has turned"
+    elif not said.time.startswith(("after ", "once ")):
+        yield from _about("how long does {x} take to reach {y}")(said)
+
+
+_AFTER_TURN = re.compile(r"^(?:after|once|from) (?:the|its|his|her|it has) turn\w*$")
 _PLAIN: Mapping[str, Plain] = {
     "when_starts": _about("when does {x} start to move"),
     "when_stops": _about("when does {x} stop moving"),
@@ -897,7 +951,7 @@ _PLAIN: Mapping[str, Plain] = {
     "long_still": _long_still,
     "long_on": _about("how long is {x} on {y}"),
     "long_falls": _about("how long does {x} fall"),
-    "long_reach": _about("how long does {x} take to reach {y}"),
+    "long_reach": _long_reach,
     "gap": _gap,
     "film_long": lambda said: iter(("how long is the film",)),
     "far": _either(_in_total, _about("how far does {x} move", unit=True)),
