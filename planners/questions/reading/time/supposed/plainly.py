@@ -112,7 +112,9 @@ def _plainly(
         if (said.time and not _UP_TO_THE_TURN.match(said.time)) or kind not in _OF_A_LEG:
             return
         said = replace(said, time=leg, times=(leg,))
-    times = dict.fromkeys(_times(kind, said.times)) if said.time and kind != "gap" else ("",)
+    times = tuple(dict.fromkeys(_times(kind, said.times))) if said.time and kind != "gap" else ("",)
+    if kind == "how_many" and "at the end" in times and _deed(said.rest, "") in ("fall", "land"):
+        times = ("",)  # how many have fallen by then
     for time in times:
         for plain in _PLAIN[kind](said):
             whole = plain.format(when=time) if "{when}" in plain else f"{plain} {time}"
@@ -169,7 +171,8 @@ _WHOLE_FILM = re.compile(  # a time that is all of the film
     r"(?:during|in|over|throughout|within|for|across|through) (?:[a-z]+ ){0,4}(?:film|clip|video|movie|footage|"
     r"proceedings|recording|recorded|filmed|take)|"
     r"(?:by|in|at|before) the (?:very )?end|finally|eventually|in the end|at last|when (?:it|all|"
-    r"everything) is (?:all )?(?:over|done)|"
+    r"everything) is (?:all )?(?:over|done)|(?:once|when|after) (?:the|this) \w+ is (?:over|done|finished)|"
+    r"(?:at|by) the (?:final )?curtain|"
     r"when all is (?:said and )?done|before the (?:clip|film|video|scene) (?:ends|is over)|at the finish)$"
 )
 _STATES = (
@@ -207,7 +210,9 @@ _BEFORE_BACK = re.compile(
 )
 
 
-_UP_TO_THE_TURN = re.compile(r"^(?:before|until|till|up to|after) (?:the |its |his |her )?(?:corner|turn|bend)$")
+_UP_TO_THE_TURN = re.compile(
+    r"^(?:before|until|till|up to|after|from) (?:the |its |his |her )?(?:corner|turn|bend)(?: to the \w+)?$"
+)
 _MIDWAY = re.compile(r"^(?:half ?way|mid ?way|in the middle)\b")
 _ONCE_OUT = re.compile(
     r"^(?:(?:once|after|when|having) )?(?:it |he |she )?(?:has |is |having )?(?:been )?"
@@ -225,7 +230,7 @@ _ALL_OF_IT = re.compile(  # of a movement
     r"(?:very )?(?:final |last |full |complete )?(?:stop|halt|rest|end|standstill|arrival)$"
 )
 _TILL_IT_STOPS = re.compile(
-    r"^(?:before|until|till) (?:it|he|she) (?:gave up|gives up|lay still|lies still|stop\w*|"
+    r"^(?:before|until|till) (?:it|he|she) (?:freez\w+|gave up|gives up|lay still|lies still|stop\w*|"
     r"c[oa]mes? to (?:a |its )?\w+|"
     r"settle\w*|died|dies|quits?|was done|is done)\b"
 )
@@ -243,7 +248,7 @@ def _plain_time(kind: str, said: str) -> str:
         return ""
     if kind in ("long_still", "long_open") and _BEFORE_BACK.match(said):
         return ""
-    if kind == "long_on" and said.startswith(("before it ", "until it ")):
+    if kind == "long_on" and said.startswith(("before it ", "until it ", "before leav", "until leav", "before roll")):
         return ""
     if kind == "apart" and _STRAIGHT.search(said):
         return ""
@@ -262,7 +267,10 @@ def _plain_time(kind: str, said: str) -> str:
     return said
 
 
-_ROUGHLY = re.compile(r"\b(?:like|around|about|roughly|approximately|exactly|just|maybe|say) (?=\d)")
+_ROUGHLY = re.compile(
+    r"\b(?:like|around|about|roughly|approximately|exactly|just|maybe|say) (?=\d)|"
+    r"(?<=[sd]) (?:sharp|exactly|flat|precisely|on the dot)$"
+)
 
 
 def _spelled(word: str, names: frozenset[str]) -> str:
@@ -284,6 +292,13 @@ def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     if _SUMMED.search(said):
         found["far"] = found.get("far", 0.0) + found.pop("far_opens", 0.0)
     kind = max(found, key=found.__getitem__)
+    if "how many times" in said:
+        found["often"] = found.get("often", 0.0) + found.pop("how_many", 0.0)
+    if _RANKS_ALL.match(said):
+        found["order"] = sum(found.pop(own, 0.0) for own in ("order", "first", "last"))
+    if _CUTS_OUT.search(said):
+        found["when_stops"] = found.get("when_stops", 0.0) + found.pop("when_starts", 0.0)
+    kind = max(found, key=found.__getitem__)
     if _TIMECODE.search(said):
         for place, time in (("where_ends", "when_stops"), ("where_starts", "when_starts")):
             found[time] = found.get(time, 0.0) + found.pop(place, 0.0)
@@ -298,9 +313,11 @@ def _likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     return kind, found[kind]
 
 
+_RANKS_ALL = re.compile(r"^(?:please )?(?:rank|sort|order|arrange|line up)\b")
+_CUTS_OUT = re.compile(r"\b(?:cuts?|conks?|gives?|gave|switch(?:es)?|shuts?|powers?) (?:out|off|down)\b")
 _TIMECODE = re.compile(r"\b(?:time ?code|time ?stamp|(?:at )?(?:what|which) (?:time|second|moment|instant))\b")
 _LEG = re.compile(
-    r"(?:(?:during|for|on|in|over|of|along|while on) )?(?:the|that|this|its|his|her|'s) "
+    r"(?:(?:during|for|on|in|over|of|along|while on) )?(?:^|(?:the|that|this|its|his|her|'s) )"
     r"(?P<rank>first|opening|initial|second|last|final) (?:straight |walking )?"
     r"(?:leg|stretch|part|bit|section|stage|walk|straight)"
     r"(?: of (?:the|its|his|her) (?:walk|way|trip|path|journey|route))?"
@@ -347,7 +364,8 @@ def _asks_why(kind: str, said: str) -> bool:
 
 _CAUSES = re.compile(
     r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|"
-    r"\bwhat (?:induce[sd]|prompt(?:s|ed)|trigger(?:s|ed)|led|got|sets|set) (?:the|it|him|her)\b|"
+    r"\bthat (?:drove|made|pushed|caused)\b|\bwhat (?:induce[sd]|prompt(?:s|ed)|trigger(?:s|ed)|led|got|sets|set) "
+    r"(?:the|it|him|her)\b|"
     r"\b(?:motives?|intentions?|intended|meant to|on whose)\b|"
     r"(?<!\bby )\bcolou?rs?\b"
 )
@@ -481,7 +499,7 @@ def _says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> 
             return True  # "who moves the ball", "what never moves near the desk"
     if len(said.places) > 1 and kind != "visits":
         return True
-    asks = not _ASKS.isdisjoint(rest) or (kind == "turn_way" and "or" in rest)
+    asks = not _ASKS.isdisjoint(rest) or (kind == "turn_way" and "or" in rest) or _ASKS_WHEN.match(said.off)
     if not kind.startswith("if_") and not said.unit and said.first in _AUXILIARIES and not asks:
         return True  # "is the ball at its top speed then?" wants no number
     if _NTH.search(said.time):
@@ -541,15 +559,16 @@ _LEVELS = bag("floor ground board shelf")
 _TO_THE_FLOOR = bag("when_lands when_falls if_falls long_falls how_many what_fell what_up far_falls first last order")
 _ASKS = bag("which what how when where who whose")
 _AUXILIARIES = bag("is are was were does do did has have had")
-_NEGATED = bag("if_still what_still long_still what_up what_shut if_shut")
+_NEGATED = bag("if_still what_still long_still long_open what_up what_shut if_shut how_many")
 _VERBS = bag("fall falls light turn turns open close drop step steps start stop move swing spin fan walk roll slide")
 _ORDERS = bag("first last second third than before after earlier later sooner next other")
 _ALLOWED: Mapping[str, frozenset[str]] = {
     "first": _ORDERS, "last": _ORDERS | {"final"}, "order": _ORDERS, "if_before": _ORDERS, "if_after": _ORDERS,
-    "if_together": bag("same both each other"), "if_returns": bag("back again"), "when_closes": bag("back again"),
+    "if_together": bag("same both each other"), "if_returns": bag("back again"), 
     "when_shut": bag("back again"), "if_closes": bag("back again"), "if_shut": bag("again back"),
     "long_closes": bag("back again"), "where_ends": bag("last final"),
     "fastest": bag("most than faster every each other"),
+    "when_opens": bag("first"), "when_closes": bag("back again first"), "when_leaves": bag("first"),
     "when_closest": bag("most least"), "when_starts": bag("first"), "when_stops": bag("last final again"),
     "when_reaches": bag("first"), "when_falls": bag("first"), "where_starts": bag("first initial"),
     "turns": bag("every each"), "often": bag("every each again back"), "fast_most": bag("most"),
@@ -592,7 +611,7 @@ def _s(verb: str) -> str:
 def _one_of(x: str) -> str:
     """Of several things the noun for one: "the books" is "book"."""
     bare = _PLURAL.sub("", x)
-    words = bare.split()
+    words = [word for word in bare.split() if word not in NUMBERS] or bare.split()
     return " ".join((*words[:-1], singular(words[-1]))) if words else "thing"
 
 
@@ -676,6 +695,10 @@ _MOVING = re.compile(
 _LEFT_UP = re.compile(r"\b(?:left|still|remain\w*|stay\w*) (?:up|on the (?:shelf|board|high))\b")
 
 
+_BESIDE = re.compile(r" (?:at|by|around|round|near|beside|in|on|under) ")
+_NOT_DONE = {"open": "stay closed", "fall": "do not fall", "land": "do not fall"}
+
+
 def _counted(said: Said) -> Iterator[str]:
     deed = _deed(said.rest, "move")
     if _LEFT_UP.search(said.rest) and said.x and said.x not in _PRONOUNS:
@@ -687,7 +710,13 @@ def _counted(said: Said) -> Iterator[str]:
         and re.search(r"\b(?:down|fallen|dropped|landed)\b", said.rest)
     ):
         deed = "have fallen"
-    noun = _PLURAL.sub("", said.x) if said.x and said.x not in _PRONOUNS else "things"
+    x, *others = said.x.split(" and ")
+    if not (others and x.endswith("s") and not any(other.endswith("s") for other in others)):
+        x = said.x  # "the chairs round the table" are chairs
+    noun = _BESIDE.split(_PLURAL.sub("", x))[0] if x and x not in _PRONOUNS else "things"
+    if not _DENIED.isdisjoint(said.rest.split()):
+        yield f"how many {noun} {_NOT_DONE.get(deed, 'do not move')}"
+        return
     if deed == "move" and not said.time and not _MOVING.search(said.rest):
         yield f"how many {noun} are there"
         return
