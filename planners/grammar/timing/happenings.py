@@ -127,7 +127,7 @@ _DRAWN = re.compile(
     r"in)$"
 )
 _EVENT_OVER = re.compile(
-    r"^(?:the|its|his|her) (?:motion|movement|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|spin)"
+    r"^(?:the|its|his|her) (?P<event>motion|movement|walk|roll|fall|drop|swing|ride|flight|turn|slide|run|spin)"
     r"(?: of (?P<who>.+?))? (?:is|has) (?:over|done|ended|finished|completed?)$"
 )
 _TURN_DONE = re.compile(
@@ -173,7 +173,7 @@ def clause_of(word: str, said: str, thing: Thing) -> During | None:
     said = _AT_REST.sub(" has stopped", said)
     said = _HAS_HIT.sub(r" has \g<done>", _IS_BACK.sub(" has stopped", _IS_THERE.sub(" has stopped", said)))
     if (over := _EVENT_OVER.match(said)) is not None:
-        said = f"{over['who'] or 'it'} has stopped"
+        said = f"{over['who'] or 'it'} has {'turned' if over['event'] == 'turn' else 'stopped'}"
     if (half := _HALF.match(said)) is not None and (whose := _who(half["who"], thing)) is not None:
         return During(state="halfway", of=whose, part="until" if re.fullmatch(_UNTIL, word) else "from")
     if (way := _DRAWN.match(said)) is not None and (whose := _who(way["who"], thing)) is not None:

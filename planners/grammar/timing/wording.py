@@ -27,7 +27,8 @@ def spelt_out(said: str) -> str:
 
 _FILLER = re.compile(r"(?: ,)? (?:uh|um|uhm|er|erm|hmm|(?<! as )well)(?: ,)?(?= )")
 _SHORT_VERB = re.compile(
-    r" 's (?P<then>[a-z]+(?:ing|ed)|to|fully|completely|all|just|already|been|done|open|closed|shut|out|in|gone|hit|"
+    r"(?<!second)(?<!seconds) 's (?P<then>[a-z]+(?:ing|ed)|"
+    r"got|made|taken|to|fully|completely|all|just|already|been|done|open|closed|shut|out|in|gone|hit|"
     r"left|fallen|come|begun|slid|stopped|reached|way|too|so|not)\b"
 )
 

@@ -87,6 +87,7 @@ _ENTERS = re.compile(
 _GONE = re.compile(
     r"\b(?:hid\w*|invisible|vanish\w*|disappear\w*|gone|gon|out|lose|lost|remov\w+|away|off|blank\w*|conceal\w*|poof|"
     r"cut|drop|delet\w+|eras\w+|without|absent|unseen|unrender\w*|mask\w*|take|despawn\w*|bye|missing|suppress\w*|"
+    r"visib\w+ ?(?:=|:|to|is)? ?(?:false|0|off|no|none)|"
     r"make \w+self scarce|blink\w*|transparent|ghost|rid|exit\w*|leave\w*|kill|cloak\w*)\b"
 )
 _NOT = re.compile(r"\b(?:not|no|never|without|nobody|nothing|neither|nor|stop|hardly)\b")
@@ -356,6 +357,9 @@ def _begin(slots: Slots) -> Iterator[Wanted]:
     if is_opened(_noun(slots)) and _SHUTS.search(slots.rest) and isinstance(slots.moment.start, float):
         yield Wanted(f"close {slots.whom}", moment, slots.happening)
         return
+    if isinstance(moment.start, float) and isinstance(moment.stop, float) and moment.stop <= moment.start:
+        slots.repeated |= set(moment.said)
+        moment = replace(moment, stop=None)  # "at rest for the first second, it starts at 1 s"
     if moment.lasting is not None and _BEFORE.search(slots.rest) and moment.start is None and slots.happening is None:
         if (moves := slots.movement(slots.queries[0])) is not None:  # "a second of stillness before the fan begins"
             slots.repeated |= set(moment.said)
@@ -531,7 +535,13 @@ def _pause(slots: Slots) -> Iterator[Wanted]:
         yield replace(paced(slots, "stop", moment), also=(paced(slots, "stop", Moment(start=moves.stop)),))
         return
     if moment.lasting is not None or both or _has_ends(slots.happening):
-        yield paced(slots, "stop", moment)
+        rest = paced(slots, "stop", moment)
+        to_the_end = moves is not None and moves.turns and moment.always and moment.lasting is not None
+        if moves is not None and to_the_end and moves.stop + (moment.lasting or 0.0) > moves.end:
+            rest = replace(
+                rest, also=(paced(slots, "stop", Moment(start=moves.end)),)
+            )  # "then on till the film is over"
+        yield rest
 
 
 _GOES_AGAIN = re.compile(r"\b(?:again|restart\w*|resum\w*|back on|another (?:go|run)|once more)\b")
@@ -656,10 +666,12 @@ def _longer(slots: Slots) -> Iterator[Wanted]:
     if slots.happening is not None:
         return
     stop = slots.moment.stop if isinstance(slots.moment.stop, float) else None
-    if slots.moment.lasting is None and not slots.amounts:
+    if slots.moment.lasting is None and all(own.said in slots.used for own in slots.amounts):
         yield Wanted(pace(whose_of(slots), "go_on"), Moment(stop=stop), None)
         return
     moves, more = slots.movement(slots.queries[0]), slots.one("s", "")
+    rate = 0.0 if moves is None else moves.degrees / 360 / max(moves.stop - moves.start, _AS_TOLD)
+    slots.used |= {own.said for own in slots.amounts if own.unit == "turns/s" and abs(own.value - rate) < _AS_TOLD}
     seconds = slots.moment.lasting if more is None else more.value
     if moves is None or seconds is None:
         return  # only the scene tells when it stops now

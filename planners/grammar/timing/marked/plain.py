@@ -195,8 +195,8 @@ _NOT_MOVING = re.compile(
 _OVER = re.compile(
     r"^(?: ?(?:is|are|'s|was|has|have|had)(?: been)?)?(?: all)? (?:done|through|up|complete|finished|inside|past|by|"
     r"over|gone|in place|parks?|parked|quits?|dies|settles?|settled|docks?|docked|dead|dies down|gives? up|calms? down|"
-    r"(?:[a-z]+ )?to (?:rest|a standstill|a stop|a halt)|pulled up|drawn up|cuts?(?: out)?|conks out|powers down|"
-    r"(?:switches|shuts|turns) off)(?: .*)?$"
+    r"(?:[a-z]+ )?to (?:rest|an? (?:\w+ )?(?:standstill|stop|halt))|pulled up|drawn up|"
+    r"cuts?(?: out)?|conks out|powers down|(?:switches|shuts|turns) off)(?: .*)?$"
 )
 _PATH = (
     r"(?:by|past|over|across|through|along|around|round|about|away|off|in|into|out|up|down|to|towards?|at|near|home)"

@@ -251,6 +251,7 @@ _ASKED_OF = re.compile(
     r"\b(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b"
 )
 _AS_FAST = re.compile(r"\b(?:twice|double|half|times) (?:as|the) (?:fast|quick|slow|speed)\b")
+_REVISED = re.compile(r"\b(?:revise|change|raise|adjust|reduce|increase|lower|set|bring) (?:it |that )?to \d")
 _NOT_UNTIL = re.compile(r"\bnot (?:before|until|till) (?:the|my|a) \w+ \w+")
 
 
@@ -259,7 +260,7 @@ def asks_more(words: Sequence[str], tag: str) -> bool:
     said = " ".join(words)
     if tag == "not":
         return _UNLESS.search(said) is not None or _NOT_UNTIL.search(said) is not None
-    if tag == "keep" and _AS_FAST.search(said) is not None:
+    if tag == "keep" and (_AS_FAST.search(said) is not None or _REVISED.search(said) is not None):
         return True  # "and going twice as fast as it is"
     if tag == "keep" and " but " in said and amount(said.split(" but ")[1]) is not None:
         return True  # "same roll but twice as fast"
@@ -525,6 +526,7 @@ _LOWER = re.compile(r"^(?:both (?:of )?)?(?:the )?(?:(?:two )?(?:lower|bottom)|l
 _NUMBERED_DRAWER = re.compile(r"^(?:the )?drawer (?:number |no ?\.? ?|# ?)?(?P<at>one|two|three|1|2|3)$")
 _DRAWERS = {"1": "top", "2": "middle", "3": "bottom"}
 _PRONOUNS = ("its", "his", "her", "this one", "that one", "same", "the same", "this", "that")
+_IT = ("it", "him", "her", "them", "that one", "this one")
 _CRIES = bag("boom bang poof bam wham pow presto abracadabra voila tada hey")
 
 

@@ -11,7 +11,7 @@ from .....gaussians.language.query.query import Query
 from .....tools.when import During
 from ...vocabulary.nouns import is_opened
 from ..command import Command, pace
-from ..happenings import Happening
+from ..happenings import IT, Happening
 from ..moments import Moment
 from .amounts import Amount
 from .slots import Slots
@@ -76,7 +76,9 @@ def in_step(slots: Slots) -> Wanted | None:
     movers = [query for query in slots.queries if slots.moves(query)]
     follow = tuple(query for query in slots.queries if query not in movers)
     other: Query | None = None
-    if len(movers) == 1 and follow and not slots.told and _AS_ONE.search(" ".join(slots.words)):
+    during = None if slots.happening is None else slots.happening.during
+    in_sync = during is None or (during.part == "while" and during.of in (None, IT))
+    if len(movers) == 1 and follow and slots.moment.empty and in_sync and _AS_ONE.search(" ".join(slots.words)):
         other = movers[0]  # "the middle drawer doubles the top one"
     elif movers:
         return None

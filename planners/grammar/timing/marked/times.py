@@ -101,7 +101,7 @@ _ALONE = re.compile(r"^(?:at |from )?(?:half ?way|midway|half time)(?: through| 
 _FILM = re.compile(r"\b(?:film|clip|video|movie|scene|shot|time|animation|footage|sequence)\b")
 _GIVEN = re.compile(  # "once it is open give it a second"
     r"^(?P<clause>(?:once|when|after|as soon as) .+?) (?:give|allow|leave|wait)(?: it| him| her)? "
-    rf"(?P<delay>{DURATION})$"
+    rf"(?P<delay>{DURATION})(?: 's?)?(?: (?:airing|rest|break|pause|peace|hold|breather|grace))?$"
 )
 _HAS_BEEN = re.compile(
     r"^(?P<who>(?:once|after|when|as soon as|only after|from when) .+?) (?:has|have|is|'s|was|had) been "

@@ -11,6 +11,7 @@ from .....tools.when import During
 from ...learned.events import event_of
 from ...learned.marks import Span
 from ...tagging.words import bag
+from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS
 from ..happenings import IT, Happening
 from ..manner import Thing
@@ -53,6 +54,8 @@ _PLAINER = (  # times in plainer words
         "is fully open",
     ),
     (re.compile(r"^all over(?: and| ,)? ?"), ""),
+    (re.compile(r"\bthe second number (?=\w)"), "second "),
+    (re.compile(r"\bhas (?:taken|made|done) (?:its|his|her) (?:very )?last step$"), "has stopped"),
     (re.compile(rf"^(?:until|till|not (?:until|till|before)) (?={DURATION} (?:after|once|past|from) )"), ""),
     (re.compile(r"\b(?:couple(?: of)?) (?=seconds?\b)"), "two "),
     (
@@ -76,6 +79,7 @@ _MUST_BE_THERE = re.compile(
     r"^(?:, )?(?:it|he|she|they) (?:(?:must|should|has to|have to|is to|needs to|shall|will|ought to) )?"
     r"(?:be|stand|sit|have arrived|is|has arrived)\b(?: (?:there|in place|home|over there)| \||$)"
 )
+_THAT = re.compile(r"(?<=[a-z] )(?:that|this|those|these)(?= (?P<noun>[a-z]+)(?: |$))")  # "hits that wall"
 _HALFWAY = re.compile(r"\b(?:half ?way|mid|midway|middle|half)\b")
 _ARRIVES = re.compile(
     r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?|home|parks?|"
@@ -153,7 +157,7 @@ def time_of(
             phrase = _SECOND_TIME.sub("", _EACH_TIME.sub("", phrase))
         if kind in _OF_SEVERAL and (_TOGETHER.match(phrase) or set(phrase.split()) <= PLACES_IN_TURN):
             continue  # "first bottom, then middle"; "together and shuts together"
-        said = phrase
+        said = phrase = _THAT.sub(lambda found: "the" if is_known(found["noun"]) else found[0].split()[0], phrase)
         for pattern, plain in _PLAINER:
             phrase = pattern.sub(plain, phrase)
         said = text(span) if said == phrase == text(span) else phrase
