@@ -117,6 +117,11 @@ class Slots:
         return self.happening is not None or self.moment.told
 
     @property
+    def noun(self) -> str:
+        """The noun of the first thing that is changed."""
+        return self.queries[0].text
+
+    @property
     def whom(self) -> str:
         """The names of all things that are changed."""
         return " and ".join(self.names)
