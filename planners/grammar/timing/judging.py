@@ -253,8 +253,8 @@ class Judge:
             return False
         moves = self._moves_how(ALL_MOVING)
         end = math.inf if moves is None else moves.end
-        free = held.said_twice(self._facts(held), end) | set(self._own_colors(held))
-        return leaves_out(wording, ops, free, held.spans)
+        free = held.said_twice(self._facts(held), end)
+        return leaves_out(wording, ops, free, held.spans, shades=set(self._own_colors(held)))
 
     def _own_colors(self, held: Slots) -> Iterator[int]:
         """Where colours stand that the thing of an instruction has now, in words about what is not wanted, what stays,

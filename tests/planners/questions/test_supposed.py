@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from scenewright.planners.grammar.tagging.words import bag
+from scenewright.planners.questions.reading.time.situated import situated
 from scenewright.planners.questions.reading.time.supposed.kinds import kinds_of, marked_ways
 from scenewright.planners.questions.reading.time.supposed.plainly import supposed
 from scenewright.planners.questions.reading.time.supposed.times import plain_time
@@ -98,3 +99,23 @@ def test_gaps_legs_and_whole_films(text: str, plainly: str) -> None:
 )
 def test_what_is_felt_is_not_asked_about(text: str) -> None:
     assert supposed(text, NAMES) == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "plainly"),
+    [
+        ("Say I'm at 1.7 seconds. What's the ball on then?", "What's the ball on at 1.7 seconds?"),
+        ("It's 1.5 seconds, is the book still up there?", "is the book still up there at 1.5 seconds?"),
+        ("1.8s and the blue book is up there?", "the blue book is up there at 1.8s?"),
+        ("What is the ball rolling over, love?", "what is the ball on?"),
+        (
+            "By what length, in centimetres, does the drawer slide out?",
+            "how far in centimetres does the drawer slide out?",
+        ),
+        ("Yellow car. Does it move at any point?", "Does the yellow car move at any point?"),
+        ("By what angle has the door swung once it is fully open?", "By what angle has the door swung?"),
+        ("Does the ball stop?", "Does the ball stop?"),
+    ],
+)
+def test_a_question_is_put_into_its_time(text: str, plainly: str) -> None:
+    assert situated(text) == plainly

@@ -26,25 +26,27 @@ def leaves_out(
     free: Set[int] = frozenset(),
     spans: Sequence[Span] | None = None,
     timed: bool = True,
+    shades: Set[int] = frozenset(),
 ) -> bool:
     """Whether a number beside a time, or a colour, that an instruction tells stands in no operation.
 
     What is not wanted, and what comes back, may be left out.
 
     Args:
-        free: where numbers and colours stand that say nothing new.
+        free: where numbers stand that say nothing new.
         spans: the marks in the words; None: the likeliest.
         timed: whether numbers count only in an instruction that has a time with its unit.
+        shades: where colours stand that say nothing new.
     """
     spans = marked(words) if spans is None else spans
-    if _loses_colors(words, ops, free, spans):
+    if _loses_colors(words, ops, shades, spans):
         return True
     said = " ".join(words)
     counts = not timed or TIMED.search(said) is not None or _A_SECOND.search(said) is not None
     return counts and _loses_numbers(words, ops, free, spans)
 
 
-def _loses_colors(words: Sequence[str], ops: Sequence[Fields], free: Set[int], spans: Sequence[Span]) -> bool:
+def _loses_colors(words: Sequence[str], ops: Sequence[Fields], shades: Set[int], spans: Sequence[Span]) -> bool:
     """Whether a look is for a time, and another colour that is told stands nowhere: "red while it rolls, else blue"."""
     if not any(op["op"] == "recolor" and op.get("when") is not None for op in ops):
         return False
@@ -56,7 +58,7 @@ def _loses_colors(words: Sequence[str], ops: Sequence[Fields], free: Set[int], s
     for at, word in enumerate(words):
         around = {*words[max(0, at - 4) : at], *words[at + 1 : at + 3]}
         beside = held & hues() & {*words[max(0, at - 1) : at], *words[at + 1 : at + 2]}  # "mint green" is one colour
-        if word in hues() and at not in idle | free and word not in held and not beside and not around & _NOT_WANTED:
+        if word in hues() and at not in idle | shades and word not in held and not beside and not around & _NOT_WANTED:
             return True
     return False
 

@@ -1,0 +1,130 @@
+"""Wishes that only the scene makes exact: so much more or less than now, what stays as it is, and what it is called."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from scenewright.gaussians.language.query.query import Query
+from scenewright.planners.grammar.planner import GrammarPlanner
+from scenewright.planners.plan import Movement
+
+PLANNER = GrammarPlanner()
+MOVES = {
+    "door": Movement(1.0, 2.5, False, 5.0, 80.0, 0.0, (1.0, 2.5)),
+    "drawer": Movement(1.0, 4.5, False, 5.0, 0.0, 0.3, (1.0, 2.0, 3.5, 4.5)),
+    "robot": Movement(0.2, 4.0, False, 5.0, 90.0, 2.5),
+    "ball": Movement(0.5, 3.5, False, 5.0, 0.0, 4.0),
+    "fan": Movement(0.0, 4.0, True, 5.0, 1440.0, 0.0, (0.0, 4.0)),
+    "book": Movement(0.5, 2.5, False, 5.0, 0.0, 1.5, (0.5, 1.0)),
+}
+
+
+class Film:
+    """A scene of five seconds as planners see it, in which a door, the top drawer, a robot, a ball, a fan and books
+    move; the wardrobe is brown, the vase blue."""
+
+    def graph(self) -> Any:
+        raise AssertionError("no graph is needed")
+
+    def picture(self) -> bytes | None:
+        return None
+
+    def moves(self, query: Query) -> bool | None:
+        if query.text.endswith("drawer"):
+            return query.pick in ("highest", "all")
+        return query.moving is True or not query.text or query.text.split(" ")[-1] in MOVES
+
+    def movement(self, query: Query) -> Movement | None:
+        return MOVES.get(query.text.split(" ")[-1] or "ball") if self.moves(query) else None
+
+    def has(self, query: Query) -> bool:
+        return (query.text, *query.colors) in (("wardrobe", "brown"), ("vase", "blue"))
+
+    def lacks(self, query: Query) -> bool:
+        return False
+
+
+def planned(text: str) -> list[dict[str, Any]]:
+    plan = PLANNER.plan(text, observation=Film())
+    return [op.model_dump(exclude_defaults=True, mode="json") | {"op": op.op} for op in plan.ops]
+
+
+@pytest.mark.parametrize(
+    ("text", "fields"),
+    [
+        ("Open the door 15 degrees further.", {"degrees": 95.0}),
+        ("The door should open wider, 110 degrees.", {"degrees": 110.0}),
+        ("The door may swing a full hundred and ten degrees.", {"degrees": 110.0}),
+        ("Pull the top drawer out ten centimetres further.", {"distance": {"value": 0.4}}),
+        ("Don't pull the top drawer out any further than 12 cm.", {"distance": {"value": 0.12}}),
+        ("Ten centimetres is plenty for the top drawer.", {"distance": {"value": 0.1}}),
+        ("The top drawer should come out a third less.", {"distance": {"value": 0.2}}),
+        ("Let the robot turn by 30 degrees more at the corner.", {"change": "turn", "degrees": 120.0}),
+        ("The robot should make a half turn instead of a quarter one.", {"change": "turn", "degrees": 180.0}),
+        ("The ball should stop a metre short of the wall.", {"change": "part", "share": 0.75}),
+        ("The ball should roll at 2 m/s.", {"change": "speed", "factor": 1.5}),
+    ],
+)
+def test_how_far_is_told_by_how_far_it_goes_now(text: str, fields: dict[str, Any]) -> None:
+    (op,) = planned(text)
+    assert {key: op.get(key) for key in fields} == fields
+
+
+@pytest.mark.parametrize(
+    ("text", "ops"),
+    [
+        ("The top drawer stays open until 5 s.", 1),
+        ("Cancel the way back of the top drawer, so that it is still open at the end.", 1),
+        ("The fan takes a break between 1 and 2 s, then it goes on until 4 s like before.", 2),
+    ],
+)
+def test_what_is_so_anyway_may_be_said_in_numbers(text: str, ops: int) -> None:
+    made = planned(text)
+    assert len(made) == ops and all(op["op"] == "pace" for op in made)
+
+
+def test_a_colour_that_a_thing_has_now_is_no_other_wish() -> None:
+    (op,) = planned("Let the wardrobe be white while the drawer is open, brown otherwise.")
+    assert op["op"] == "recolor" and op["color"] == "white"
+    assert planned("Let the wardrobe be white while the drawer is open, green otherwise.") == []
+
+
+@pytest.mark.parametrize(
+    ("text", "during"),
+    [
+        ("make the car red during the robot's second walk", {"state": "turning", "part": "after"}),
+        ("hide the car when the second walk of the robot begins", None),
+        ("stop the robot once the turn is completed", {"state": "turning", "part": "after"}),
+        ("the ball should stop in the middle of the rug", {"state": "closest", "part": "from"}),
+        (
+            "The ball should halt on leaving the rug, pause for exactly one second, and only then go on to the wall.",
+            {"state": "on", "part": "after"},
+        ),
+    ],
+)
+def test_places_and_legs_tell_times(text: str, during: dict[str, str] | None) -> None:
+    for op in planned(text):
+        told = op["when"]["during"]
+        assert during is None or {key: told.get(key, "while") for key in during} == during
+    assert planned(text) or during is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "The red book must fall before the green one and, equally, only after it.",
+        "The fan has to turn twice as fast and at the same moment not move at all.",
+        "Vase I don't like and table also not, take them both away please.",
+    ],
+)
+def test_what_cannot_be_or_is_not_understood_is_not_done(text: str) -> None:
+    assert planned(text) == []
+
+
+def test_what_moves_is_spoken_of_without_a_time() -> None:
+    (op,) = planned("The top drawer comes out too far, 15 cm is enough.")
+    assert (op["op"], op["distance"]) == ("articulate", {"value": 0.15})
+    (order,) = planned("Rather green, then red, then blue, so should the books fall.")
+    assert [query["colors"] for query in order["first"]] == [["green"], ["red"], ["blue"]]
