@@ -320,9 +320,13 @@ def slots(
     if any(_EVERYTHING.search(text(span)) for span in named) or _is_divided(words, named, thing, kind):
         return None
     goals = tuple(_goals(words, spans, text, thing))
-    if kind not in (*LOOKS, "order", "still", "stay") and any(
-        goal.query.last and not _is_own(goal.name, kind) for goal in goals
-    ):
+    of = None if time[1] is None else time[1].during.of
+    if kind == "move" and of is not None and of.text:  # "when the robot is there, the car joins it"
+        goals = tuple(
+            Goal(f"the {of.text}", of, own.way) if own.query.last and own.name in _IT else own for own in goals
+        )
+    unknown = any(goal.query.last and not _is_own(goal.name, kind) for goal in goals)
+    if unknown and kind not in (*LOOKS, "order", "still", "stay"):
         return None
     names, queries = _things(map(text, named), thing, kind in COURSES and moves(ALL_MOVING))
     painted = None if names else _painted(map(text, (span for span in spans if span[0] == "as")), thing)

@@ -246,9 +246,7 @@ def _spoken_of(words: Sequence[str], spans: Sequence[Span], span: Span) -> str:
     """What an instruction says before a mark that points to it, as a time: "the ball touches the wall, yes? From this
     moment ..."."""
     before = _RIGHT.sub("", " ".join(words[: span[1]]).strip(" ,.;:?!"))
-    told = re.split(r" [.;:?!] | , (?:yes|right|see|ok|okay)\b", f"{before} ")[
-        0 if before.endswith("yes") else -1
-    ].strip(" ,.")
+    told = _SAID_BEFORE.split(before)[-1].strip(" ,.")
     return f"when {told}" if any(tag in ("x", "y", "not", "off") for tag, _, _ in spans) else ""
 
 
