@@ -9,7 +9,6 @@ import numpy as np
 import torch
 from numpy.typing import ArrayLike, NDArray
 
-from ...gaussians.motion.courses import rotation_vectors
 from ...gaussians.motion.motion import Motion, Residual, Track, carried, poses
 from ...gaussians.motion.runs import runs_of
 from ...gaussians.rows import rows_of_ids
@@ -18,6 +17,7 @@ from ..cloud_diff import Draft
 from ..field_update import after_move
 from ..operation import Affine
 from ..transform import turn
+from .bending import upright_turns
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -172,8 +172,7 @@ def extent(tracks: list[Track], span: tuple[float, float], up: F64) -> tuple[flo
             angle, way = (angle, max(way, far)) if track.kind == "slide" else (max(angle, far), way)
             continue
         turns, shifts = poses(track, times)
-        steps = rotation_vectors(turns[1:] @ turns[:-1].transpose(0, 2, 1)) @ up
-        angle = max(angle, float(np.abs(np.cumsum(steps)).max()))
+        angle = max(angle, float(np.abs(upright_turns(track, times, up)).max()))
         way = max(way, float(np.linalg.norm(np.diff(turns @ track.pivot + shifts, axis=0), axis=1).sum()))
     return angle, way
 

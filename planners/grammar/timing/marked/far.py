@@ -56,12 +56,12 @@ def goes_as_far(slots: Slots) -> Iterator[Wanted]:
     """The commands of a wish that something goes, opens or turns as far as is told."""
     slots.pass_goals()
     _leave_out_how_far_it_goes(slots)
-    if not is_opened(slots.queries[0].text):
+    if not is_opened(slots.noun):
         yield from _turns(slots)
     if (how := how_far(slots)) is None:
         return
     slots.used |= {own.said for own in slots.amounts if own.unit in ("times", "%")}  # "half as far, 15 cm"
-    if is_opened(slots.queries[0].text):
+    if is_opened(slots.noun):
         if isinstance(how, float):
             yield opened(whose_of(slots), plainly(slots.moment), slots.happening, share=how)
         else:
@@ -96,7 +96,7 @@ def _turns(slots: Slots) -> Iterator[Wanted]:
     if moves is None or moves.turns or (slots.told and not on_its_turn):
         return
     own = next((own for own in slots.amounts if own.unit in ("deg", "", "turns", "times")), None)
-    if own is None or (own.unit == "times" and _TURN.search(" ".join(slots.words)) is None):
+    if own is None or (own.unit == "times" and _TURN.search(slots.whole) is None):
         return
     sign = _sign(slots, own, moves.degrees)
     if own.unit == "times":
@@ -116,7 +116,7 @@ _TURN = re.compile(r"\b(?:turn\w*|round|around|pivot\w*|rotat\w+|twist\w*|swivel
 def how_far(slots: Slots) -> str | float | None:
     """How far something opens or goes, in words, or as a share of how far it does now; None if that is not told, or if
     nothing tells how far it goes now."""
-    slides = slots.queries[0].text.startswith("drawer")
+    slides = slots.noun.startswith("drawer")
     own = slots.one("") or slots.one("deg") or slots.one("m")
     moves = slots.movement(slots.queries[0])
     if own is not None:
@@ -128,7 +128,7 @@ def how_far(slots: Slots) -> str | float | None:
             if not here or (value := here + sign * value) <= 0:
                 return None
             slots.repeated.add(own.said)
-            if not is_opened(slots.queries[0].text):
+            if not is_opened(slots.noun):
                 return round(value / here, 4) if value < here else None
         return f"by {value:g} degrees" if unit == "deg" else f"by {value:g} m"
     share = slots.one("times", "%")
@@ -136,13 +136,13 @@ def how_far(slots: Slots) -> str | float | None:
         return "halfway" if slots.tell(_HALF) else None
     part = share.value / 100 if share.unit == "%" else share.value
     sign = _sign(slots, share, 0.0)
-    whole = " ".join(slots.words)
+    whole = slots.whole
     if sign or (share.unit == "%" and _LESS.search(whole) and not re.search(_TO + re.escape(share.said), whole)):
         slots.repeated.add(share.said)
         part = 1 + (sign or -1) * part
     if part <= 0:
         return None
-    now_wide = moves if moves is not None and is_opened(slots.queries[0].text) else None
+    now_wide = moves if moves is not None and is_opened(slots.noun) else None
     if now_wide is not None and part != 1 and (part < 1 or _AS_FAR.search(whole)):
         slots.repeated.add(share.said)
         return f"by {now_wide.metres * part:g} m" if slides else f"by {now_wide.degrees * part:g} degrees"
@@ -165,7 +165,7 @@ def _sign(slots: Slots, own: Amount, here: float) -> int:
         here: how far it goes now; 0 if that is not known.
     """
     instead = any(tag == "not" and amount(" ".join(slots.words[a:b])) is not None for tag, a, b in slots.spans)
-    words = _AT_MOST.sub(" ", " ".join(slots.words))
+    words = _AT_MOST.sub(" ", slots.whole)
     beside = re.search(rf"(?:\S+ )?{re.escape(own.said)}(?: \S+)?", words)
     for sign, change in _CHANGES.items():
         if beside is not None and change.search(beside[0]):

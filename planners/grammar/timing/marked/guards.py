@@ -82,7 +82,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     ):
         return True
     single = len(slots.queries) == 1 and slots.queries[0].pick == "one" and not slots.queries[0].also
-    if kind in ("recolor", "hide", "remove") and single and _PAIR.search(" ".join(slots.words)):
+    if kind in ("recolor", "hide", "remove") and single and _PAIR.search(slots.whole):
         return True  # "vase I do not like and table also not, take them both away"
     if kind in ("hide", "remove") and hues() & {
         word for tag, a, b in slots.spans if tag == "keep" for word in slots.words[a:b]
@@ -90,7 +90,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
         return True  # "both get the same black material"
     if kind in ("hide", "remove") and (_PLACES_IT.search(asked) or _KEEPS_IT.search(f"{asked} {idle}")):
         return True  # "place three bottles on the table", "keep the crib, nothing else"
-    if (there := _THERE_IS.search(" ".join(slots.words))) is not None and there["noun"] not in " ".join(things).split():
+    if (there := _THERE_IS.search(slots.whole)) is not None and there["noun"] not in " ".join(things).split():
         return True  # "on the sofa there sits a cat, could you make her black": the cat is meant
     if kind in STATIC and timeless and (chance < SURE or _ORDERED.match(asked)):
         return True

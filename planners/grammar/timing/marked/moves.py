@@ -80,7 +80,7 @@ def hide(slots: Slots) -> Iterator[Wanted]:
     seen = _SEEN.search(slots.rest) is not None and _GONE.search(slots.rest) is None
     enters = slots.moment.start is not None and slots.moment.stop is None and _ENTERS.search(slots.rest) is not None
     seen = seen and (enters or NOT.search(slots.rest) is None)
-    if seen and _BACK.search(" ".join(slots.words)):
+    if seen and _BACK.search(slots.whole):
         return  # "show it for a second, then bring it back" contradicts itself
     slots.pass_goals()
     yield Wanted(f"{'show' if seen else 'hide'} {slots.whom}", slots.moment, slots.happening)
@@ -99,7 +99,7 @@ def move(slots: Slots) -> Iterator[Wanted]:
     """What goes somewhere: to a place, by a length, after or around another thing, or hops."""
     if slots.tell(_OTHERWISE) or _TO_A_HEIGHT.search(slots.said):
         return
-    step, whole = slots.happening, " ".join(slots.words)
+    step, whole = slots.happening, slots.whole
     if step is not None and step.until is not None and step.during.part == "while":  # "as it turns, until it stops"
         begun = step.during.model_copy(update={"part": "from"})
         slots = replace(slots, happening=replace(step, during=begun))
@@ -159,7 +159,7 @@ def _beside_another(slots: Slots) -> Wanted | None:
     if lags:  # "comes in half a second behind the robot"
         happening = Happening(During(state="moving", of=movers[0].query, part="from"), f"after {movers[0].name}")
         return Wanted(f"move {slots.whom} to {place.name}", Moment(start=slots.moment.lasting), happening)
-    words = " ".join(slots.words)
+    words = slots.whole
     part: Part = "while" if _ARRIVES.search(words) and not slots.told else "from"
     happening = Happening(During(state="moving", of=movers[0].query, part=part), f"as {movers[0].name} does")
     return Wanted(f"move {slots.whom} to {place.name}", plainly(slots.moment), happening)

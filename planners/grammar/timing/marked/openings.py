@@ -40,7 +40,7 @@ def opening(slots: Slots, verb: str) -> Iterator[Wanted]:
         verb: "open" or "close".
     """
     moment = slots.moment
-    if verb == "close" and isinstance(moment.stop, float) and _SHUT_TILL.search(" ".join(slots.words)):
+    if verb == "close" and isinstance(moment.stop, float) and _SHUT_TILL.search(slots.whole):
         yield paced(slots, "begin", Moment(start=moment.stop))  # "hold the door shut till 2 s"
         return
     wide = slots.happening is None or slots.happening.during.state in ("fully_open", "open")
@@ -54,15 +54,12 @@ def opening(slots: Slots, verb: str) -> Iterator[Wanted]:
     if order is not None and len(order.things) > 1:
         yield from in_turn(order.things, slots)
         return
-    if verb == "open" and (together := in_step(slots)) is not None:
-        yield together
+    if verb == "open" and (told := in_step(slots) or _beside_what_opens(slots)) is not None:
+        yield told
         return
-    if (apart := _beside_what_opens(slots, verb)) is not None:
-        yield apart
-        return
-    if slots.goals or slots.moment.start == "end" or _IN_TURN.search(" ".join(slots.words)):
+    if slots.goals or slots.moment.start == "end" or _IN_TURN.search(slots.whole):
         return  # as another one does, or how it is at the end, or one after the other
-    if TOO.search(" ".join(slots.words)) and not slots.told:
+    if TOO.search(slots.whole) and not slots.told:
         return  # by how much is not told
     by = slots.one("s")
     if by is not None and isinstance(slots.moment.start, float):
@@ -86,14 +83,14 @@ def opening(slots: Slots, verb: str) -> Iterator[Wanted]:
         yield Wanted(command, plainly(moment), slots.happening)
 
 
-def _beside_what_opens(slots: Slots, verb: str) -> Wanted | None:
+def _beside_what_opens(slots: Slots) -> Wanted | None:
     """What opens so many seconds before or after another thing does: "half a second ahead of the top one"; None for
     others."""
     by = [own for own in slots.amounts if own.unit == "s"]
     goals = [goal for goal in slots.goals if is_opened(goal.query.text)]
     moves = slots.movement(goals[0].query) if len(goals) == 1 else None
     sign = -1 if _AHEAD.search(slots.rest) else 1 if _AFTER_IT.search(slots.rest) else 0
-    if verb != "open" or slots.told or len(by) != 1 or moves is None or not sign or slots.moves(slots.queries[0]):
+    if slots.told or len(by) != 1 or moves is None or not sign or slots.moves(slots.queries[0]):
         return None
     start = moves.start + sign * by[0].value
     if start < 0:

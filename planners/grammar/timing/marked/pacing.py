@@ -124,7 +124,7 @@ _ENDED_BY: dict[Part, Part] = {"until": "from", "until_end": "after"}
 
 def sign_of(slots: Slots) -> float | None:
     """1 if something is to be later, -1 if earlier; None if neither is said, or both."""
-    whole = " ".join(slots.words)
+    whole = slots.whole
     if (too := TOO.search(whole)) is not None and not re.search(r"\b(?:earlier|sooner|later)\b", slots.said):
         return -1.0 if too["what"] == "late" else 1.0
     for later in (_STRICTLY_LATER, _LATER):
@@ -240,7 +240,7 @@ def longer(slots: Slots) -> Iterator[Wanted]:
     seconds = slots.moment.lasting if more is None else more.value
     if moves is None or seconds is None:
         return  # only the scene tells when it stops now
-    words = " ".join(slots.words)
+    words = slots.whole
     ends = round((moves.stop if more is not None or _EXTRA.search(words) else moves.start) + seconds, 4)
     if ends <= moves.stop or (stop is not None and abs(stop - ends) > _AS_TOLD):
         return

@@ -24,24 +24,16 @@ def pause(slots: Slots) -> Iterator[Wanted]:
     """What rests on its way, and goes on."""
     slots.pass_goals()
     moment = replace(plainly(slots.moment), taken=False)
-    if (
-        moment.always
-        and moment.lasting is not None
-        and _has_stopped(slots)
-        and _GOES_AGAIN.search(" ".join(slots.words))
-    ):
+    if moment.always and moment.lasting is not None and _has_stopped(slots) and _GOES_AGAIN.search(slots.whole):
         again = Moment(start=moment.lasting, stop="end")  # "after it stops, half a second's peace, then on to the end"
         yield paced(slots, "repeat", again, times=1)
         return
     if moment.lasting is None and (seconds := slots.one("s")) is not None:
         moment = replace(moment, lasting=seconds.value)
     begun = moment.start is not None or slots.happening is not None
-    if not begun and (moment.lasting is None) != (moment.stop is None) and (there := _there(slots)) is not None:
-        yield Wanted(replace(pace(whose_of(slots), "stop"), during=there), moment, None)
-        return
     if not begun and (moment.lasting is None) != (moment.stop is None):
-        if (where := far_along(slots)) is not None:
-            yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), moment, None)
+        if (where := _where(slots)) is not None:
+            yield _stopped(slots, where, moment)
             return
         if moment.lasting is not None:
             return
@@ -54,11 +46,10 @@ def pause(slots: Slots) -> Iterator[Wanted]:
         return
     if moment.lasting is not None or both or _has_ends(slots.happening):
         rest = paced(slots, "stop", moment)
-        to_the_end = moves is not None and moves.turns and moment.always and moment.lasting is not None
-        if moves is not None and to_the_end and moves.stop + (moment.lasting or 0.0) > moves.end:
-            rest = replace(
-                rest, also=(paced(slots, "stop", Moment(start=moves.end)),)
-            )  # "then on till the film is over"
+        turns_on = moves is not None and moves.turns and moment.always
+        if moves is not None and turns_on and moment.lasting is not None and moves.stop + moment.lasting > moves.end:
+            over = paced(slots, "stop", Moment(start=moves.end))  # "then on till the film is over"
+            rest = replace(rest, also=(over,))
         yield rest
 
 
@@ -104,14 +95,28 @@ def halt(slots: Slots) -> Iterator[Wanted]:
         slots.repeated |= far
         yield paced(slots, "stop", replace(moment, stop=None) if moment.stop == "end" else moment)
         return
-    where = _there(slots) or far_along(slots)  # "it jams at 40 degrees till the film ends"
-    if where is not None:
-        yield Wanted(replace(pace(whose_of(slots), "stop"), during=where), Moment(), None)
+    if (where := _where(slots)) is not None:  # "it jams at 40 degrees till the film ends"
+        yield _stopped(slots, where, Moment())
     elif ended:
         yield paced(slots, "stop", replace(moment, start=moment.stop, stop=None))
 
 
 _SHORT_OF = re.compile(r"\b(?:short|before|away)\b")
+
+
+def _where(slots: Slots) -> dict[str, Any] | None:
+    """The time from when something is where it is to stop, as fields: at the other thing, or as far as is told; None if
+    neither is told."""
+    return _there(slots) or far_along(slots)
+
+
+def _stopped(slots: Slots, during: dict[str, Any], moment: Moment) -> Wanted:
+    """What stops, or rests, from when something is at a place.
+
+    Args:
+        during: the time from then on, as fields.
+    """
+    return Wanted(replace(pace(whose_of(slots), "stop"), during=during), moment, None)
 
 
 def _there(slots: Slots) -> dict[str, Any] | None:
@@ -125,7 +130,7 @@ def _there(slots: Slots) -> dict[str, Any] | None:
     if len(goals) != 1 or is_opened(slots.noun) or slots.amounts or slots.tell(_HALFWAY):
         return None
     if goals[0].query.text in _TURNING_POINTS:
-        return {"state": "turning", "part": "after" if _TURNS_FIRST.search(" ".join(slots.words)) else "from"}
+        return {"state": "turning", "part": "after" if _TURNS_FIRST.search(slots.whole) else "from"}
     return {"state": "closest", "anchors": (goals[0].query,), "part": "from"}
 
 

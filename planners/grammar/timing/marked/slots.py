@@ -156,6 +156,11 @@ class Slots:
         return (*self.names, *(goal.name for goal in self.goals))
 
     @cached_property
+    def whole(self) -> str:
+        """All words."""
+        return " ".join(self.words)
+
+    @cached_property
     def asked(self) -> str:
         """The words that are about no time, and not about what is not wanted, what stays, or nothing."""
         return self._without(*TIMES, *_IDLE).strip(_TRIM)

@@ -43,7 +43,7 @@ def opened(query: Query, moment: Moment, happening: Happening | None, change: st
 
 def gap_of(slots: Slots, words: re.Pattern[str] = SPACED) -> float | None:
     """The seconds from one thing of several to the next; None if none of some words says that there are any."""
-    if words.search(" ".join(slots.words)) is None:
+    if words.search(slots.whole) is None:
         return None
     seconds = slots.one("s")
     return seconds.value if seconds is not None else slots.moment.lasting
@@ -78,7 +78,7 @@ def in_step(slots: Slots) -> Wanted | None:
     other: Query | None = None
     during = None if slots.happening is None else slots.happening.during
     in_sync = during is None or (during.part == "while" and during.of in (None, IT))
-    if len(movers) == 1 and follow and slots.moment.empty and in_sync and _AS_ONE.search(" ".join(slots.words)):
+    if len(movers) == 1 and follow and slots.moment.empty and in_sync and _AS_ONE.search(slots.whole):
         other = movers[0]  # "the middle drawer doubles the top one"
     elif movers:
         return None
@@ -92,7 +92,7 @@ def in_step(slots: Slots) -> Wanted | None:
         slots.pass_goals()
     if other is None or not is_opened(other.text) or not slots.moves(other):
         return None
-    words = " ".join(slots.words)
+    words = slots.whole
     opening, closing = (
         Happening(During(state=state, of=other), f"as it is {state}") for state in ("opening", "closing")
     )

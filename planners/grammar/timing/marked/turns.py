@@ -81,7 +81,7 @@ def repeat(slots: Slots) -> Iterator[Wanted]:
         yield Wanted(pace(whose_of(slots), "repeat", times=1), moment, slots.happening)
         return
     moves = slots.movement(slots.queries[0])
-    if moves is not None and moves.turns and slots.moment.stop is None and _GOES_ON.search(" ".join(slots.words)):
+    if moves is not None and moves.turns and slots.moment.stop is None and _GOES_ON.search(slots.whole):
         yield paced(slots, "repeat", replace(plainly(slots.moment), stop="end"), times=1)
         return
     again = slots.one("times", "turns", "")
