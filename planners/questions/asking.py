@@ -33,7 +33,9 @@ from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
 from .reading.time.situated import situated
 from .reading.time.sorting import sorted_events
-from .reading.time.supposed.plainly import LEAST, SURE, goes_first, supposed
+from .reading.time.supposed.guards import SURE
+from .reading.time.supposed.likely import goes_first
+from .reading.time.supposed.plainly import LEAST, supposed
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
 from .telling import absent, absent_text, evidence

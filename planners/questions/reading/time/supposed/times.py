@@ -3,10 +3,12 @@ turned"."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from ......gaussians import late_re as re
 from .....grammar.learned.events import Event, event_of
+from .....grammar.tagging.words import bag
+from ..everyday import everyday
 
 _LEADS = (  # how a phrase begins, and the conjunction that says the same
     (re.compile(r"^(?:right |just |only )*(?:until|till|til|up to)\b"), "until"),
@@ -35,7 +37,7 @@ _TO_THE_END = re.compile(r"(?: ,)? (?:\w+ )?(?:to|until|till) the (?:last frame|
 _SHOWN = re.compile(
     r"\b(?:film|clip|video|movie|picture|footage|recording|shot|frames?|seconds?|air|screen|time|show|scene|end)\b"
 )
-_PRONOUNS = ("it", "he", "she", "they")
+_OF_ONE = ("it", "he", "she", "they")
 
 
 def plain_time(phrase: str) -> str | None:
@@ -49,7 +51,7 @@ def plain_time(phrase: str) -> str | None:
     if event.kind in ("film_start", "film_end"):
         return "at the start" if event.kind == "film_start" else "at the end"
     who = event.x or "it"
-    if who not in _PRONOUNS:
+    if who not in _OF_ONE:
         who = with_article(who)
     if event.kind == "first_leg":
         return f"before {who} turns"
@@ -82,7 +84,145 @@ def time_left(words: Sequence[str], times: Sequence[str]) -> str | None:
     if not times or _LEFT.search(said) is None or _SHOWN.search(said) is None:
         return None
     event = event_of(_TO_THE_END.sub("", times[0]))
-    if event is None or not event.x or event.x in _PRONOUNS or event.kind not in _MOMENTS:
+    if event is None or not event.x or event.x in _OF_ONE or event.kind not in _MOMENTS:
         return None
     happens = _MOMENTS[event.kind].format(y=with_article(event.y))
     return f"how long is it from when {with_article(event.x)} {happens} to the end of the film"
+
+
+def times_of(kind: str, said: tuple[str, ...]) -> Iterator[str]:
+    """The words for a time, as they are said and by what happens at it; those that both are read agree in it."""
+    if kind in _OF_A_WAY and all(_ON_ITS_WAY.match(one) for one in said):
+        yield ""
+        return
+    plain = " ".join(filter(None, (_plain_time(kind, one) for one in said)))
+    told = plain_time(plain) if plain else None
+    if told is not None and told in _EDGES and kind not in _STATES:
+        yield ""  # it is asked of the whole film
+        return
+    yield everyday(_ROUGHLY.sub("", plain))
+    if told and not re.search(r"\d", plain):
+        yield told
+
+
+_OF_A_WAY = bag("fast fast_most far long_moves turns")
+_ON_ITS_WAY = re.compile(  # that says nothing more of a movement
+    r"^(?:on|during|along|over|in) (?:its|his|her|the) (?:whole |entire )?"
+    r"(?:way|trip|journey|roll|run|course|path|route)\b|"
+    r"^(?:while|whilst|when|as long as) (?:it|he|she) (?:is|'s) (?:actually )?"
+    r"(?:moving|working|rolling|running|spinning|turning|going|in motion|on|under way)$"
+)
+
+_WHOLE_FILM = re.compile(  # a time that is all of the film
+    r"^(?:(?:during|in|over|throughout|within|for|across|through) (?:the|this|these|all(?: of)? the|its|his|her) "
+    r"(?:(?:whole|entire|full|complete) )?(?:(?:five|5) seconds|(?:\w+ )?"
+    r"(?:(?:five|5) ?s(?:ec(?:ond)?s?)? )?(?:film|clip|video|scene|time|movie|"
+    r"footage|recording|shot|proceedings|events|"
+    r"sequence|interval of motion|motion|movement|run|journey|trip))(?: is to be| long)?|throughout|ever|overall|"
+    r"in total|altogether|in all|"
+    r"at any (?:point|time|moment)|at all|all told|at some (?:point|time|moment)|from (?:start|beginning|"
+    r"first) to (?:finish|end|last)|the (?:whole|entire|full) (?:while|time)|"
+    r"(?:during|in|over|from) 0(?: ?s)? (?:to |- ?)?5 ?s(?:ec\w*)?|(?:when|once) its (?:all )?(?:over|done)|"
+    r"(?:during|in|over|throughout|within|for|across|through) (?:[a-z]+ ){0,4}(?:film|clip|video|movie|footage|"
+    r"proceedings|recording|recorded|filmed|take)|"
+    r"(?:by|in|at|before) the (?:very )?end|finally|eventually|in the end|at last|when (?:it|all|"
+    r"everything) is (?:all )?(?:over|done)|(?:once|when|after) (?:the|this) \w+ is (?:over|done|finished)|"
+    r"(?:at|by) the (?:final )?curtain|"
+    r"when all is (?:said and )?done|before the (?:clip|film|video|scene) (?:ends|is over)|at the finish)$"
+)
+_STATES = (
+    "if_open",
+    "if_shut",
+    "if_still",
+    "where_at",
+    "near",
+    "if_on",
+    "what_moves",
+    "what_still",
+    "if_moves",
+    "how_many",
+    "what_open",
+    "what_shut",
+    "what_on",
+    "what_up",
+)
+_THE_END = re.compile(r"\b(?:end|finish|finally|eventually|last|over|done|ends)\b")
+_QUIET = re.compile(
+    r"^(?:once|when|after) (?:everything|all|the room|things?) (?:is|are|has|have) (?:\w+ )?(?:still|quiet|over|"
+    r"calm|settled|stopped|done|finished)(?: again)?$"
+)
+_OUT = re.compile(
+    r"^(?:on|during) (?:the|its|his|her) (?:way|trip|journey|run|stroke|travel) (?P<way>out|open|back|in|home|"
+    r"shut|closed)$|^while (?:going|coming|sliding|moving) (?P<doing>out|back|in)$"
+)
+_FURTHEST = re.compile(
+    r"^at (?:full \w+|"
+    r"(?:its|his|her|the) (?:very )?(?:furthest|farthest|widest|most|maximum|fullest|utmost|greatest|peak)\b.*)$"
+)
+BEFORE_BACK = re.compile(
+    r"^(?:before|until|till) (?:it |he |she )?(?:\w+ )?(?:goes|going|comes|coming|sliding|slides|moving|moves|"
+    r"heads|heading|gets|is|starts|closing|closes|shuts|shutting)\b"
+)
+
+
+UP_TO_THE_TURN = re.compile(
+    r"^(?:before|until|till|up to|after|from) (?:the |its |his |her )?(?:corner|turn|bend)(?: to the \w+)?$"
+)
+_MIDWAY = re.compile(r"^(?:half ?way|mid ?way|in the middle)\b")
+_ONCE_OUT = re.compile(
+    r"^(?:(?:once|after|when|having) )?(?:it |he |she )?(?:has |is |having )?(?:been )?"
+    r"(?:come|slid|pulled|gone|opened|fully|drawn)(?: \w+)? ?(?:out|open)?$"
+)
+_STRAIGHT = re.compile(r"\b(?:crow|straight|beeline)\b")
+_EDGES = ("", "at the start", "at the end")
+_ALL_OF_IT = re.compile(  # of a movement
+    r"^(?:across|over|during|in|for|throughout) (?:its|his|her|their|the) (?:whole|entire|full|complete) \w+$|"
+    r"^(?:between|from) (?:start(?:ing)?|beginning|first \w+|release) (?:and|to|until) (?:stop(?:ping)?|rest|"
+    r"finish(?:ing)?|end|"
+    r"(?:full |final |a )?(?:stop|rest|halt|standstill))$|"
+    r"^(?:from|between) (?:its|his|her|the) (?:very )?(?:first |initial )?"
+    r"(?:start|motion|movement|beginning|departure|release|move|push) (?:to|and|until|till) (?:its|his|her|the) "
+    r"(?:very )?(?:final |last |full |complete )?(?:stop|halt|rest|end|standstill|arrival)$"
+)
+_TILL_IT_STOPS = re.compile(
+    r"^(?:before|until|till) (?:it|he|she) (?:freez\w+|gave up|gives up|lay still|lies still|stop\w*|"
+    r"c[oa]mes? to (?:a |its )?\w+|"
+    r"settle\w*|died|dies|quits?|was done|is done)\b"
+)
+_AT_MOST = re.compile(r"^(?:once|when|after|at|in|by) (?!.*\d)(?!.*\bseconds?\b)")  # as far as it goes then
+
+
+def _plain_time(kind: str, said: str) -> str:
+    """The words for a time in plain words; "" for all of the film, where that says nothing."""
+    said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", re.sub(r"^(?:given|assuming) (?=t\b|\d)", "at ", said))
+    if kind in ("turns", "far", "often") and _TILL_IT_STOPS.match(said):
+        return ""
+    if (kind == "far_turns" and _MIDWAY.match(said)) or (kind == "long_open" and _ONCE_OUT.match(said)):
+        return ""
+    if _ALL_OF_IT.match(said) or (kind in ("far_opens", "far_turns") and _AT_MOST.match(said)):
+        return ""
+    if kind in ("long_still", "long_open") and BEFORE_BACK.match(said):
+        return ""
+    if kind == "long_on" and said.startswith(("before it ", "until it ", "before leav", "until leav", "before roll")):
+        return ""
+    if kind == "apart" and _STRAIGHT.search(said):
+        return ""
+    if (_FURTHEST.match(said) and kind.startswith("far")) or (kind == "long_open" and BEFORE_BACK.match(said)):
+        return ""
+    if (way := _OUT.match(said)) is not None:
+        return "while it is opening" if (way["way"] or way["doing"]) in ("out", "open") else "while it is closing"
+    if _QUIET.match(said):
+        said = "at the end"
+    if _WHOLE_FILM.match(said):
+        if kind not in _STATES:
+            return ""
+        if _THE_END.search(said):
+            return "at the end"
+        return said if kind in ("if_open", "if_shut", "if_on") else ""
+    return said
+
+
+_ROUGHLY = re.compile(
+    r"\b(?:like|around|about|roughly|approximately|exactly|just|maybe|say) (?=\d)|"
+    r"(?<=[sd]) (?:sharp|exactly|flat|precisely|on the dot)$"
+)

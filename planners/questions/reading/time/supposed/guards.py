@@ -1,0 +1,110 @@
+"""Whether a question says more than its kind and its marks: a negation, a number, a comparison, a rank, a thing."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from ......gaussians import late_re as re
+from ......gaussians.world.words import singular
+from .....grammar.tagging.words import bag
+from .....grammar.vocabulary.quantities import NUMBERS
+from ...noun_phrase import is_color_word
+from ..loosely import HARD
+from .phrases import DENIED, is_kind
+from .said import ASKS_WHEN, Said
+
+SURE = 0.8  # probability from which words without a mark are taken for those of the question
+
+_HARD = (HARD - {"one"}) | bag("after before further until while backwards backward reverse")
+
+
+def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
+    """Whether words without a mark say more than the kind of question does."""
+    rest, allowed = _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub("when", said.rest)).split(), _ALLOWED.get(kind, frozenset())
+    if kind in ("what_moves", "what_still"):
+        whose = said.x in _ANYTHING or is_kind(said.x) or " and " in said.x or _APART.search(said.rest) is not None
+        if not whose or said.y:
+            return True  # "who moves the ball", "what never moves near the desk"
+    if len(said.places) > 1 and kind != "visits":
+        return True
+    asks = not _ASKS.isdisjoint(rest) or (kind == "turn_way" and "or" in rest) or ASKS_WHEN.match(said.off)
+    if not kind.startswith("if_") and not said.unit and said.first in _AUXILIARIES and not asks:
+        return True  # "is the ball at its top speed then?" wants no number
+    if _NTH.search(said.time):
+        return True
+    deeds = _TWO_DEEDS.search(said.barred)
+    if deeds is not None and deeds["deed"] not in _OWN_DEEDS.get(kind, ()):
+        return True
+    told = [word for word in rest if word not in allowed]
+    if kind in _NEGATED or (chance < SURE and rest and rest[0] in _AUXILIARIES):  # "did it not move?"
+        told = [word for word in told if word not in DENIED]
+    if not DENIED.isdisjoint(told[1:]) or (kind not in _RANKED and (not _RANKS.isdisjoint(told) or "than" in told)):
+        return True
+    if kind in ("when_starts", "when_stops"):
+        told = [word for word in told if word not in ("zero", "0")]  # of a speed
+    if any((w in NUMBERS and w != "one" and kind not in _COUNTED) or w[0].isdigit() or is_color_word(w) for w in told):
+        return True
+    if chance < SURE:
+        if (kind.startswith("if_") and _ASKS.intersection(rest)) or ("and" in rest and kind != "gap") or "or" in rest:
+            return True  # "which way does it turn" wants no yes or no; two deeds, or things to choose from
+        if any(word in _HARD for word in told):
+            return True
+    if chance >= CERTAIN and kind in _PLACED:
+        told = _BY_A_PLACE.sub(" ", f" {' '.join(rest)} ").split()
+    return any(singular(w) in names for w in told if w not in _VERBS and not (kind in _TO_THE_FLOOR and w in _LEVELS))
+
+
+CERTAIN = 0.95  # probability of a kind from which the place of what happens needs no mark
+_PLACED = bag(
+    "when_closes when_shut when_falls when_opens when_turns when_stops first last order if_returns if_stops if_closes "
+    "if_turns where_ends far_opens how_many turn_way what_fell what_up does long_closes long_opens"
+)
+_BY_A_PLACE = re.compile(  # "comes to rest at which wall", "quits the shelf board"
+    r" (?:(?:in|into|to|from|at|off|on|onto|of|out of|back to|face|quits?|leaves?|against|towards?) )"
+    r"(?:the |its |his |her |which |what |that )?(?:[a-z]+ )?[a-z]+(?= )"
+)
+_WHAT_SECOND = re.compile(
+    r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b|"
+    r"\bthe (?:exact |precise |very )?second (?:(?:at|in|on) which|where|when|that)\b"
+)
+_IN_A_ROOM = re.compile(r"\b(?:in|of|inside) (?:the|this|that|our) (?:[a-z]+ )?room\b")
+_APART = re.compile(r"\b(?:besides|apart from|except|excepting|other than|aside from|but)\b")
+_RANKED = bag("order visits long_moves long_opens long_closes far apart long_falls")
+_COUNTED = bag("order does visits how_many what_still what_shut what_up what_open what_on what_fell what_moves")
+_OWN_DEEDS: Mapping[str, tuple[str, ...]] = {
+    "when_shut": ("clos", "shut"), "if_shut": ("clos", "shut"), "what_shut": ("clos", "shut"),
+    "when_stops": ("stop",), "when_lands": ("land",), "when_falls": ("fall",), "when_starts": ("start", "go", "mov"),
+    "when_opens": ("open",), "when_open": ("open",), "what_fell": ("land", "fall"),
+}  # fmt: skip
+_TWO_DEEDS = re.compile(
+    r" and (?:\w+ )?(?P<deed>stop|fall|open|clos|shut|turn|roll|walk|land|start|go|com|mov|reach)\w* "
+)
+_NTH = re.compile(r"\b(?:second|third|fourth|last) (?:time|trip|turn|movement|run|fall|way|lap|round)\b")
+_ANYTHING = ("", "things", "the things", "anything", "everything", "something", "the furniture", "it")
+
+_RANKS = bag("second third first last other another twice again")
+_LEVELS = bag("floor ground board shelf")
+_TO_THE_FLOOR = bag("when_lands when_falls if_falls long_falls how_many what_fell what_up far_falls first last order")
+_ASKS = bag("which what how when where who whose")
+_AUXILIARIES = bag("is are was were does do did has have had")
+_NEGATED = bag("if_still what_still long_still long_open what_up what_shut if_shut how_many")
+_VERBS = bag("fall falls light turn turns open close drop step steps start stop move swing spin fan walk roll slide")
+_ORDERS = bag("first last second third than before after earlier later sooner next other")
+_ALLOWED: Mapping[str, frozenset[str]] = {
+    "first": _ORDERS, "last": _ORDERS | {"final"}, "order": _ORDERS, "if_before": _ORDERS, "if_after": _ORDERS,
+    "if_together": bag("same both each other"), "if_returns": bag("back again"), 
+    "when_shut": bag("back again"), "if_closes": bag("back again"), "if_shut": bag("again back"),
+    "long_closes": bag("back again"), "where_ends": bag("last final"),
+    "fastest": bag("most than faster every each other"),
+    "when_opens": bag("first"), "when_closes": bag("back again first"), "when_leaves": bag("first"),
+    "when_closest": bag("most least"), "when_starts": bag("first"), "when_stops": bag("last final again"),
+    "when_reaches": bag("first"), "when_falls": bag("first"), "where_starts": bag("first initial"),
+    "turns": bag("every each"), "often": bag("every each again back"), "fast_most": bag("most"),
+    "gap": _ORDERS | {"between"},
+    "long_still": bag("before first only"), "long_reach": bag("before until"),
+    "if_to_end": bag("until last second final"), "turn_way": bag("other"),
+    "what_still": bag("only else other"), "what_moves": bag("only else other"),
+    "does": _ORDERS | bag("one another"), "how_many": bag("every each other"),
+}  # fmt: skip
+
+# -- one plain question for each kind ----------------------------------------------------------------------------------

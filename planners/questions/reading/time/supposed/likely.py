@@ -1,0 +1,116 @@
+"""The likeliest kind of a question, by what the networks tell of it and by its words."""
+
+from __future__ import annotations
+
+from ......gaussians import late_re as re
+from .....grammar.tagging.words import bag, clean, split
+from .kinds import kinds_of
+from .phrases import SUMMED
+
+
+def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
+    """The likeliest kind with its probability; an average and a greatest speed are told apart by their words."""
+    found, said = dict(kinds_of(words)), " ".join(words)
+    if not _FILM.search(said):
+        found.pop("film_long")
+    if _IS_SHUT.search(said):
+        found = {"if_shut" if kind == "if_closes" else kind: found[kind] for kind in found if kind != "if_shut"}
+    if _YES_OR_NO.search(said):
+        found = {kind: chance for kind, chance in found.items() if kind.startswith("if_")}
+    if SUMMED.search(said):
+        found["far"] = found.get("far", 0.0) + found.pop("far_opens", 0.0)
+    kind = max(found, key=found.__getitem__)
+    if "how many times" in said:
+        found["often"] = found.get("often", 0.0) + found.pop("how_many", 0.0)
+    if _RANKS_ALL.match(said):
+        found["order"] = sum(found.pop(own, 0.0) for own in ("order", "first", "last"))
+    if _CUTS_OUT.search(said):
+        found["when_stops"] = found.get("when_stops", 0.0) + found.pop("when_starts", 0.0)
+    kind = max(found, key=found.__getitem__)
+    if _TIMECODE.search(said):
+        for place, time in (("where_ends", "when_stops"), ("where_starts", "when_starts")):
+            found[time] = found.get(time, 0.0) + found.pop(place, 0.0)
+        kind = max(found, key=found.__getitem__)
+    if re.search(r"\bcross\w*", said):
+        found["long_on"] = found.get("long_on", 0.0) + found.pop("long_reach", 0.0)
+        kind = max(found, key=found.__getitem__)
+    if kind == "where_ends" and _WHERE_IS.match(said):
+        return "where_at", found[kind] + found["where_at"]
+    if kind in ("fast", "fast_most"):
+        return ("fast_most" if _GREATEST.search(said) else "fast"), found["fast"] + found["fast_most"]
+    return kind, found[kind]
+
+
+_RANKS_ALL = re.compile(r"^(?:please )?(?:rank|sort|order|arrange|line up)\b")
+_CUTS_OUT = re.compile(r"\b(?:cuts?|conks?|gives?|gave|switch(?:es)?|shuts?|powers?) (?:out|off|down)\b")
+_TIMECODE = re.compile(r"\b(?:time ?code|time ?stamp|(?:at )?(?:what|which) (?:time|second|moment|instant))\b")
+_LEG = re.compile(
+    r"(?:(?:during|for|on|in|over|of|along|while on) )?(?:^|(?:the|that|this|its|his|her|'s) )"
+    r"(?P<rank>first|opening|initial|second|last|final) (?:straight |walking )?"
+    r"(?:leg|stretch|part|bit|section|stage|walk|straight)"
+    r"(?: of (?:the|its|his|her) (?:walk|way|trip|path|journey|route))?"
+)
+_LEGS = {"second": "after it has turned", "last": "after it has turned", "final": "after it has turned"}
+OF_A_LEG = bag("fast fast_most far long_moves way")
+
+
+def goes_first(text: str) -> bool:
+    """Whether a question is about one stretch of a way, or about the moment of a first movement, of which other readers
+    tell the whole."""
+    said = " ".join(word.text for word in split(clean(text)))
+    return _LEG.search(said) is not None or _FIRST_MOVE.match(said) is not None
+
+
+_FIRST_MOVE = re.compile(r"^(?:the )?(?:time ?stamp|time|frame|moment|instant) of (?:the )?(?:first|initial) ")
+
+
+def without_leg(words: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
+    """The words without those for one stretch of a way, and the time of that; "" if there are none."""
+    said = " ".join(words)
+    if (leg := _LEG.search(said)) is None:
+        return words, ""
+    rest = " ".join(f"{said[: leg.start()]} {said[leg.end() :]}".split())
+    return tuple(rest.split(" ")), _LEGS.get(leg["rank"], "before it turns")
+
+
+_FILM = re.compile(
+    r"\b(?:film|clip|video|scene|movie|footage|recording|shot|sequence|animation|thing|it all|"
+    r"whole)\b"
+)
+
+
+_WHERE_IS = re.compile(r"^where (?:is|are|was|were) ")
+_IS_SHUT = re.compile(r"\bis (?:the|that|my|our|every)\w*\b.*\b(?:shut|closed)\b")
+
+
+def asks_why(kind: str, said: str) -> bool:
+    """Whether words ask for a cause, or for what somebody does or feels, or only for one stretch of a way."""
+    if _CAUSES.search(said) or _A_STRETCH.search(said) or _FEELS.search(said):
+        return True
+    return kind not in _OF_SOMEBODY and _REASONS.search(said) is not None
+
+
+_CAUSES = re.compile(
+    r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|"
+    r"\bthat (?:drove|made|pushed|caused)\b|\bwhat (?:induce[sd]|prompt(?:s|ed)|trigger(?:s|ed)|led|got|sets|set) "
+    r"(?:the|it|him|her)\b|"
+    r"\b(?:motives?|intentions?|intended|meant to|on whose)\b|"
+    r"(?<!\bby )\bcolou?rs?\b"
+)
+_FEELS = re.compile(
+    r"\bfeel(?:s|ing)?\b|\b(?:is|was|were|are|be|been|felt|get|gets|got) (?:the |it |he |she |they )?(?:[a-z]+ ){0,3}?"
+    r"(?:frightened|afraid|scared|happy|unhappy|sad|angry|tired|exhausted|bored|hurt|lonely|nervous|shy|proud|ashamed|"
+    r"jealous|hungry|thirsty|cold|sleepy|dizzy|worried|excited|upset|in pain)\b"
+)
+_A_STRETCH = re.compile(r"\b(?:first|second|last|final) (?:leg|stretch|part|half|bit|section|stage)\b")
+_YES_OR_NO = re.compile(
+    r"\b(?:yes or no|true or (?:false|not|nah)|right or wrong|is (?:that|this) (?:so|right|true|correct)|confirm|"
+    r"am i right|that right|is it true)\b|, (?:right|correct|yes|true) \?$"
+)
+_REASONS = re.compile(
+    r"\b(?:reason|explain|because of|caus(?:e|es|ed|ing)|blame|on purpose|who(?:m|se)?|somebody|someone)\b"
+)
+_OF_SOMEBODY = bag("first last order fastest what_moves what_still happens does how_many")
+_GREATEST = re.compile(
+    r"\b(?:top(?= (?:speed|pace|rate|velocity)\b)|max|maximum|maximal|peak|highest|greatest|fastest|most|record)\b"
+)

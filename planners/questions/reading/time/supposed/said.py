@@ -1,0 +1,148 @@
+"""What a question says by its marks: what it is about, its time, its unit, and the words beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from ......gaussians import late_re as re
+from ......gaussians.world.words import singular
+from .....grammar.tagging.words import bag
+from ...noun_phrase import is_color_word
+from ..frames import UNIT
+from .phrases import PRONOUNS
+
+_DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|your|his|her|its|their|all|both|any|every)\b")
+
+_IN_UNIT = re.compile(rf"\b(?:{UNIT}|rpm|revs? (?:a|per) minute)\b")
+
+
+@dataclass(frozen=True)
+class Said:
+    """What a question says.
+
+    Attributes:
+        x, y: what it is about, and the other thing; "" if none is named.
+        places: each other thing, where there are several.
+        time: the words of its time, "" if there are none.
+        unit: that of its answer, "" if none is said.
+        times: the words of each of its times.
+        off: words that ask for nothing.
+        rest: all other words.
+        names: words of the names of the things of the scene.
+        first: its first word that asks for something.
+        barred: `rest` with a bar for each mark.
+    """
+
+    x: str
+    y: str
+    time: str
+    unit: str
+    rest: str
+    times: tuple[str, ...] = ()
+    off: str = ""
+    places: tuple[str, ...] = ()
+    names: Collection[str] = ()
+    first: str = ""
+    barred: str = ""
+
+
+def said_of(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names: Collection[str]) -> Said | None:
+    """The words of a question by their marks; None if two things stand where one can, or a time would be lost."""
+    found: dict[str, list[str]] = {tag: [] for tag in ("x", "y", "t", "u", "off")}
+    inside = set[int]()
+    before = ("", *words)  # the word before each
+    spans = [(tag, a - (tag == "t" and before[a] in _CONJUNCTIONS), b) for tag, a, b in spans]
+    for tag, start, stop in spans:
+        found[tag].append(" ".join(words[start:stop]).strip(" ,.?"))
+        inside |= set(range(start, stop))
+    rest = " ".join(word for at, word in enumerate(words) if at not in inside)
+    starts = {start for _, start, _ in spans}
+    barred = " ".join(
+        "|" if at in starts else word for at, word in enumerate(words) if at not in inside or at in starts
+    )
+    idle = {at for tag, start, stop in spans if tag == "off" for at in range(start, stop)}
+    first = next((word for at, word in enumerate(words) if at not in idle and word.isalpha()), "")
+    events = [name for name in found["x"] if _AN_EVENT.match(name)]
+    found["x"] = [name for name in found["x"] if name not in events and not _ONES.match(name)]
+    if not found["x"] and (own := _THAT_ONE.search(" ".join(found["off"]))) is not None:
+        found["x"] = [own[0]]  # "oh, the green one! when does it let go?"
+    rest = _TAG.sub(" ", " ".join((rest, *events)))
+    if not found["x"]:  # "one of the toys was in a sulk, which was it?"
+        plain = (word for aside in found["off"] for word in aside.split())
+        found["x"] = [f"the {word}" for word in plain if word.endswith("s") and singular(word) in names][:1]
+    noun = next((singular(w) for w in words if w.endswith("s") and singular(w) in names), "")
+    things = {
+        tag: tuple(dict.fromkeys(_named(_ONE.sub(noun or "one", name), names) for name in found[tag]))
+        for tag in ("x", "y")
+    }
+    if not found["t"] and len(found["off"]) == 1 and (blinked := _BLINKED.search(found["off"][0])) is not None:
+        found["t"], found["off"] = [blinked["time"]], []  # "I blinked at 1.4 s, which book was falling?"
+    asides = (words[start:stop] for tag, start, stop in spans if tag == "off" and not _is_apart(words, start, stop))
+    if len(found["t"]) > 2 or any(_TIMED.search(ASKS_WHEN.sub("", " ".join(aside))) for aside in asides):
+        return None
+    unit = _IN_UNIT.search(re.sub(r"metre", "meter", " ".join(found["u"])))
+    return Said(
+        x=_joined(things["x"]), y=_joined(things["y"][:1]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
+        rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]), places=things["y"],
+        names=names, first=first, barred=f" {_TAG.sub(' ', barred)} ",
+    )  # fmt: skip
+
+
+ASKS_WHEN = re.compile(r"^when ,")  # "when, to the best of your knowledge, ..."
+_TAG = re.compile(  # "it opens, doesn't it?", "yes or no"
+    r" ,? ?(?:or )?(?:is|are|was|does|do|did|has|have|will|would|could|can) "
+    r"(?:not (?:it|he|she|they)|(?:it|he|she|they)"
+    r"(?: not)?)(?: \?)?$|,? ?\b(?:yes ?(?:or|/) ?no|y ?/ ?n|true or (?:false|not)|right or wrong)\b|"
+    r", true \?$|,? or \?$"
+)
+
+
+def _is_apart(words: tuple[str, ...], start: int, stop: int) -> bool:
+    """Whether words are a sentence of their own in front of the question, or behind it."""
+    ends = set(words[stop - 1 : stop + 1]) if start == 0 else set()
+    begins = set(words[start - 1 : start + 1]) if start and stop >= len(words) - 1 else set()
+    return not ends.isdisjoint(_STOPS) or not begins.isdisjoint(_STOPS)
+
+
+_STOPS = (".", "!", "?", ":", ";")
+_AN_EVENT = re.compile(
+    r"^(?:the |its |his |her |this |that )?(?:turn|turning|roll|rolling|fall|falling|opening|closing|walk|spin|"
+    r"movement|motion|rotation|drop)"
+    r"(?: manoeuvre| maneuver| movement| motion| phase| part)?$"
+)
+_TIMED = re.compile(
+    r"\b(?:when|while|until|till|once|after|before|during)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b"
+)
+_ONES = re.compile(r"^(?:the |that |this |which )?ones?$")
+_BLINKED = re.compile(r"^(?:i|we) [a-z ]+? (?P<time>at \d+(?:\.\d+)?(?: ?s(?:ec(?:ond)?s?)?)?)$")
+_ONE = re.compile(r"\bone$")
+_THAT_ONE = re.compile(r"\bthe (?:red|green|blue|yellow|white|black|brown|grey|gray|orange|purple|pink) one\b")
+_CONJUNCTIONS = ("til", "till", "until", "before", "once")
+
+
+def _named(said: str, names: Collection[str]) -> str:
+    """A name with an article, without adjectives of which no thing of the scene has one in its name."""
+    said = re.sub(r"^(?:the )?final (?=\w)", "the last ", said)
+    if (whole := re.match(r"^(?:everything|anything|something)(?= [a-z]+ly$)", said)) is not None:
+        return whole[0]  # "everything tidily"
+    words = said.split()
+    if words and singular(words[-1]) in names:
+        said = " ".join(w for w in words if w in names or singular(w) in names or w in _TELLING or is_color_word(w))
+    said = re.sub(
+        r" 's$", "", re.sub(r"^(?:this|that|these|those|a|an|my|our|your|his|her|their|its) (?=\w)", "the ", said)
+    )
+    return said if _DETERMINED.match(said) or said in PRONOUNS else f"the {said}"
+
+
+_TELLING = bag(
+    "on in at under beside behind below above from near by to next of "
+    "the a an this that these those all both every each any two three top bottom middle upper lower first "
+    "second third last left right other moving and of"
+)
+
+
+def _joined(names: tuple[str, ...]) -> str:
+    """Several names as one; without pronouns where a name stands beside."""
+    nouns = tuple(name for name in names if name not in PRONOUNS) or names
+    return " and ".join(nouns)
