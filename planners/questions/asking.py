@@ -117,38 +117,54 @@ _DECIMAL = re.compile(r"(?<=\d),(?=\d{1,2}(?![\d,]))")  # "4,2 s", as much of th
 
 
 def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
-    """The answer to a question about a scene with time: of its motion, else of the scene at a moment."""
+    """The answer to a question about a scene with time: of its motion, else of the scene at a moment.
+
+    Where its words tell a kind of question surely, and that has another answer, it is the answer.
+    """
     said = everyday(" ".join(plain_words(text)))
-    words = static.without_relative(tuple(said.split()), survey, timeline)
-    asked = Asked(text, words=words, timeline=timeline)
+    words, names = static.without_relative(tuple(said.split()), survey, timeline), _names(survey)
+    found = _as_said(text, words, names, survey, timeline)
+    if found is not None and found.answer.answer is not None:
+        first = goes_first(text)
+        strictly = not first and found.answer.answer != ()
+        surer = _read_as(supposed(text, names, LEAST if first else SURE, strictly), survey, timeline)
+        return found if surer is None or _same([found.answer, surer.answer]) is not None else surer
+    misread = found is None or found.answer.text.startswith(_MISREAD)
+    for questions in _guesses(text, words, names, misread):
+        if (guess := _read_as(questions, survey, timeline)) is not None:
+            return guess
+    if found is not None:
+        return found
+    none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
+    return Reading(none, sight=True)
+
+
+def _as_said(text: str, words: Words, names: frozenset[str], survey: Survey, timeline: Timeline) -> Reading | None:
+    """The answer to a question as it is put, or the first reason why there is none; None if nothing reads it."""
     for sentence in several.question_alone(text):
         if (told := _timed(sentence, survey, timeline)).answer.answer is not None:
             return told
     if (chosen := _chosen(words, survey, timeline)) is not None:
         return chosen
-    names = _names(survey)
     if (in_order := _sorted(text, names, survey, timeline)) is not None:
         return in_order
-    moved = _of_motion(asked, survey)
+    asked = Asked(text, words=words, timeline=timeline)
+    moved = None if _WHAT_IS_THERE.match(asked.said) else _of_motion(asked, survey)
     if moved is not None and moved.answer.answer is not None:
-        first = goes_first(text)
-        nothing = moved.answer.answer == () or first  # or nothing of that name
-        return (nothing and _read_as(supposed(text, names, LEAST if first else SURE), survey, timeline)) or moved
+        return moved
     for made in (_shared, _compared, _of_two):
         if (made_of := made(words, survey, timeline)) is not None:
             return made_of
     still = _of_moments(asked, survey, timeline)
-    if still is not None and still.answer.answer is not None and not (still.restated and still.answer.answer == ()):
-        return (still.restated and _read_as(supposed(text, names, SURE), survey, timeline)) or still
-    refused = moved or (still if still is not None and still.answer.answer is None else None)
-    misread = refused is None or refused.answer.text.startswith(_MISREAD)
-    for questions in _guesses(text, words, names, misread):
-        if (guess := _read_as(questions, survey, timeline)) is not None:
-            return guess
-    if refused is not None:
-        return refused
-    none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
-    return Reading(none, sight=True)
+    if still is not None and still.answer.answer is not None:
+        return moved if still.restated and still.answer.answer == () else still
+    return moved or still
+
+
+_WHAT_IS_THERE = re.compile(
+    r"^(?:what|which(?: \w+){1,3}?)(?: (?:is|are|stands?|sits?|hangs?|lies?))?(?: standing| located| there)? "
+    rf"{static.IN_PLACE.pattern}(?: of the \w+)?$"
+)
 
 
 def _guesses(text: str, words: Words, names: frozenset[str], misread: bool) -> Iterator[Sequence[str]]:
@@ -388,7 +404,8 @@ def _read_as(questions: Sequence[str], survey: Survey, timeline: Timeline) -> Re
     """The answer to plainer questions that a question may mean; None if those that have one differ in it."""
     told: list[tuple[str, Reading]] = []
     for plainer in questions:
-        asked = Asked(plainer, words=tuple(plainer.split()), timeline=timeline)
+        words = static.without_relative(tuple(plainer.split()), survey, timeline)
+        asked = Asked(plainer, words=words, timeline=timeline)
         found = _chosen(plain_words(plainer), survey, timeline) or _of_motion(asked, survey)
         if found is None or found.answer.answer is None:
             found = _of_moments(asked, survey, timeline)

@@ -70,6 +70,15 @@ _PARTICIPLE = re.compile(r"\bthe (moving|rolling|falling|spinning|turning|walkin
 _WHAT_IS = re.compile(r"^(?:and )?(?:what|which|who)(?: one| thing)? (?:is|was|are|were) $")
 
 
+IN_PLACE = re.compile(  # whose words are those of motions, too: "left", "back", "corner"
+    r"\b(?:in|at|on|by|against|along|near|to) the (?:(?:back|front|far|near|left|right|hand) )*"
+    r"(?:left|right|corner|wall|side)\b(?! (?:wall|door|drawer|one))"
+)
+
+
+_OF_THE_ROOM = re.compile(r"\b(?P<place>corner|wall) of (?:the|this|our) \w+$")
+
+
 def without_relative(words: tuple[str, ...], survey: Survey, timeline: Timeline) -> tuple[str, ...]:
     """The words with the name of what moves in place of what tells it by its motion: "the book that falls last"."""
     said = _PARTICIPLE.sub(r"the \2 that is \1", " ".join(words))
@@ -108,9 +117,10 @@ def moments(words: tuple[str, ...], survey: Survey, timeline: Timeline, asked: A
     """
     said, plainer = (_named(s, survey, timeline) for s in (" ".join(words), plain(words)))
     for when, rest in (*_readings(said), *(() if plainer == said else _readings(plainer))):
-        if not _MOTION_NOUNS.isdisjoint(rest.split()) or any(_is_of_motion(deed) for _, _, deed in said_in(rest)):
+        unplaced = IN_PLACE.sub(" there ", rest)
+        if not _MOTION_NOUNS.isdisjoint(rest.split()) or any(_is_of_motion(deed) for _, _, deed in said_in(unplaced)):
             continue
-        rest = _ADVERB.sub("", rest)
+        rest = _OF_THE_ROOM.sub(r"\g<place>", _ADVERB.sub("", rest))
         if when is None:
             yield AtMoment(rest, (timeline.now,), said=False)
         elif when.kind in ("always", "ever"):

@@ -14,7 +14,7 @@ from ...reading.time.happenings import thing as named_thing
 from ...survey import listed
 from ...timeline.asked import PLACES, Told, Untold, at, cap, evidence, kind, names, spoken, verb, within
 from ...timeline.bodies import Body
-from ...timeline.happening import first_near, openness, spans_of, turning
+from ...timeline.happening import TURNS, first_near, openness, spans_of, steps, turning
 from .places import direction
 from .speeds import is_turning
 from .when import moment
@@ -235,7 +235,15 @@ def _moves(body: Body, span: Span, told: Told) -> str:
         return "turns"
     met = [said for t, said, _ in _crossed(body, told, span) if " reaches " in said and t > span[1] - _NEAR_END]
     goal = f"to {met[-1].split(' reaches ')[1]}" if met else direction(body, span, told)
-    return f"moves {goal}"
+    return f"{_gait(body)} {goal}"
+
+
+def _gait(body: Body) -> str:
+    """How a body goes along: what bobs on its way walks, what turns about its way rolls."""
+    if len(steps(body)) > 1:
+        return "walks"
+    yaw = sum(abs(events.yawed(body.course, span)) for span in body.moving)
+    return "rolls" if events.turned(body.course) - yaw > TURNS else "moves"
 
 
 def _doing(body: Body, span: Span, time: float, told: Told) -> str:
@@ -249,7 +257,7 @@ def _doing(body: Body, span: Span, time: float, told: Told) -> str:
         return "turns"
     if any(a <= time <= b for a, b in turning(body)) and turning(body) != list(body.moving):
         return f"turns {_side(body, turning(body)[0])}"
-    return f"moves {direction(body, (max(span[0], time - 0.25), min(span[1], time + 0.25)), told)}"
+    return f"{_gait(body)} {direction(body, (max(span[0], time - 0.25), min(span[1], time + 0.25)), told)}"
 
 
 def _text(text: str, answer: str, body: Body, time: float | None) -> Answer:

@@ -248,7 +248,7 @@ def _far_one(told: Told, body: Body) -> Answer:
         drop = abs(float(events.displacement(body.course, fall) @ body.course.up))
         return _length(told, body, drop, f"{body.name} falls by", fall)
     if deed.kind in ("reach", "land", "enter", "leave", "pass") and (to := told.spans(body)):
-        found = within(list(body.moving), (told.timeline.start, to[0][0]))
+        found = within(list(body.moving), (told.timeline.start, to[0][0])) or found
     if _NET.search(told.asked.text):
         net = float(np.linalg.norm(events.displacement(body.course, (found[0][0], found[-1][1]))))
         return _length(

@@ -171,11 +171,35 @@ _TIMELY = re.compile(r"^(?:at|in|on|before|after|during|when|while|whilst|once|u
 _LEGS = re.compile(r"\b(?:leg|way|path|distance|route|track|stretch|trip|journey|road)\b")
 
 
+_RANK = r"(?P<{}>first|opening|initial|second|last|final)"
+_LEGS = re.compile(
+    rf"\b(?:{_RANK.format('early')}\b.*)?\b(?P<adj>slower|faster|quicker|longer|shorter|more slowly|more quickly)\b"
+    rf"(?:.*?\b{_RANK.format('late')}\b)?.*? than\b.*?\b{_RANK.format('other')}\b"
+)
+_LEG = re.compile(r"\b(?:leg|walk|stretch|part|bit|section|straight|half|stage|run|trip)s?\b")
+_ASKED_IF = re.compile(r"\b(?:is|are|was|were|does|do|did)\b|true|right|correct|confirm|agree")
+
+
+def _of_legs(said: str) -> str:
+    """Words that compare the legs of a way as ones that compare what is before a turn with what is behind it."""
+    found = _LEGS.search(said)
+    if found is None or not _LEG.search(said) or not _ASKED_IF.search(said):
+        return said
+    one, other = found["early"] or found["late"], found["other"]
+    early = ("first", "opening", "initial")
+    if one is None or (one in early) == (other in early):
+        return said
+    before, after = "before the turn", "after the turn"
+    this, that = (before, "after it") if one in early else (after, "before it")
+    far = found["adj"] in ("longer", "shorter") and re.search(r"\b(?:way|path|distance|stretch)\b", said)
+    return f"is {'its way' if far else 'it'} {found['adj']} {this} than {that}"
+
+
 def comparisons(said: str) -> Iterator[Comparison]:
     """Each way of reading words as a comparison, the likeliest first."""
     if re.search(r"\bat the same time\b", said):
         return
-    said = _TIMES_WORDS.sub(_times, said)
+    said = _of_legs(_TIMES_WORDS.sub(_times, said))
     yield from _nearer(said)
     if (found := _STEADY.match(said)) is not None:
         yield Comparison(

@@ -17,13 +17,20 @@ _RESTS = re.compile(r"\b(?:pause|break|rest|hold|wait|stay|dwell)\b")
 
 
 _EVENT_OF = re.compile(  # "the onset of the red book 's fall", "the red book 's landing", "that of the blue one 's"
-    r"^(?:(?:the |its )?(?P<first>[a-z]+(?: point)?|that) of )?(?P<who>(?:the )?[a-z ]+?)(?: 's)?"
+    r"^(?:from |until |till |to |when |once |and )*"
+    r"(?:(?:the |its )?(?P<first>[a-z]+(?: point)?|that) of )?(?P<who>(?:the )?[a-z ]+?)(?: 's)?"
     r"(?: (?:starting|beginning|begins|starts) to)?"
-    r"(?: (?P<deed>starting|falling|landing|stopping|fall up|fall|drop|impact|start|onset|departure|"
-    r"release|trigger|drop trigger|stop|end|opening|closing))?$"
+    r"(?: (?P<deed>starting (?:down|off|out)|dropping(?: off| down)?|following(?: \w+){0,3}|coming (?:down|off)|"
+    r"letting go|going|leaving(?: \w+){0,3}|tipping(?: \w+)?|starting|falling|landing|stopping|fall up|fall|drop|"
+    r"impact|start|onset|departure|release|trigger|drop trigger|stop|end|opening|closing|"
+    r"(?:has |have )?(?:landed|lands?|fallen|falls?|dropped|drops?|started|starts?|stopped|stops?|left)"
+    r"(?: \w+){0,3}))?$"
 )
-_BEGINS = re.compile(r"\b(?:starting|start|onset|departure|release|trigger|beginning)\b")
-_ENDS = re.compile(r"\b(?:stopping|end|stop|landing|impact|touchdown)\b")
+_PAUSE = re.compile(r"\b(?:pause|break|rest)\b")
+_BEGINS = re.compile(
+    r"\b(?:start\w*|onset|departure|release|trigger|beginning|leaving|left|letting go|tipping|going)\b"
+)
+_ENDS = re.compile(r"\b(?:stopping|stopped|stops?|end|landing|landed|lands?|impact|touchdown)\b")
 
 
 def _is_there(word: str, names: Collection[str]) -> bool:
@@ -42,7 +49,7 @@ def _event_in(said: str, names: Collection[str], noun: str) -> tuple[str, str] |
         who[-1] = noun
     if is_color_word(who[-1]):
         who.append(noun)
-    if (not _is_there(who[-1], names) and who[-1] != "one") or who == ["one"]:
+    if (not _is_there(who[-1], names) and who[-1] != "one") or who in (["one"], ["next", "one"]):
         return None
     falls = deed_of(f"{told} {said}", "") in ("fall", "land")
     if _ENDS.search(told):
@@ -60,6 +67,8 @@ def gap(said: Said) -> Iterator[str]:
     noun = next(nouns, "one")
     told = [event for part in parts if part and (event := _event_in(part, said.names, noun))]
     if len(told) == 2 and told[0][0] != told[1][0]:
+        if _PAUSE.search(said.rest):
+            return  # from the end of one to the beginning of the other
         (one, deed), (other, then) = told
         deed = deed or then or {"fall": "falling", "land": "landing"}.get(deed_of(said.rest, ""), "starting")
         yield f"how much time is there between {one} {deed} and {other} {then or deed}"

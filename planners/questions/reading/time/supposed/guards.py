@@ -15,16 +15,27 @@ from .said import ASKS_WHEN, Said
 
 SURE = 0.8  # probability from which words without a mark are taken for those of the question
 
-_HARD = (HARD - {"one"}) | bag("after before further until while backwards backward reverse")
+_HARD = (HARD - {"one"}) | bag("after before further until while backwards backward reverse ever straight")
 
 
 def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
-    rest, allowed = _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub("when", said.rest)).split(), _ALLOWED.get(kind, frozenset())
+    plain = _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub(" when ", said.rest))
+    if (kind == "when_turns" and _A_FULL_ONE.search(plain)) or (kind == "far_turns" and _A_SHARE.search(plain)):
+        return True
+    if kind.startswith("when_"):
+        if _UNTIL_WHEN.search(plain):
+            return True
+        plain = _THE_SECOND.sub(" when ", plain)
+    if kind.startswith("where_"):
+        plain = _WHICH_PLACE.sub(" where ", plain)
+    rest, allowed = plain.split(), _ALLOWED.get(kind, frozenset())
     if kind in ("what_moves", "what_still"):
         whose = said.x in _ANYTHING or is_kind(said.x) or " and " in said.x or _APART.search(said.rest) is not None
         if not whose or said.y:
             return True  # "who moves the ball", "what never moves near the desk"
+    elif _BESIDES.search(said.rest) is not None:
+        return True  # "does anything besides the door move"
     if len(said.places) > 1 and kind != "visits":
         return True
     asks = not _ASKS.isdisjoint(rest) or (kind == "turn_way" and "or" in rest) or ASKS_WHEN.match(said.off)
@@ -67,8 +78,18 @@ _WHAT_SECOND = re.compile(
     r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b|"
     r"\bthe (?:exact |precise |very )?second (?:(?:at|in|on) which|where|when|that)\b"
 )
+_THE_SECOND = re.compile(r" the (?:exact |precise |very )?second ")  # that something happens
+_A_FULL_ONE = re.compile(r"\b(?:one|full|whole|complete)\b")
+_A_SHARE = re.compile(r"\b(?:fraction|share|part|percent\w*|portion)\b")
+_UNTIL_WHEN = re.compile(r"\b(?:until|till|up to) (?:what|which|when)\b")
+_WHICH_PLACE = re.compile(
+    r"\b(?:(?:up)?on|in|at|against|by|to|onto|over) (?:the )?(?:what|which) (?:(?:piece|bit|item|kind|sort) of )?"
+    r"(?:furniture|wall|surface|thing|object|place|spot)\b|"
+    r"\b(?:what|which) (?:(?:piece|bit|item) of )?(?:furniture|wall|surface)\b"
+)
 _IN_A_ROOM = re.compile(r"\b(?:in|of|inside) (?:the|this|that|our) (?:[a-z]+ )?room\b")
-_APART = re.compile(r"\b(?:besides|apart from|except|excepting|other than|aside from|but)\b")
+_BESIDES = re.compile(r"\b(?:besides|apart from|except|excepting|other than|aside from)\b")
+_APART = re.compile(rf"{_BESIDES.pattern}|\bbut\b")
 _RANKED = bag("order visits long_moves long_opens long_closes far apart long_falls")
 _COUNTED = bag("order does visits how_many what_still what_shut what_up what_open what_on what_fell what_moves")
 _OWN_DEEDS: Mapping[str, tuple[str, ...]] = {

@@ -14,7 +14,7 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     if not _FILM.search(said):
         found.pop("film_long")
     if _IS_SHUT.search(said):
-        found = {"if_shut" if kind == "if_closes" else kind: found[kind] for kind in found if kind != "if_shut"}
+        found["if_shut"] = found.get("if_shut", 0.0) + found.pop("if_closes", 0.0)
     if _YES_OR_NO.search(said):
         found = {kind: chance for kind, chance in found.items() if kind.startswith("if_")}
     if SUMMED.search(said):
@@ -45,7 +45,8 @@ _RANKS_ALL = re.compile(r"^(?:please )?(?:rank|sort|order|arrange|line up)\b")
 _CUTS_OUT = re.compile(r"\b(?:cuts?|conks?|gives?|gave|switch(?:es)?|shuts?|powers?) (?:out|off|down)\b")
 _TIMECODE = re.compile(r"\b(?:time ?code|time ?stamp|(?:at )?(?:what|which) (?:time|second|moment|instant))\b")
 _LEG = re.compile(
-    r"(?:(?:during|for|on|in|over|of|along|while on) )?(?:^|(?:the|that|this|its|his|her|'s) )"
+    r"(?:(?:(?:during|for|on|in|over|of|along|while on) )?(?:^|(?:the|that|this|its|his|her|'s) )|"
+    r"\b(?:during|for|on|in|over|along) )"
     r"(?P<rank>first|opening|initial|second|last|final) (?:straight |walking )?"
     r"(?:leg|stretch|part|bit|section|stage|walk|straight)"
     r"(?: of (?:the|its|his|her) (?:walk|way|trip|path|journey|route))?"
@@ -62,6 +63,20 @@ def goes_first(text: str) -> bool:
 
 
 _FIRST_MOVE = re.compile(r"^(?:the )?(?:time ?stamp|time|frame|moment|instant) of (?:the )?(?:first|initial) ")
+
+
+def without_options(words: tuple[str, ...]) -> tuple[str, ...]:
+    """The words without ranks to choose from, where it is asked which one: "top, middle or bottom, which drawer"."""
+    said = " ".join(words)
+    found = _OPTIONS.search(said)
+    if found is None or " or " not in found[0] or not _WHICH.search(said):
+        return words
+    return tuple(f"{said[: found.start()]} {said[found.end() :]}".split())
+
+
+_RANK = r"(?:the |an? )?(?:top|upper|middle|bottom|lower|uppermost|lowest|highest)(?: (?:one|drawer|book|shelf))?"
+_OPTIONS = re.compile(rf"(?:^|[,:;] ?|\b(?:is it|either) ){_RANK}(?:(?: ?, or| or| ?,) {_RANK})+(?: ?[,:])?(?![\w])")
+_WHICH = re.compile(r"\b(?:which|what)\b")
 
 
 def without_leg(words: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
@@ -91,7 +106,8 @@ def asks_why(kind: str, said: str) -> bool:
 
 
 _CAUSES = re.compile(
-    r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes)\b|\bwhy\b|"
+    r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes|knocked|knocks|"
+    r"shoved|tipped|bumped|kicked|toppled|blew|threw) (?!over$)|\bwhy\b|"
     r"\bthat (?:drove|made|pushed|caused)\b|\bwhat (?:induce[sd]|prompt(?:s|ed)|trigger(?:s|ed)|led|got|sets|set) "
     r"(?:the|it|him|her)\b|"
     r"\b(?:motives?|intentions?|intended|meant to|on whose)\b|"

@@ -13,14 +13,14 @@ from functools import lru_cache
 
 from ......gaussians.world import kinds as kinds_of_things
 from ......gaussians.world.spelling import best_slip
-from ......gaussians.world.words import singular
+from ......gaussians.world.words import is_plural, plural, singular
 from .....grammar.learned.marks import Span
 from .....grammar.tagging.spelling import is_word
 from .....grammar.tagging.words import bag, clean, split
 from .....grammar.timing.spoken import in_figures
 from .guards import says_more
 from .kinds import marked_ways, vocabulary
-from .likely import OF_A_LEG, asks_why, likeliest, without_leg
+from .likely import OF_A_LEG, asks_why, likeliest, without_leg, without_options
 from .phrases import deed_of
 from .said import Said, said_of
 from .times import UP_TO_THE_TURN, time_left, times_of, with_article
@@ -32,12 +32,13 @@ _SHORTEST = 2
 
 
 @lru_cache(maxsize=1024)
-def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[str, ...]:
+def supposed(text: str, names: frozenset[str], least: float = LEAST, strictly: bool = False) -> tuple[str, ...]:
     """Plain questions that a text most likely means, with its time; none if that is not likely enough.
 
     Args:
         names: words of the names of the things of the scene.
         least: the probability of its kind that is likely enough.
+        strictly: none, however likely, if a word beside its marks may tell more.
     """
     if not text.strip() or len(text.split()) > _LONGEST:
         return ()
@@ -45,7 +46,7 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
     told = tuple(_spelled(word, names) for word in told)
     if sum(word.isalpha() for word in told) < _SHORTEST:
         return ()
-    told, leg = without_leg(told)
+    told, leg = without_leg(without_options(told))
     times = ([" ".join(told[a:b]) for tag, a, b in spans if tag == "t"] for spans in marked_ways(told))
     if (left := next(filter(None, (time_left(told, own) for own in times)), None)) is not None:
         return (left,)
@@ -53,7 +54,7 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST) -> tuple[st
     if chance < least or kind not in PLAIN or asks_why(kind, " ".join(told)):
         return ()
     for spans in marked_ways(told):
-        if found := tuple(dict.fromkeys(_plainly(told, spans, leg, kind, chance, names))):
+        if found := tuple(dict.fromkeys(_plainly(told, spans, leg, kind, 0.0 if strictly else chance, names))):
             return found
     return ()
 
@@ -63,6 +64,8 @@ def _plainly(
 ) -> Iterator[str]:
     """The words of a question of a kind, with these marks, as plain questions; none if they say more."""
     said = said_of(told, spans, names)
+    if said is not None and said.asked and kind.startswith("what_") and not is_plural(said.x):
+        said = replace(said, x=plural(said.x))
     if said is None or says_more(kind, chance, said, names):
         return
     if not said.x and kind not in _OF_ALL:

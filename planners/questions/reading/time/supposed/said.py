@@ -32,6 +32,7 @@ class Said:
         names: words of the names of the things of the scene.
         first: its first word that asks for something.
         barred: `rest` with a bar for each mark.
+        asked: whether it is asked which thing does something: "which toy", and not "the toy".
     """
 
     x: str
@@ -45,6 +46,7 @@ class Said:
     names: Collection[str] = ()
     first: str = ""
     barred: str = ""
+    asked: bool = False
 
 
 def said_of(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names: Collection[str]) -> Said | None:
@@ -70,7 +72,9 @@ def said_of(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], nam
     rest = _TAG.sub(" ", " ".join((rest, *events)))
     if not found["x"]:  # "one of the toys was in a sulk, which was it?"
         plain = (word for aside in found["off"] for word in aside.split())
-        found["x"] = [f"the {word}" for word in plain if word.endswith("s") and singular(word) in names][:1]
+        named = [f"the {word}" for word in plain if singular(word) in names]
+        several = [name for name in named if name.endswith("s")]
+        found["x"] = several[:1] or (named if len(set(named)) == 1 and "it" in rest.split() else [])
     noun = next((singular(w) for w in words if w.endswith("s") and singular(w) in names), "")
     things = {
         tag: tuple(dict.fromkeys(_named(_ONE.sub(noun or "one", name), names) for name in found[tag]))
@@ -86,6 +90,7 @@ def said_of(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], nam
         x=_joined(things["x"]), y=_joined(things["y"][:1]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
         rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]), places=things["y"],
         names=names, first=first, barred=f" {_TAG.sub(' ', barred)} ",
+        asked=any(tag == "x" and before[start] in ("which", "what") for tag, start, _ in spans),
     )  # fmt: skip
 
 
@@ -126,6 +131,8 @@ def _named(said: str, names: Collection[str]) -> str:
     said = re.sub(r"^(?:the )?final (?=\w)", "the last ", said)
     if (whole := re.match(r"^(?:everything|anything|something)(?= [a-z]+ly$)", said)) is not None:
         return whole[0]  # "everything tidily"
+    if (stands := _ON_A_SIDE.match(said)) is not None:
+        said = f"the {stands['side']} {stands['thing']}"
     words = said.split()
     if words and singular(words[-1]) in names:
         said = " ".join(w for w in words if w in names or singular(w) in names or w in _TELLING or is_color_word(w))
@@ -135,6 +142,7 @@ def _named(said: str, names: Collection[str]) -> str:
     return said if _DETERMINED.match(said) or said in PRONOUNS else f"the {said}"
 
 
+_ON_A_SIDE = re.compile(r"^(?:the |that |this )?(?P<thing>\w+(?: \w+)?) (?:on|to) the (?P<side>left|right)$")
 _TELLING = bag(
     "on in at under beside behind below above from near by to next of "
     "the a an this that these those all both every each any two three top bottom middle upper lower first "

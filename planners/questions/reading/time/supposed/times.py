@@ -28,10 +28,15 @@ _SPANS = {  # what is so for a while
     "on": "is on {y}", "in_step": "is moving",
 }  # fmt: skip
 
+_IT_ENDS = (
+    r"(?:before|until|till|to when) (?:the|this|our) (?:film|clip|video|movie|footage|recording|"
+    r"scene|shot|show|story|picture) "
+    r"(?:ends?|runs out|is (?:over|done|finished)|finish(?:es)?|stops|cuts out|closes)"
+)
 _LEFT = re.compile(
-    r"\b(?:how (?:much|long|many)|what)\b.*\b(?:left|remain\w*|still to (?:come|go)|before (?:it|the \w+) "
-    r"(?:ends|runs out|is over|finishes)|(?:to|until|till) the (?:last frame|(?:very )?end))\b|"
-    r"\b(?:to|until|till) the (?:last frame|(?:very )?end)\b.*\bhow (?:much|long|many)\b"
+    r"\b(?:how (?:much|long|many)|what)\b.*\b(?:left|remain\w*|still to (?:come|go)|"
+    rf"{_IT_ENDS}|(?:to|until|till) the (?:last frame|(?:very )?end))\b|"
+    rf"\b(?:(?:to|until|till|and) the (?:last frame|(?:very )?end)\b|{_IT_ENDS}).*\bhow (?:much|long|many)\b"
 )
 _TO_THE_END = re.compile(r"(?: ,)? (?:\w+ )?(?:to|until|till) the (?:last frame|(?:very )?end)\b.*$")
 _SHOWN = re.compile(
@@ -84,10 +89,14 @@ def time_left(words: Sequence[str], times: Sequence[str]) -> str | None:
     if not times or _LEFT.search(said) is None or _SHOWN.search(said) is None:
         return None
     event = event_of(_TO_THE_END.sub("", times[0]))
-    if event is None or not event.x or event.x in _OF_ONE or event.kind not in _MOMENTS:
+    if event is None or not event.x or (event.kind not in _MOMENTS and event.kind not in _BEGUN_BY):
         return None
-    happens = _MOMENTS[event.kind].format(y=with_article(event.y))
-    return f"how long is it from when {with_article(event.x)} {happens} to the end of the film"
+    who = event.x if event.x in _OF_ONE else with_article(event.x)
+    happens = _MOMENTS[_BEGUN_BY.get(event.kind, event.kind)].format(y=with_article(event.y))
+    return f"how long is it from when {who} {happens} to the end of the film"
+
+
+_BEGUN_BY = {"is_open": "open", "still": "stops", "is_shut": "shut"}  # what lasts, and what it begins with
 
 
 def times_of(kind: str, said: tuple[str, ...]) -> Iterator[str]:
@@ -125,8 +134,11 @@ _WHOLE_FILM = re.compile(  # a time that is all of the film
     r"(?:during|in|over|from) 0(?: ?s)? (?:to |- ?)?5 ?s(?:ec\w*)?|(?:when|once) its (?:all )?(?:over|done)|"
     r"(?:during|in|over|throughout|within|for|across|through) (?:[a-z]+ ){0,4}(?:film|clip|video|movie|footage|"
     r"proceedings|recording|recorded|filmed|take)|"
-    r"(?:by|in|at|before) the (?:very )?end|finally|eventually|in the end|at last|when (?:it|all|"
-    r"everything) is (?:all )?(?:over|done)|(?:once|when|after) (?:the|this) \w+ is (?:over|done|finished)|"
+    r"(?:by|in|at|before) the (?:very )?end(?: of (?:the|my|our|this|its|all|it)(?: \w+)?)?|"
+    r"of the (?:five|5) seconds(?: \w+)?|finally|eventually|in the end|at last|"
+    r"when (?:it|all|"
+    r"everything) is (?:all )?(?:over|done|finished)|"
+    r"(?:once|when|after) (?:the|this|our|my) \w+ is (?:over|done|finished)|"
     r"(?:at|by) the (?:final )?curtain|"
     r"when all is (?:said and )?done|before the (?:clip|film|video|scene) (?:ends|is over)|at the finish)$"
 )
@@ -153,14 +165,14 @@ _QUIET = re.compile(
 )
 _OUT = re.compile(
     r"^(?:on|during) (?:the|its|his|her) (?:way|trip|journey|run|stroke|travel) (?P<way>out|open|back|in|home|"
-    r"shut|closed)$|^while (?:going|coming|sliding|moving) (?P<doing>out|back|in)$"
+    r"shut|closed)$|^(?:while |when )?(?:going|coming|sliding|moving|heading) (?P<doing>out|back|in)$"
 )
 _FURTHEST = re.compile(
     r"^at (?:full \w+|"
     r"(?:its|his|her|the) (?:very )?(?:furthest|farthest|widest|most|maximum|fullest|utmost|greatest|peak)\b.*)$"
 )
 BEFORE_BACK = re.compile(
-    r"^(?:before|until|till) (?:it |he |she )?(?:\w+ )?(?:goes|going|comes|coming|sliding|slides|moving|moves|"
+    r"\b(?:before|until|till|til) (?:it |he |she )?(?:\w+ )?(?:goes|going|comes|coming|sliding|slides|moving|moves|"
     r"heads|heading|gets|is|starts|closing|closes|shuts|shutting)\b"
 )
 
@@ -175,14 +187,19 @@ _ONCE_OUT = re.compile(
 )
 _STRAIGHT = re.compile(r"\b(?:crow|straight|beeline)\b")
 _EDGES = ("", "at the start", "at the end")
-_ALL_OF_IT = re.compile(  # of a movement
+_BEGUN = (  # of a movement
+    r"(?:very )?(?:first |initial )?(?:start(?:ing)?(?: off| point)?|beginning|stirrings?|motion|movement|move|push|"
+    r"departure|release|launch|take ?off|kick ?off|setting (?:off|out)|set ?off|leaving(?: (?:the |its )?\w+){0,2}|"
+    r"parting|go|opening)"
+)
+_OVER = (
+    r"(?:very )?(?:final |last |full |complete |dead |eventual )?(?:stop(?:ping)?(?: point)?|halt|rest|end|standstill|"
+    r"finish(?:ing)?|arrival(?: (?:at|by|in) (?:the |its )?(?:\w+ )?\w+)?|last|coming to (?:a |its )?\w+|closing)"
+)
+_ALL_OF_IT = re.compile(
     r"^(?:across|over|during|in|for|throughout) (?:its|his|her|their|the) (?:whole|entire|full|complete) \w+$|"
-    r"^(?:between|from) (?:start(?:ing)?|beginning|first \w+|release) (?:and|to|until) (?:stop(?:ping)?|rest|"
-    r"finish(?:ing)?|end|"
-    r"(?:full |final |a )?(?:stop|rest|halt|standstill))$|"
-    r"^(?:from|between) (?:its|his|her|the) (?:very )?(?:first |initial )?"
-    r"(?:start|motion|movement|beginning|departure|release|move|push) (?:to|and|until|till) (?:its|his|her|the) "
-    r"(?:very )?(?:final |last |full |complete )?(?:stop|halt|rest|end|standstill|arrival)$"
+    rf"^(?:(?:between|from|of) )?(?:its |his |her |the |a )?{_BEGUN}(?: of (?:its|the) \w+)? "
+    rf"(?:and|to|until|till|up to|through to) (?:its |his |her |the |a )?{_OVER}$"
 )
 _TILL_IT_STOPS = re.compile(
     r"^(?:before|until|till) (?:it|he|she) (?:freez\w+|gave up|gives up|lay still|lies still|stop\w*|"
@@ -195,6 +212,11 @@ _AT_MOST = re.compile(r"^(?:once|when|after|at|in|by) (?!.*\d)(?!.*\bseconds?\b)
 def _plain_time(kind: str, said: str) -> str:
     """The words for a time in plain words; "" for all of the film, where that says nothing."""
     said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", re.sub(r"^(?:given|assuming) (?=t\b|\d)", "at ", said))
+    said = _AT_ABOUT.sub("at ", said)
+    if (clock := _CLOCK.match(said)) is not None:
+        said = f"at {clock['time']} s"
+    if kind in _STATES and (passing := _BY_NOW.match(said)) is not None:
+        said = f"at {passing['time']}"
     if kind in ("turns", "far", "often") and _TILL_IT_STOPS.match(said):
         return ""
     if (kind == "far_turns" and _MIDWAY.match(said)) or (kind == "long_open" and _ONCE_OUT.match(said)):
@@ -222,6 +244,19 @@ def _plain_time(kind: str, said: str) -> str:
     return said
 
 
+_AT_ABOUT = re.compile(
+    r"^(?:as at|right (?:about|around|at)|(?:exactly |just )?on the (?:count|stroke|mark) of|right|at the mark of|"
+    r"at about) (?=\d)|^(?=\d+(?:\.\d+)? ?s(?:ec(?:ond)?s?)?(?: in(?:to (?:it|the \w+))?)?$)"
+)
+_CLOCK = re.compile(  # "once the clock 's hit 4.8"
+    r"^(?:once|when|as|after|by the time) (?:the|my|our) (?:clock|timer|counter|time ?code|stopwatch|display|watch) "
+    r"(?:'s |is |has |shows? |reads? |says? |hits? |reaches |reached |hit |at |on |gets to |past )+"
+    r"(?P<time>\d+(?:\.\d+)?)(?: ?s(?:ec(?:ond)?s?)?)?$"
+)
+_BY_NOW = re.compile(  # "by 3 s", "by the time 3 seconds have passed"
+    r"^(?:by|once|when|after|on)(?: the time)? (?P<time>\d+(?:\.\d+)? ?s(?:ec(?:ond)?s?)?)"
+    r"(?: (?:have|has|are|is) (?:passed|gone(?: by)?|up|elapsed|over))?$"
+)
 _ROUGHLY = re.compile(
     r"\b(?:like|around|about|roughly|approximately|exactly|just|maybe|say) (?=\d)|"
     r"(?<=[sd]) (?:sharp|exactly|flat|precisely|on the dot)$"

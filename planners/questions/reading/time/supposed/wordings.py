@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from ......gaussians import late_re as re
 from ......gaussians.world.words import singular
+from .....grammar.tagging.words import bag
 from .gaps import gap
 from .phrases import DENIED, PRONOUNS, SUMMED, deed_of, is_kind, of_one, one_of, several, third_person, uncounted
 from .said import Said
@@ -53,6 +54,18 @@ def _moves(said: Said) -> Iterator[str]:
     yield f"does {said.x or 'anything'} move"
 
 
+_PLACE = re.compile(
+    r"^(?P<place>.*\b(?P<noun>corner|wall|side|middle|centre|center)(?:s|ner)?)(?: (?:of|in) (?:the |this )?\w+)?$"
+)
+
+
+def _at_place(said: Said) -> Iterator[str]:
+    """What stands in a corner, or at a wall."""
+    found = _PLACE.match(said.x) or _PLACE.match(said.y)
+    if found is not None:
+        yield f"what stands {'at' if found['noun'] == 'wall' else 'in'} {found['place']}"
+
+
 _RANKED_AS = {
     "first": re.compile(r"\b(?:first|earliest|soonest|begins?|starts?|leads?|before|opens)\b"),
     "last": re.compile(r"\b(?:last|latest|final\w*|longest|longer|after|closes|ends?(?! up\b))\b"),
@@ -88,6 +101,23 @@ _BESIDE = re.compile(r" (?:at|by|around|round|near|beside|in|on|under) ")
 _NOT_DONE = {"open": "stay closed", "fall": "do not fall", "land": "do not fall"}
 
 
+_SIDE = re.compile(r"\b(?P<side>left|right)\b(?!.*\b(?:or|left|right)\b)")
+_AFFIRMED = bag("is are was were does do did has have will would")
+
+
+def _to_a_side(said: Said) -> Iterator[str]:
+    """Whether something turns to a side: "does it pivot to the left?"."""
+    side = _SIDE.search(said.rest)
+    if side is not None and said.x and said.first in _AFFIRMED:
+        yield f"does {said.x} turn to the {side['side']}"
+
+
+def _if_turns(said: Said) -> Iterator[str]:
+    side = _SIDE.search(said.rest)
+    if said.x and (side is None or " not " not in said.rest):
+        yield f"does {said.x} turn" + (f" to the {side['side']}" if side else "")
+
+
 def _counted(said: Said) -> Iterator[str]:
     deed = deed_of(said.rest, "move")
     if _LEFT_UP.search(said.rest) and said.x and said.x not in PRONOUNS:
@@ -104,7 +134,8 @@ def _counted(said: Said) -> Iterator[str]:
         x = said.x  # "the chairs round the table" are chairs
     noun = _BESIDE.split(several(x))[0] if x and x not in PRONOUNS else "things"
     if not DENIED.isdisjoint(said.rest.split()):
-        yield f"how many {noun} {_NOT_DONE.get(deed, 'do not move')}"
+        fallen = re.search(r"\b(?:fallen|dropped|landed|come down)\b", said.rest)
+        yield f"how many {noun} {'have not fallen' if fallen else _NOT_DONE.get(deed, 'do not move')}"
         return
     if deed == "move" and not said.time and not _MOVING.search(said.rest):
         yield f"how many {noun} are there"
@@ -126,7 +157,9 @@ def _often(said: Said) -> Iterator[str]:
 
 
 def _turns(said: Said) -> Iterator[str]:
-    if said.x:
+    if said.x and _HOW_LONG.search(f"{said.rest} {said.unit}"):
+        yield f"how long does {said.x} take for one turn"
+    elif said.x:
         degrees = "degree" in f"{said.unit} {said.rest}" or "angle" in said.rest
         yield f"how many degrees does {said.x} turn" if degrees else f"how many turns does {said.x} make"
 
@@ -149,7 +182,8 @@ def _long(said: Said) -> Iterator[str]:
 
 _FULLY = re.compile(
     r"\b(?:right out|(?:its|the) furthest|full extension|fully|full|completely|wholly|"
-    r"all the way|entirely|maximum|widest|furthest)\b"
+    r"all the way|entirely|maximum|widest|furthest|"
+    r"(?:extended|open|pulled out|drawn out|out) (?:state|pose|position))\b"
 )
 
 
@@ -218,8 +252,9 @@ _OUT = re.compile(r"\b(?:pulled|slid|hang\w*|extended|wide|all the way|fully|com
 
 
 def _long_still(said: Said) -> Iterator[str]:
-    back = not said.time or BEFORE_BACK.match(said.time) is not None
-    if said.x and back and _OUT.search(said.rest):  # "how long does it sit there pulled all the way out"
+    back = not said.time or BEFORE_BACK.search(said.time) is not None
+    pose = f"{said.rest} {said.off} {said.time}"
+    if said.x and back and _OUT.search(pose):  # "how long does it sit there pulled all the way out"
         yield f"how long does {said.x} stay fully open"
     elif said.x:
         yield f"how long does {said.x} stand still"
@@ -259,6 +294,16 @@ def _over(said: Said) -> Iterator[str]:
     if said.x and said.y:
         passes = re.search(r"\b(?:past|pass|passes|passed|by)\b", said.rest) is not None
         yield f"does {said.x} {'pass' if passes else 'cross'} {said.y}"
+
+
+_ALL_OF = re.compile(r"^(?:all|both)(?P<count> (?:two|three|four|five|2|3|4|5))?(?: of)? (?:the |these |those )?")
+
+
+def _if_on(said: Said) -> Iterator[str]:
+    if (every := _ALL_OF.match(said.x)) is not None and said.y:
+        yield f"are all{every['count'] or ''} {said.x[every.end() :]} on {said.y}"
+    else:
+        yield from _about("is {x} on {y}")(said)
 
 
 def _long_reach(said: Said) -> Iterator[str]:
@@ -303,7 +348,7 @@ PLAIN: Mapping[str, Plain] = {
     "where_starts": _about("where does {x} start"),
     "where_at": _about("where is {x}"),
     "way": _about("which way does {x} move"),
-    "turn_way": _about("which way does {x} turn"),
+    "turn_way": _either(_to_a_side, _about("which way does {x} turn")),
     "if_moves": _moves,
     "if_still": _about("does {x} stand still"),
     "if_opens": _about("does {x} open"),
@@ -312,12 +357,12 @@ PLAIN: Mapping[str, Plain] = {
     "if_shut": _either(_those_shut, _about("is {x} closed")),
     "if_falls": _about("does {x} fall"),
     "if_reaches": _about("does {x} touch {y}"),
-    "if_on": _about("is {x} on {y}"),
+    "if_on": _if_on,
     "if_crosses": _over,
     "if_returns": _about("does {x} come back"),
     "if_to_end": _about("does {x} move until the end"),
     "if_stops": _about("does {x} stop"),
-    "if_turns": _about("does {x} turn"),
+    "if_turns": _if_turns,
     "if_before": lambda said: _compared(said, "before"),
     "if_after": lambda said: _compared(said, "after"),
     "if_together": lambda said: _compared(said, "at the same time as"),
@@ -343,6 +388,6 @@ PLAIN: Mapping[str, Plain] = {
     "fastest": _which,
     "happens": lambda said: iter(("what happens",)),
     "does": _about("what does {x} do"),
-    "near": _about("what is {x} next to"),
+    "near": _either(_at_place, _about("what is {x} next to")),
     "on_way": _about("what does {x} touch"),
 }
