@@ -13,6 +13,7 @@ from ...answer import Answer
 from ...kind import Asked, Kind
 from ...reading.phrase_templates import templates
 from ...reading.time.deeds import AT_ONCE
+from ...reading.time.happenings import Happening
 from ...survey import Survey
 from ...timeline.asked import PLACES, Told, Untold, agreed, at, cap, kind, number, spoken, verb, within
 from ...timeline.bodies import Body
@@ -116,8 +117,12 @@ def _between(told: Told) -> Answer | None:
     if bodies[0] is bodies[1] and times[0] == times[1]:
         return None  # one happening is read twice
     apart = abs(times[1] - times[0])
-    said = [f"{b.name} {verb(told, w)} at {at(t)}" for b, w, t in zip(bodies, (first, second), times, strict=True)]
+    said = [f"{_who(b, w)} {verb(told, w)} at {at(t)}" for b, w, t in zip(bodies, (first, second), times, strict=True)]
     return number(apart, "s", f"{at(apart)}: {said[0]} and {said[1]}.", bodies, min(times))
+
+
+def _who(body: Body, what: Happening) -> str:
+    return "the film" if what.deed is not None and what.deed.kind == "scene" else body.name
 
 
 def _clip(asked: Asked, survey: Survey) -> Answer | None:

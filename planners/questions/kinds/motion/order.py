@@ -183,6 +183,8 @@ def _does(told: Told) -> Answer | None:
     if window is None:
         found = _stretches(body, told)
         told_each = "; ".join(f"from {at(a)} to {at(b)} {said}" for (a, b), said in found)
+        if told.timeline.stop - body.moving[-1][1] > _NEAR_END:
+            told_each += "; then it stands still"
         if len(found) == 1:
             return _text(f"{cap(body.name)} {told_each}.", found[0][1], body, found[0][0][0])
         return Answer(

@@ -6,6 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from ......gaussians import late_re as re
+from ......gaussians.world import kinds as kinds_of_things
 from ......gaussians.world.words import singular
 from .....grammar.tagging.words import bag
 from ...noun_phrase import is_color_word
@@ -80,6 +81,8 @@ def said_of(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], nam
         tag: tuple(dict.fromkeys(_named(_ONE.sub(noun or "one", name), names) for name in found[tag]))
         for tag in ("x", "y")
     }
+    known = tuple(name for name in things["x"] if _is_known(name, names))
+    things["x"] = known or things["x"]  # "my clockwork apprentice, the robot"
     if not found["t"] and len(found["off"]) == 1 and (blinked := _BLINKED.search(found["off"][0])) is not None:
         found["t"], found["off"] = [blinked["time"]], []  # "I blinked at 1.4 s, which book was falling?"
     asides = (words[start:stop] for tag, start, stop in spans if tag == "off" and not _is_apart(words, start, stop))
@@ -134,6 +137,8 @@ def _named(said: str, names: Collection[str]) -> str:
     if (stands := _ON_A_SIDE.match(said)) is not None:
         said = f"the {stands['side']} {stands['thing']}"
     words = said.split()
+    if not _is_known(said, names) and (color := next(filter(is_color_word, words), None)) is not None:
+        return f"the {color} one"  # "our small green wanderer"
     if words and singular(words[-1]) in names:
         said = " ".join(w for w in words if w in names or singular(w) in names or w in _TELLING or is_color_word(w))
     said = re.sub(
@@ -148,6 +153,12 @@ _TELLING = bag(
     "the a an this that these those all both every each any two three top bottom middle upper lower first "
     "second third last left right other moving and of"
 )
+
+
+def _is_known(said: str, names: Collection[str]) -> bool:
+    """Whether words name a thing of the scene, or one of which is known what it is."""
+    words = [singular(word) for word in said.split()]
+    return not words or said in PRONOUNS or any(w in names or kinds_of_things.find(w) is not None for w in words)
 
 
 def _joined(names: tuple[str, ...]) -> str:

@@ -157,7 +157,7 @@ def _often(said: Said) -> Iterator[str]:
 
 
 def _turns(said: Said) -> Iterator[str]:
-    if said.x and _HOW_LONG.search(f"{said.rest} {said.unit}"):
+    if said.x and _wants_time(said):
         yield f"how long does {said.x} take for one turn"
     elif said.x:
         degrees = "degree" in f"{said.unit} {said.rest}" or "angle" in said.rest
@@ -167,10 +167,14 @@ def _turns(said: Said) -> Iterator[str]:
 _HOW_LONG = re.compile(r"\b(?:how long|how many seconds|how much time|what (?:length|amount) of time|period)\b")
 
 
+def _wants_time(said: Said) -> bool:
+    return said.unit in ("seconds", "second", "s", "sec") or _HOW_LONG.search(f"{said.rest} {said.unit}") is not None
+
+
 def _fast(said: Said) -> Iterator[str]:
-    if said.x and _HOW_LONG.search(f"{said.rest} {said.unit}"):
+    if said.x and _wants_time(said):
         yield f"how long does {said.x} take for one turn"
-    elif said.x and said.unit not in ("seconds", "second", "s", "sec"):
+    elif said.x:
         yield f"how fast does {said.x} move in {said.unit}" if said.unit else f"what is the average speed of {said.x}"
 
 
