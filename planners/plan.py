@@ -175,6 +175,12 @@ class Movement(NamedTuple):
     metres: float = 0.0
     edges: tuple[float, ...] = ()
 
+    @property
+    def rate(self) -> float:
+        """Turns a second on the whole; 0 of what moves at no time."""
+        seconds = self.stop - self.start
+        return self.degrees / 360 / seconds if seconds > 0 else 0.0
+
 
 class Observation(Protocol):
     """The scene as planners see it; each part is computed when it is first asked for."""

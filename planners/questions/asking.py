@@ -149,7 +149,8 @@ def _as_said(text: str, words: Words, names: frozenset[str], survey: Survey, tim
     if (in_order := _sorted(text, names, survey, timeline)) is not None:
         return in_order
     asked = Asked(text, words=words, timeline=timeline)
-    moved = None if _WHAT_IS_THERE.match(asked.said) else _of_motion(asked, survey)
+    other = _WHAT_IS_THERE.match(asked.said) or _BY_WHOM.match(asked.said)
+    moved = None if other else _of_motion(asked, survey)
     if moved is not None and moved.answer.answer is not None:
         return moved
     for made in (_shared, _compared, _of_two):
@@ -161,6 +162,10 @@ def _as_said(text: str, words: Words, names: frozenset[str], survey: Survey, tim
     return moved or still
 
 
+_BY_WHOM = re.compile(  # "who turns off the fan", which no motion shows
+    r"^who (?:\w+ )?(?:turn|switch|shut|power|cut|pull|push|open|close|move|stop|start|knock|throw|threw|kick)\w*"
+    r"(?: (?:off|on|down|up|out|over|open|shut))? (?:the|this|that|my|those|these)\b"
+)
 _WHAT_IS_THERE = re.compile(
     r"^(?:what|which(?: \w+){1,3}?)(?: (?:is|are|stands?|sits?|hangs?|lies?))?(?: standing| located| there)? "
     rf"{static.IN_PLACE.pattern}(?: of the \w+)?$"

@@ -134,9 +134,7 @@ def _times(spans: Sequence[Span]) -> int:
 
 def _turns_of(moves: Movement) -> tuple[float, ...]:
     """How often something that turns does so: in all, in a second, and in a minute."""
-    turns = moves.degrees / 360
-    rate = turns / max(moves.stop - moves.start, 1e-6)
-    return (turns, rate, 60 * rate) if moves.turns else ()
+    return (moves.degrees / 360, moves.rate, 60 * moves.rate) if moves.turns else ()
 
 
 class Judge:

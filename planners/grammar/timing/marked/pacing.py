@@ -235,7 +235,7 @@ def longer(slots: Slots) -> Iterator[Wanted]:
         yield Wanted(pace(whose_of(slots), "go_on"), Moment(stop=stop), None)
         return
     moves, more = slots.movement(slots.queries[0]), slots.one("s", "")
-    rate = 0.0 if moves is None else moves.degrees / 360 / max(moves.stop - moves.start, _AS_TOLD)
+    rate = 0.0 if moves is None else moves.rate
     slots.used |= {own.said for own in slots.amounts if own.unit == "turns/s" and abs(own.value - rate) < _AS_TOLD}
     seconds = slots.moment.lasting if more is None else more.value
     if moves is None or seconds is None:

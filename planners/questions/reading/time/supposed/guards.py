@@ -10,7 +10,7 @@ from .....grammar.tagging.words import bag
 from .....grammar.vocabulary.quantities import NUMBERS
 from ...noun_phrase import is_color_word
 from ..loosely import HARD
-from .phrases import DENIED, is_kind
+from .phrases import ALL_OF, DENIED, is_kind
 from .said import ASKS_WHEN, Said
 
 SURE = 0.8  # probability from which words without a mark are taken for those of the question
@@ -20,12 +20,15 @@ _HARD = (HARD - {"one"}) | bag("after before further until while backwards backw
 
 def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
-    plain = _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub(" when ", said.rest))
-    if (kind == "when_turns" and _A_FULL_ONE.search(plain)) or (kind == "far_turns" and _A_SHARE.search(plain)):
+    plain = _EACH_SECOND.sub(" ", _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub(" when ", said.rest)))
+    if (kind == "when_turns" and _A_FULL_ONE.search(plain)) or (
+        kind in ("far_turns", "far_opens") and _A_SHARE.search(plain)
+    ):
         return True
     if kind.startswith("when_"):
-        if _UNTIL_WHEN.search(plain):
-            return True
+        several = any(word in NUMBERS and word != "one" for word in said.x.split())
+        if _UNTIL_WHEN.search(plain) or (several and ALL_OF.match(said.x) is None):
+            return True  # "when have two books fallen"
         plain = _THE_SECOND.sub(" when ", plain)
     if kind.startswith("where_"):
         plain = _WHICH_PLACE.sub(" where ", plain)
@@ -36,9 +39,11 @@ def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> b
             return True  # "who moves the ball", "what never moves near the desk"
     elif _BESIDES.search(said.rest) is not None:
         return True  # "does anything besides the door move"
-    if len(said.places) > 1 and kind != "visits":
+    whole_way = kind == "far" and _FROM_TO.search(said.barred) is not None
+    if len(said.places) > 1 and kind != "visits" and not whole_way:
         return True
-    asks = not _ASKS.isdisjoint(rest) or (kind == "turn_way" and "or" in rest) or ASKS_WHEN.match(said.off)
+    sides = kind == "turn_way" and not {"or", "left", "right"}.isdisjoint(rest)  # to one of them, or to which
+    asks = not _ASKS.isdisjoint(rest) or sides or ASKS_WHEN.match(said.off)
     if not kind.startswith("if_") and not said.unit and said.first in _AUXILIARIES and not asks:
         return True  # "is the ball at its top speed then?" wants no number
     if _NTH.search(said.time):
@@ -79,8 +84,10 @@ _WHAT_SECOND = re.compile(
     r"\bthe (?:exact |precise |very )?second (?:(?:at|in|on) which|where|when|that)\b"
 )
 _THE_SECOND = re.compile(r" the (?:exact |precise |very )?second ")  # that something happens
+_FROM_TO = re.compile(r"\b(?:full|whole|entire|total)\b.*\bfrom \| to \|")
 _A_FULL_ONE = re.compile(r"\b(?:one|full|whole|complete)\b")
 _A_SHARE = re.compile(r"\b(?:fraction|share|part|percent\w*|portion)\b")
+_EACH_SECOND = re.compile(r" (?:per|a|each|every) (?:second|minute)(?= )")
 _UNTIL_WHEN = re.compile(r"\b(?:until|till|up to) (?:what|which|when)\b")
 _WHICH_PLACE = re.compile(
     r"\b(?:(?:up)?on|in|at|against|by|to|onto|over) (?:the )?(?:what|which) (?:(?:piece|bit|item|kind|sort) of )?"
@@ -103,7 +110,7 @@ _TWO_DEEDS = re.compile(
 _NTH = re.compile(r"\b(?:second|third|fourth|last) (?:time|trip|turn|movement|run|fall|way|lap|round)\b")
 _ANYTHING = ("", "things", "the things", "anything", "everything", "something", "the furniture", "it")
 
-_RANKS = bag("second third first last other another twice again")
+_RANKS = bag("second third first last other another twice again anew afresh resume resumes")
 _LEVELS = bag("floor ground board shelf")
 _TO_THE_FLOOR = bag("when_lands when_falls if_falls long_falls how_many what_fell what_up far_falls first last order")
 _ASKS = bag("which what how when where who whose")

@@ -34,6 +34,8 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     if re.search(r"\bcross\w*", said):
         found["long_on"] = found.get("long_on", 0.0) + found.pop("long_reach", 0.0)
         kind = max(found, key=found.__getitem__)
+    if kind == "none" and _COUNTS.search(said) and sorted(found, key=found.__getitem__)[-2] == "how_many":
+        return "how_many", found["none"] + found["how_many"]  # of what stands still, too
     if kind == "where_ends" and _WHERE_IS.match(said):
         return "where_at", found[kind] + found["where_at"]
     if kind in ("fast", "fast_most"):
@@ -41,6 +43,7 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     return kind, found[kind]
 
 
+_COUNTS = re.compile(r"\bhow (?:many|much)\b|\bcount\b|\b(?:number|quantity) of\b")
 _RANKS_ALL = re.compile(r"^(?:please )?(?:rank|sort|order|arrange|line up)\b")
 _CUTS_OUT = re.compile(r"\b(?:cuts?|conks?|gives?|gave|switch(?:es)?|shuts?|powers?) (?:out|off|down)\b")
 _TIMECODE = re.compile(r"\b(?:time ?code|time ?stamp|(?:at )?(?:what|which) (?:time|second|moment|instant))\b")
@@ -98,9 +101,13 @@ _WHERE_IS = re.compile(r"^where (?:is|are|was|were) ")
 _IS_SHUT = re.compile(r"\bis (?:the|that|my|our|every)\w*\b.*\b(?:shut|closed)\b")
 
 
-def asks_why(kind: str, said: str) -> bool:
-    """Whether words ask for a cause, or for what somebody does or feels, or only for one stretch of a way."""
-    if _CAUSES.search(said) or _A_STRETCH.search(said) or _FEELS.search(said):
+def asks_why(kind: str, said: str, asked: str) -> bool:
+    """Whether words ask for a cause, or for what somebody does or feels, or only for one stretch of a way.
+
+    Args:
+        asked: those that ask for something.
+    """
+    if _CAUSES.search(said) or _A_STRETCH.search(said) or _FEELS.search(asked):
         return True
     return kind not in _OF_SOMEBODY and _REASONS.search(said) is not None
 
@@ -108,6 +115,7 @@ def asks_why(kind: str, said: str) -> bool:
 _CAUSES = re.compile(
     r"\bwhat (?:is it that )?(?:made|makes|shook|shakes|pushed|pushes|drives|caused|causes|knocked|knocks|"
     r"shoved|tipped|bumped|kicked|toppled|blew|threw) (?!over$)|\bwhy\b|"
+    r"\bbecause (?:he|she|it|they) (?:'s|is|are|was|were|feels?|felt|wants?|wanted)\b|"
     r"\bthat (?:drove|made|pushed|caused)\b|\bwhat (?:induce[sd]|prompt(?:s|ed)|trigger(?:s|ed)|led|got|sets|set) "
     r"(?:the|it|him|her)\b|"
     r"\b(?:motives?|intentions?|intended|meant to|on whose)\b|"
@@ -126,7 +134,7 @@ _YES_OR_NO = re.compile(
 _REASONS = re.compile(
     r"\b(?:reason|explain|because of|caus(?:e|es|ed|ing)|blame|on purpose|who(?:m|se)?|somebody|someone)\b"
 )
-_OF_SOMEBODY = bag("first last order fastest what_moves what_still happens does how_many")
+_OF_SOMEBODY = bag("first last order fastest what_moves what_still happens does how_many where_at where_ends near")
 _GREATEST = re.compile(
     r"\b(?:top(?= (?:speed|pace|rate|velocity)\b)|max|maximum|maximal|peak|highest|greatest|fastest|most|record)\b"
 )

@@ -9,6 +9,7 @@ from .....grammar.vocabulary.quantities import NUMBERS
 
 _PLURAL = re.compile(r"^(?:all |both )?(?:of )?(?:the |these |those |my |our )?")
 
+ALL_OF = re.compile(r"^(?:all|both)(?P<count> (?:two|three|four|five|2|3|4|5))?(?: of)? (?:the |these |those )?")
 PRONOUNS = ("it", "he", "she", "they", "anything", "something", "everything", "things", "what", "which")
 
 DENIED = bag("not no never without nothing nobody")

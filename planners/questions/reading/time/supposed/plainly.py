@@ -21,7 +21,7 @@ from .....grammar.timing.spoken import in_figures
 from .guards import says_more
 from .kinds import marked_ways, vocabulary
 from .likely import OF_A_LEG, asks_why, likeliest, without_leg, without_options
-from .phrases import deed_of
+from .phrases import ALL_OF, deed_of, one_of
 from .said import Said, said_of
 from .times import UP_TO_THE_TURN, time_left, times_of, with_article
 from .wordings import PLAIN
@@ -51,7 +51,7 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST, strictly: b
     if (left := next(filter(None, (time_left(told, own) for own in times)), None)) is not None:
         return (left,)
     kind, chance = likeliest(told)
-    if chance < least or kind not in PLAIN or asks_why(kind, " ".join(told)):
+    if chance < least or kind not in PLAIN:
         return ()
     for spans in marked_ways(told):
         if found := tuple(dict.fromkeys(_plainly(told, spans, leg, kind, 0.0 if strictly else chance, names))):
@@ -63,6 +63,9 @@ def _plainly(
     told: tuple[str, ...], spans: Collection[Span], leg: str, kind: str, chance: float, names: frozenset[str]
 ) -> Iterator[str]:
     """The words of a question of a kind, with these marks, as plain questions; none if they say more."""
+    aside = {at for tag, start, stop in spans if tag == "off" for at in range(start, stop)}
+    if asks_why(kind, " ".join(told), " ".join(word for at, word in enumerate(told) if at not in aside)):
+        return
     said = said_of(told, spans, names)
     if said is not None and said.asked and kind.startswith("what_") and not is_plural(said.x):
         said = replace(said, x=plural(said.x))
@@ -74,12 +77,16 @@ def _plainly(
             for word in told
         ):
             return  # "any window I could open"
+        if kind in _OF_ONE and _PRONOUN.isdisjoint(said.rest.split()):
+            return
         said = replace(said, x="it")
     if leg:
         if (said.time and not UP_TO_THE_TURN.match(said.time)) or kind not in OF_A_LEG:
             return
         said = replace(said, time=leg, times=(leg,))
     times = tuple(dict.fromkeys(times_of(kind, said.times))) if said.time and kind != "gap" else ("",)
+    if kind.startswith("when_") and (every := ALL_OF.match(said.x)) is not None:
+        said = replace(said, x=f"the last {one_of(said.x[every.end() :])}")  # of several things the last one
     if kind == "how_many" and "at the end" in times and deed_of(said.rest, "") in ("fall", "land"):
         times = ("",)  # how many have fallen by then
     for time in times:
@@ -101,6 +108,10 @@ _OF_ALL = bag(
     "what_moves what_still how_many first last order fastest happens film_long gap if_moves if_still if_together "
     "what_open what_shut what_on what_fell what_up"
 )
+
+
+_OF_ONE = ("near", "where_at")  # are asked of what stands still, too
+_PRONOUN = bag("it he she they")
 
 
 def _spelled(word: str, names: frozenset[str]) -> str:

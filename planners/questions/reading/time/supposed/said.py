@@ -83,12 +83,15 @@ def said_of(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], nam
     }
     known = tuple(name for name in things["x"] if _is_known(name, names))
     things["x"] = known or things["x"]  # "my clockwork apprentice, the robot"
+    if not found["t"] and (past := _NOW_THAT.match(" ".join(found["off"]))) is not None:
+        found["t"], found["off"] = [f"once {past['time']}"], []
     if not found["t"] and len(found["off"]) == 1 and (blinked := _BLINKED.search(found["off"][0])) is not None:
         found["t"], found["off"] = [blinked["time"]], []  # "I blinked at 1.4 s, which book was falling?"
     asides = (words[start:stop] for tag, start, stop in spans if tag == "off" and not _is_apart(words, start, stop))
     if len(found["t"]) > 2 or any(_TIMED.search(ASKS_WHEN.sub("", " ".join(aside))) for aside in asides):
         return None
-    unit = _IN_UNIT.search(re.sub(r"metre", "meter", " ".join(found["u"])))
+    each = re.match(r"(?:per|a|each|every) (?:second|minute)$", " ".join(found["u"]))  # of turns
+    unit = None if each else _IN_UNIT.search(re.sub(r"metre", "meter", " ".join(found["u"])))
     return Said(
         x=_joined(things["x"]), y=_joined(things["y"][:1]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
         rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]), places=things["y"],
@@ -120,10 +123,11 @@ _AN_EVENT = re.compile(
     r"(?: manoeuvre| maneuver| movement| motion| phase| part)?$"
 )
 _TIMED = re.compile(
-    r"\b(?:when|while|until|till|once|after|before|during)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b"
+    r"\b(?:when|while|until|till|once|after|before|during|now that)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b"
 )
 _ONES = re.compile(r"^(?:the |that |this |which )?ones?$")
 _BLINKED = re.compile(r"^(?:i|we) [a-z ]+? (?P<time>at \d+(?:\.\d+)?(?: ?s(?:ec(?:ond)?s?)?)?)$")
+_NOW_THAT = re.compile(r"^(?:and )?(?:now|seeing|given) that (?P<time>.+)$")
 _ONE = re.compile(r"\bone$")
 _THAT_ONE = re.compile(r"\bthe (?:red|green|blue|yellow|white|black|brown|grey|gray|orange|purple|pink) one\b")
 _CONJUNCTIONS = ("til", "till", "until", "before", "once")
@@ -136,6 +140,10 @@ def _named(said: str, names: Collection[str]) -> str:
         return whole[0]  # "everything tidily"
     if (stands := _ON_A_SIDE.match(said)) is not None:
         said = f"the {stands['side']} {stands['thing']}"
+    if (two := _TWO_OF_A_KIND.match(said)) is not None and singular(two["noun"]) in names:
+        said = f"the {two['one']} {singular(two['noun'])} and the {two['other']} {singular(two['noun'])}"
+    if (whose := _WHOSE.match(said)) is not None and singular(whose["noun"]) in names:
+        said = f"the {whose['noun']}"
     words = said.split()
     if not _is_known(said, names) and (color := next(filter(is_color_word, words), None)) is not None:
         return f"the {color} one"  # "our small green wanderer"
@@ -147,6 +155,8 @@ def _named(said: str, names: Collection[str]) -> str:
     return said if _DETERMINED.match(said) or said in PRONOUNS else f"the {said}"
 
 
+_TWO_OF_A_KIND = re.compile(r"^(?:both |the )*(?P<one>[a-z]+) and (?:the )?(?P<other>[a-z]+) (?P<noun>[a-z]+s)$")
+_WHOSE = re.compile(r"^(?:the |this )?[a-z]+ 's (?P<noun>[a-z]+s)$")  # "the dresser 's drawers"
 _ON_A_SIDE = re.compile(r"^(?:the |that |this )?(?P<thing>\w+(?: \w+)?) (?:on|to) the (?P<side>left|right)$")
 _TELLING = bag(
     "on in at under beside behind below above from near by to next of "

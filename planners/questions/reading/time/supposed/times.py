@@ -9,6 +9,7 @@ from ......gaussians import late_re as re
 from .....grammar.learned.events import Event, event_of
 from .....grammar.tagging.words import bag
 from ..everyday import everyday
+from ..moments import NUMBER
 
 _LEADS = (  # how a phrase begins, and the conjunction that says the same
     (re.compile(r"^(?:right |just |only )*(?:until|till|til|up to)\b"), "until"),
@@ -31,14 +32,16 @@ _SPANS = {  # what is so for a while
 _IT_ENDS = (
     r"(?:before|until|till|to when) (?:the|this|our) (?:film|clip|video|movie|footage|recording|"
     r"scene|shot|show|story|picture) "
-    r"(?:ends?|runs out|is (?:over|done|finished)|finish(?:es)?|stops|cuts out|closes)"
+    r"(?:ends?|concludes?|runs out|is (?:over|done|finished)|finish(?:es)?|stops|cuts out|closes)"
 )
 _LEFT = re.compile(
     r"\b(?:how (?:much|long|many)|what)\b.*\b(?:left|remain\w*|still to (?:come|go)|"
     rf"{_IT_ENDS}|(?:to|until|till) the (?:last frame|(?:very )?end))\b|"
     rf"\b(?:(?:to|until|till|and) the (?:last frame|(?:very )?end)\b|{_IT_ENDS}).*\bhow (?:much|long|many)\b"
 )
-_TO_THE_END = re.compile(r"(?: ,)? (?:\w+ )?(?:to|until|till) the (?:last frame|(?:very )?end)\b.*$")
+_TO_THE_END = re.compile(
+    rf"(?: ,)? (?:\w+ )?(?:(?:to|until|till|and) the (?:last frame|(?:very )?end)\b|{_IT_ENDS}).*$"
+)
 _SHOWN = re.compile(
     r"\b(?:film|clip|video|movie|picture|footage|recording|shot|frames?|seconds?|air|screen|time|show|scene|end)\b"
 )
@@ -171,9 +174,14 @@ _FURTHEST = re.compile(
     r"^at (?:full \w+|"
     r"(?:its|his|her|the) (?:very )?(?:furthest|farthest|widest|most|maximum|fullest|utmost|greatest|peak)\b.*)$"
 )
+STROKES = re.compile(  # "between the outward slide and the return"
+    r"^between (?:the |its )?(?:[a-z]+ )?(?:out\w*|opening|extension)\b.* and (?:the |its )?(?:[a-z]+ )?"
+    r"(?:return\w*|back\w*|in\w*|clos\w*|retract\w*)\b"
+)
+_WHILE_ON = re.compile(r"^(?:(?:before|until|till|til) (?:it |he |she |leav|roll)|once (?:it|he|she) (?:is|has|gets) )")
 BEFORE_BACK = re.compile(
     r"\b(?:before|until|till|til) (?:it |he |she )?(?:\w+ )?(?:goes|going|comes|coming|sliding|slides|moving|moves|"
-    r"heads|heading|gets|is|starts|closing|closes|shuts|shutting)\b"
+    r"heads|heading|return\w*|retract\w*|gets|is|starts|closing|closes|shuts|shutting)\b"
 )
 
 
@@ -188,12 +196,14 @@ _ONCE_OUT = re.compile(
 _STRAIGHT = re.compile(r"\b(?:crow|straight|beeline)\b")
 _EDGES = ("", "at the start", "at the end")
 _BEGUN = (  # of a movement
-    r"(?:very )?(?:first |initial )?(?:start(?:ing)?(?: off| point)?|beginning|stirrings?|motion|movement|move|push|"
+    r"(?:very )?(?:first |initial )?(?:start(?:ing)?(?: off| point| gate)?|beginning|push ?off|crack|shut|closed|"
+    r"stirrings?|motion|movement|move|push|"
     r"departure|release|launch|take ?off|kick ?off|setting (?:off|out)|set ?off|leaving(?: (?:the |its )?\w+){0,2}|"
     r"parting|go|opening)"
 )
 _OVER = (
-    r"(?:very )?(?:final |last |full |complete |dead |eventual )?(?:stop(?:ping)?(?: point)?|halt|rest|end|standstill|"
+    r"(?:very )?(?:final |last |full |complete |dead |eventual )?(?:(?:wide |fully |full )?open|finish line|"
+    r"stop(?:ping)?(?: point)?|halt|rest|end|standstill|"
     r"finish(?:ing)?|arrival(?: (?:at|by|in) (?:the |its )?(?:\w+ )?\w+)?|last|coming to (?:a |its )?\w+|closing)"
 )
 _ALL_OF_IT = re.compile(
@@ -212,7 +222,7 @@ _AT_MOST = re.compile(r"^(?:once|when|after|at|in|by) (?!.*\d)(?!.*\bseconds?\b)
 def _plain_time(kind: str, said: str) -> str:
     """The words for a time in plain words; "" for all of the film, where that says nothing."""
     said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", re.sub(r"^(?:given|assuming) (?=t\b|\d)", "at ", said))
-    said = _AT_ABOUT.sub("at ", said)
+    said = _ACROSS.sub("moves", _AT_ABOUT.sub("at ", said))
     if (clock := _CLOCK.match(said)) is not None:
         said = f"at {clock['time']} s"
     if kind in _STATES and (passing := _BY_NOW.match(said)) is not None:
@@ -223,9 +233,9 @@ def _plain_time(kind: str, said: str) -> str:
         return ""
     if _ALL_OF_IT.match(said) or (kind in ("far_opens", "far_turns") and _AT_MOST.match(said)):
         return ""
-    if kind in ("long_still", "long_open") and BEFORE_BACK.match(said):
+    if kind in ("long_still", "long_open") and (BEFORE_BACK.match(said) or STROKES.match(said)):
         return ""
-    if kind == "long_on" and said.startswith(("before it ", "until it ", "before leav", "until leav", "before roll")):
+    if kind == "long_on" and _WHILE_ON.match(said) is not None:
         return ""
     if kind == "apart" and _STRAIGHT.search(said):
         return ""
@@ -248,10 +258,12 @@ _AT_ABOUT = re.compile(
     r"^(?:as at|right (?:about|around|at)|(?:exactly |just )?on the (?:count|stroke|mark) of|right|at the mark of|"
     r"at about) (?=\d)|^(?=\d+(?:\.\d+)? ?s(?:ec(?:ond)?s?)?(?: in(?:to (?:it|the \w+))?)?$)"
 )
+_ACROSS = re.compile(r"\b(?:crosses|(?:rolls|goes|runs|moves|walks) across) the (?:room|floor)\b")
 _CLOCK = re.compile(  # "once the clock 's hit 4.8"
-    r"^(?:once|when|as|after|by the time) (?:the|my|our) (?:clock|timer|counter|time ?code|stopwatch|display|watch) "
+    r"^(?:once|when|as|after|by the time) (?:(?:the|my|our) )?"
+    r"(?:clock|timer|counter|time ?code|stopwatch|display|watch) "
     r"(?:'s |is |has |shows? |reads? |says? |hits? |reaches |reached |hit |at |on |gets to |past )+"
-    r"(?P<time>\d+(?:\.\d+)?)(?: ?s(?:ec(?:ond)?s?)?)?$"
+    rf"(?P<time>{NUMBER})(?: ?s(?:ec(?:ond)?s?)?)?$"
 )
 _BY_NOW = re.compile(  # "by 3 s", "by the time 3 seconds have passed"
     r"^(?:by|once|when|after|on)(?: the time)? (?P<time>\d+(?:\.\d+)? ?s(?:ec(?:ond)?s?)?)"

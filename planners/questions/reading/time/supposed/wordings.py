@@ -8,9 +8,21 @@ from ......gaussians import late_re as re
 from ......gaussians.world.words import singular
 from .....grammar.tagging.words import bag
 from .gaps import gap
-from .phrases import DENIED, PRONOUNS, SUMMED, deed_of, is_kind, of_one, one_of, several, third_person, uncounted
+from .phrases import (
+    ALL_OF,
+    DENIED,
+    PRONOUNS,
+    SUMMED,
+    deed_of,
+    is_kind,
+    of_one,
+    one_of,
+    several,
+    third_person,
+    uncounted,
+)
 from .said import Said
-from .times import BEFORE_BACK
+from .times import BEFORE_BACK, STROKES
 
 _OFTEN = (
     (re.compile(r"\b(?:com(?:es?|ing)|slid(?:es?|ing)|pops?|pulled) (?:\w+ )?out\b"), "how often does {x} open"),
@@ -94,27 +106,32 @@ _MOVING = re.compile(
 )
 
 
-_LEFT_UP = re.compile(r"\b(?:left|still|remain\w*|stay\w*) (?:up|on the (?:shelf|board|high))\b")
+_LEFT_UP = re.compile(
+    r"\b(?:left|still|remain\w*|stay\w*) (?:(?:sitting|standing|resting|lying|perched|there|upright) )*"
+    r"(?:up|on the (?:\w+ )?(?:shelf|board|high))\b"
+)
 
 
 _BESIDE = re.compile(r" (?:at|by|around|round|near|beside|in|on|under) ")
 _NOT_DONE = {"open": "stay closed", "fall": "do not fall", "land": "do not fall"}
 
 
-_SIDE = re.compile(r"\b(?P<side>left|right)\b(?!.*\b(?:or|left|right)\b)")
-_AFFIRMED = bag("is are was were does do did has have will would")
+_SIDE = re.compile(
+    r"\b(?P<side>left|right)\b(?:(?!.*\b(?:or|left|right)\b)| (?:, )?(?:and )?not (?:to )?(?:its |the )?(?:left|right))"
+)
+_QUESTION_WORDS = bag("which what where how when whither tell name say state")
 
 
 def _to_a_side(said: Said) -> Iterator[str]:
     """Whether something turns to a side: "does it pivot to the left?"."""
     side = _SIDE.search(said.rest)
-    if side is not None and said.x and said.first in _AFFIRMED:
+    if side is not None and said.x and _QUESTION_WORDS.isdisjoint(said.rest.split()):
         yield f"does {said.x} turn to the {side['side']}"
 
 
 def _if_turns(said: Said) -> Iterator[str]:
     side = _SIDE.search(said.rest)
-    if said.x and (side is None or " not " not in said.rest):
+    if said.x and (side is None or " not " in side[0] or " not " not in said.rest):
         yield f"does {said.x} turn" + (f" to the {side['side']}" if side else "")
 
 
@@ -238,7 +255,8 @@ def _offered(does: str, otherwise: Plain) -> Plain:
 
 
 _IN_THE_AIR = re.compile(
-    r"\b(?:on (?:its|their|the) way (?:down|to the (?:floor|ground))|falling|mid ?air|in the air|airborne)\b"
+    r"\b(?:on (?:its|their|the) way (?:down|to the (?:floor|ground))|falling|mid ?(?:air|flight|fall|drop)|"
+    r"in flight|in the air|airborne)\b"
 )
 _HOW_MANY = re.compile(r"\b(?:how many|(?:what|the) number of|count)\b")
 
@@ -275,7 +293,7 @@ def _visits(said: Said) -> Iterator[str]:
 
 def _long_open(said: Said) -> Iterator[str]:
     if said.x:
-        fully = _FULLY.search(f"{said.rest} {said.time} {said.off}") is not None
+        fully = STROKES.match(said.time) or _FULLY.search(f"{said.rest} {said.time} {said.off}")
         yield f"how long does {said.x} stay {'fully ' if fully else ''}open"
 
 
@@ -300,11 +318,8 @@ def _over(said: Said) -> Iterator[str]:
         yield f"does {said.x} {'pass' if passes else 'cross'} {said.y}"
 
 
-_ALL_OF = re.compile(r"^(?:all|both)(?P<count> (?:two|three|four|five|2|3|4|5))?(?: of)? (?:the |these |those )?")
-
-
 def _if_on(said: Said) -> Iterator[str]:
-    if (every := _ALL_OF.match(said.x)) is not None and said.y:
+    if (every := ALL_OF.match(said.x)) is not None and said.y:
         yield f"are all{every['count'] or ''} {said.x[every.end() :]} on {said.y}"
     else:
         yield from _about("is {x} on {y}")(said)
