@@ -120,6 +120,10 @@ NEAR = 0.03  # seconds
         ("when does the chair move?", None, ""),
         ("when does the cat jump?", None, ""),
         ("when does the book fall?", None, ""),
+        ("how many fall off the board altogether?", 2.0, ""),
+        ("turns per second of the clock?", 0.5, "turns/s"),
+        ("how long is it from when the ball stops to the end of the film?", 1.0, "s"),
+        ("by what second have both the books landed?", 2.4, "s"),
     ],
 )
 def test_numbers(session: Session, text: str, value: float | None, unit: str) -> None:
@@ -184,6 +188,8 @@ def test_numbers(session: Session, text: str, value: float | None, unit: str) ->
         ("who moves the ball?", None),
         ("does the sofa move?", None),
         ("does a cat ever sit on the chair?", None),
+        ("who turns off the clock?", None),
+        ("who stops the ball?", None),
     ],
 )
 def test_words(session: Session, text: str, value: str | tuple[str, ...] | None) -> None:
@@ -198,6 +204,10 @@ def test_answers_show_the_time_that_they_are_about(session: Session) -> None:
     now = said(session, "where is the ball?")
     assert "(This is at 0 s; the ball moves from 1 s to 3 s.)" in now.text
     assert said(session, "how wide is the chair?").text.endswith("wide.")
+    assert (
+        "the film ends at 4 s" in said(session, "how long is it from when the ball stops to the end of the film?").text
+    )
+    assert said(session, "what does the ball do?").text.endswith("; then it stands still.")
 
 
 def test_it_is_the_thing_that_was_asked_of(session: Session) -> None:

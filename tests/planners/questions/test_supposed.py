@@ -6,9 +6,12 @@ import pytest
 
 from scenewright.planners.grammar.tagging.words import bag
 from scenewright.planners.questions.reading.time.situated import situated
+from scenewright.planners.questions.reading.time.supposed.gaps import gap
 from scenewright.planners.questions.reading.time.supposed.kinds import kinds_of, marked_ways
+from scenewright.planners.questions.reading.time.supposed.likely import without_options
 from scenewright.planners.questions.reading.time.supposed.plainly import supposed
-from scenewright.planners.questions.reading.time.supposed.times import plain_time
+from scenewright.planners.questions.reading.time.supposed.said import Said
+from scenewright.planners.questions.reading.time.supposed.times import plain_time, times_of
 
 NAMES = bag("ball sofa rug lamp table wall floor door plant drawer fan book robot car bed shelf")
 
@@ -119,3 +122,99 @@ def test_what_is_felt_is_not_asked_about(text: str) -> None:
 )
 def test_a_question_is_put_into_its_time(text: str, plainly: str) -> None:
     assert situated(text) == plainly
+
+
+@pytest.mark.parametrize(
+    ("text", "plainly"),
+    [
+        ("top or middle or bottom, which drawer is the one that opens?", "which drawer is the one that opens ?"),
+        ("which drawer is operated: top, middle or bottom?", "which drawer is operated ?"),
+        (
+            "does the top or the bottom drawer open?",
+            "does the top or the bottom drawer open ?",
+        ),  # is no choice of which
+    ],
+)
+def test_ranks_to_choose_from_ask_which_one(text: str, plainly: str) -> None:
+    words = tuple(text.replace(",", " ,").replace("?", " ?").replace(":", " :").split())
+    assert " ".join(without_options(words)) == plainly
+
+
+@pytest.mark.parametrize(
+    ("kind", "said", "plainly"),
+    [
+        ("if_open", "once the clock 's hit 4.8", "at 4.8 s"),
+        ("if_moves", "when clock shows three seconds", "at three s"),
+        ("what_on", "by 3 s", "at 3 s"),
+        ("what_on", "by the time 3 seconds have passed", "at 3 seconds"),
+        ("where_at", "right about 1.8 seconds", "at 1.8 seconds"),
+        ("where_at", "when our story is over", "at the end"),
+        ("fast", "from departure until stop", ""),
+        ("fast", "between its departure and its arrival at the wall", ""),
+        ("long_moves", "from its first stirring to its last", ""),
+        ("long_open", "between the outward slide and the return", ""),
+        ("long_on", "till it drops off the far side", ""),
+        ("fast", "going out", "while it is opening"),
+        ("if_moves", "while the ball crosses the room", "while the ball moves"),
+    ],
+)
+def test_times_in_other_words(kind: str, said: str, plainly: str) -> None:
+    assert next(times_of(kind, (said,))) == plainly
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "plainly"),
+    [
+        ("the red one dropping off", "the green one following", "the red one falling and the green one falling"),
+        ("red starting down", "green starting down", "the red one falling and the green one falling"),
+        (
+            "first book leaving the shelf",
+            "until last one has landed",
+            "the first book starting and the last book landing",
+        ),
+        ("the book starting", "the ball stopping", "the book starting and the ball stopping"),
+    ],
+)
+def test_gaps_between_what_two_things_do(first: str, second: str, plainly: str) -> None:
+    said = Said("", "", f"{first} {second}", "", " how long is it between ", (first, second), names=NAMES)
+    assert next(gap(said)) == f"how much time is there between {plainly}"
+
+
+def test_a_pause_is_no_gap_between_two_beginnings() -> None:
+    said = Said(
+        "", "", "", "", " the pause between ", ("the fall of the green book", "that of the red one"), names=NAMES
+    )
+    assert not any("falling" in plain for plain in gap(said))
+
+
+@pytest.mark.parametrize(
+    ("text", "plainly"),
+    [
+        ("does the robot pivot to the left?", "does the robot turn to the left"),
+        ("the bench on the left, does it shift at all?", "does the left bench move"),
+        ("do all three of the books lie on the floor at 3 s?", "are all three books on the floor at 3 s"),
+        ("when does our small green wanderer set off?", "when does the green one start to move"),
+        ("which toy never budges?", "which toys do not move"),
+    ],
+)
+def test_names_sides_and_all_of_several(text: str, plainly: str) -> None:
+    assert supposed(text, NAMES | {"bench", "toy", "green"})[:1] == (plainly,)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "is anything apart from the ball in motion?",
+        "until what second does the door remain shut?",
+        "does the robot head over to the bed because he's sleepy?",
+        "what knocked those books off the shelf?",
+        "the door's swing as a fraction of a full turn?",
+    ],
+)
+def test_what_is_left_apart_or_caused_or_shared_is_not_put_plainly(text: str) -> None:
+    assert supposed(text, NAMES) == ()
+
+
+def test_a_word_that_may_tell_more_bars_a_question_only_strictly() -> None:
+    text = "I wonder, is the ball ever rolling?"
+    assert supposed(text, NAMES) and supposed(text, NAMES, strictly=True) == ()

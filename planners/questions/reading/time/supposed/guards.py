@@ -46,7 +46,7 @@ def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> b
     asks = not _ASKS.isdisjoint(rest) or sides or ASKS_WHEN.match(said.off)
     if not kind.startswith("if_") and not said.unit and said.first in _AUXILIARIES and not asks:
         return True  # "is the ball at its top speed then?" wants no number
-    if _NTH.search(said.time):
+    if _NTH.search(said.time) or _FROM_WHEN.search(plain):
         return True
     deeds = _TWO_DEEDS.search(said.barred)
     if deeds is not None and deeds["deed"] not in _OWN_DEEDS.get(kind, ()):
@@ -88,6 +88,7 @@ _FROM_TO = re.compile(r"\b(?:full|whole|entire|total)\b.*\bfrom \| to \|")
 _A_FULL_ONE = re.compile(r"\b(?:one|full|whole|complete)\b")
 _A_SHARE = re.compile(r"\b(?:fraction|share|part|percent\w*|portion)\b")
 _EACH_SECOND = re.compile(r" (?:per|a|each|every) (?:second|minute)(?= )")
+_FROM_WHEN = re.compile(r"\b(?:from|since|until|till|to) (?:when|the moment)\b")  # a time without a mark
 _UNTIL_WHEN = re.compile(r"\b(?:until|till|up to) (?:what|which|when)\b")
 _WHICH_PLACE = re.compile(
     r"\b(?:(?:up)?on|in|at|against|by|to|onto|over) (?:the )?(?:what|which) (?:(?:piece|bit|item|kind|sort) of )?"

@@ -167,7 +167,7 @@ _TELLING = bag(
 
 def _is_known(said: str, names: Collection[str]) -> bool:
     """Whether words name a thing of the scene, or one of which is known what it is."""
-    words = [singular(word) for word in said.split()]
+    words = [singular(word) for word in said.split() if not is_color_word(word)]
     return not words or said in PRONOUNS or any(w in names or kinds_of_things.find(w) is not None for w in words)
 
 

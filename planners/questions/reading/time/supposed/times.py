@@ -34,14 +34,13 @@ _IT_ENDS = (
     r"scene|shot|show|story|picture) "
     r"(?:ends?|concludes?|runs out|is (?:over|done|finished)|finish(?:es)?|stops|cuts out|closes)"
 )
+_END = r"(?:last frame|(?:very )?end|(?:film|clip|video|movie|footage|recording|scene|shot) 's end)"
 _LEFT = re.compile(
     r"\b(?:how (?:much|long|many)|what)\b.*\b(?:left|remain\w*|still to (?:come|go)|"
-    rf"{_IT_ENDS}|(?:to|until|till) the (?:last frame|(?:very )?end))\b|"
-    rf"\b(?:(?:to|until|till|and) the (?:last frame|(?:very )?end)\b|{_IT_ENDS}).*\bhow (?:much|long|many)\b"
+    rf"{_IT_ENDS}|(?:to|until|till) the {_END})\b|"
+    rf"\b(?:(?:to|until|till|and) the {_END}\b|{_IT_ENDS}).*\bhow (?:much|long|many)\b"
 )
-_TO_THE_END = re.compile(
-    rf"(?: ,)? (?:\w+ )?(?:(?:to|until|till|and) the (?:last frame|(?:very )?end)\b|{_IT_ENDS}).*$"
-)
+_TO_THE_END = re.compile(rf"(?: ,)? (?:\w+ )?(?:(?:to|until|till|and) the {_END}\b|{_IT_ENDS}).*$")
 _SHOWN = re.compile(
     r"\b(?:film|clip|video|movie|picture|footage|recording|shot|frames?|seconds?|air|screen|time|show|scene|end)\b"
 )
