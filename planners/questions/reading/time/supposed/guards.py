@@ -21,18 +21,25 @@ _HARD = (HARD - {"one"}) | bag("after before further until while backwards backw
 def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
     plain = _EACH_SECOND.sub(" ", _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub(" when ", said.rest)))
+    if kind.startswith("where_"):
+        plain = _WHICH_PLACE.sub(" where ", plain)
+    if _is_another(kind, said, plain):
+        return True
+    if kind.startswith("when_"):
+        plain = _THE_SECOND.sub(" when ", plain)
+    rest = plain.split()
+    return _wants_another(kind, said, rest) or _tells_more(kind, chance, rest, names)
+
+
+def _is_another(kind: str, said: Said, plain: str) -> bool:
+    """Whether words are those of a question that no kind asks: of a share, of some of several, of all but one."""
     if (kind == "when_turns" and _A_FULL_ONE.search(plain)) or (
         kind in ("far_turns", "far_opens") and _A_SHARE.search(plain)
     ):
         return True
-    if kind.startswith("when_"):
-        several = any(word in NUMBERS and word != "one" for word in said.x.split())
-        if _UNTIL_WHEN.search(plain) or (several and ALL_OF.match(said.x) is None):
-            return True  # "when have two books fallen"
-        plain = _THE_SECOND.sub(" when ", plain)
-    if kind.startswith("where_"):
-        plain = _WHICH_PLACE.sub(" where ", plain)
-    rest, allowed = plain.split(), _ALLOWED.get(kind, frozenset())
+    several = any(word in NUMBERS and word != "one" for word in said.x.split())
+    if kind.startswith("when_") and (_UNTIL_WHEN.search(plain) or (several and ALL_OF.match(said.x) is None)):
+        return True  # "when have two books fallen"
     if kind in ("what_moves", "what_still"):
         whose = said.x in _ANYTHING or is_kind(said.x) or " and " in said.x or _APART.search(said.rest) is not None
         if not whose or said.y:
@@ -42,16 +49,22 @@ def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> b
     whole_way = kind == "far" and _FROM_TO.search(said.barred) is not None
     if len(said.places) > 1 and kind != "visits" and not whole_way:
         return True
-    sides = kind == "turn_way" and not {"or", "left", "right"}.isdisjoint(rest)  # to one of them, or to which
-    asks = not _ASKS.isdisjoint(rest) or sides or ASKS_WHEN.match(said.off)
-    if not kind.startswith("if_") and not said.unit and said.first in _AUXILIARIES and not asks:
-        return True  # "is the ball at its top speed then?" wants no number
-    if _NTH.search(said.time) or _FROM_WHEN.search(plain):
-        return True
     deeds = _TWO_DEEDS.search(said.barred)
     if deeds is not None and deeds["deed"] not in _OWN_DEEDS.get(kind, ()):
         return True
-    told = [word for word in rest if word not in allowed]
+    return _NTH.search(said.time) is not None or _FROM_WHEN.search(plain) is not None
+
+
+def _wants_another(kind: str, said: Said, rest: list[str]) -> bool:
+    """Whether yes or no is wanted of what is no such question: "is the ball at its top speed then?"."""
+    sides = kind == "turn_way" and not {"or", "left", "right"}.isdisjoint(rest)  # to one of them, or to which
+    asks = not _ASKS.isdisjoint(rest) or sides or ASKS_WHEN.match(said.off) is not None
+    return not kind.startswith("if_") and not said.unit and said.first in _AUXILIARIES and not asks
+
+
+def _tells_more(kind: str, chance: float, rest: list[str], names: Collection[str]) -> bool:
+    """Whether one of the words denies, ranks, counts or names."""
+    told = [word for word in rest if word not in _ALLOWED.get(kind, frozenset())]
     if kind in _NEGATED or (chance < SURE and rest and rest[0] in _AUXILIARIES):  # "did it not move?"
         told = [word for word in told if word not in DENIED]
     if not DENIED.isdisjoint(told[1:]) or (kind not in _RANKED and (not _RANKS.isdisjoint(told) or "than" in told)):
@@ -135,5 +148,3 @@ _ALLOWED: Mapping[str, frozenset[str]] = {
     "what_still": bag("only else other"), "what_moves": bag("only else other"),
     "does": _ORDERS | bag("one another"), "how_many": bag("every each other"),
 }  # fmt: skip
-
-# -- one plain question for each kind ----------------------------------------------------------------------------------
