@@ -128,7 +128,7 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         first = goes_first(text)
         strictly = not first and found.answer.answer != ()
         surer = _read_as(supposed(text, names, LEAST if first else SURE, strictly), survey, timeline)
-        return found if surer is None or _same([found.answer, surer.answer]) is not None else surer
+        return found if surer is None or _agree(found.answer, surer.answer) else surer
     misread = found is None or found.answer.text.startswith(_MISREAD)
     for questions in _guesses(text, words, names, misread):
         if (guess := _read_as(questions, survey, timeline)) is not None:
@@ -137,6 +137,12 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         return found
     none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
     return Reading(none, sight=True)
+
+
+def _agree(one: Answer, other: Answer) -> bool:
+    """Whether two answers are one: "rug", and "on the rug"."""
+    a, b = one.answer, other.answer
+    return (isinstance(a, str) and isinstance(b, str) and (a in b or b in a)) or _same([one, other]) is not None
 
 
 def _as_said(text: str, words: Words, names: frozenset[str], survey: Survey, timeline: Timeline) -> Reading | None:

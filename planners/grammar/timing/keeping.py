@@ -40,7 +40,8 @@ _A_COMMAND = re.compile(  # "keep the sofa and remove everything else", "leave t
     r"(?!.*\b(?:as|same|still|unchanged|untouched|alone|otherwise|identical|like|usual|now)\b)"
 )
 _SUBJECTS = {  # what stays, and the words for it
-    "start": r"(?:step|head|mov|push)\w* off|start\w*|begin\w*|onset|setting off|sets? off|departure|leav(?:es|ing)|"
+    "start": r"(?:step|head|mov|push)\w* off|start\w*|begin\w*|onset|setting off|"
+    r"sets? off|depart\w*|embark\w*|leav(?:es|ing)|"
     r"kick\w*|set(?:ting)? out|"
     r"letting go|take ?off|(?:tips?|takes?|goes|go|heads?) off|comes? out|falls?|drops?|opens?|timings?|times|"
     r"schedule|moment|cue|entrance|slots?",
@@ -63,6 +64,7 @@ _STILL = re.compile(  # "..., but it should still stop at four seconds", "? It s
     r"(?:to )?(?:be (?:off|over|done|there)|(?:stop|start|begin|end|finish|kick|set|leav|arriv|cut|switch|tak)[a-z]*)"
     r"\b[^.;]*\.?$"
 )
+_AS_TOLD = 0.3  # seconds by which what is said to stay may differ from how it is now
 _NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?=$| (?!x\b|times|rpm|turns?|rounds?|rev|cm|m\b|deg|%))")
 _ITS_OWN = ("start", "stop")
 _OTHERS = re.compile(r"\b(?:others?|rest)\b")
@@ -157,9 +159,11 @@ def _held(op: Fields, kept: Kept, movement: MovementOf) -> tuple[Fields, ...]:
 
 
 def _faster(op: Fields, kept: Kept, moves: Movement | None, stop: float | None) -> Fields | None:
-    """Another speed, with the end that is to stay; None if the speed is to stay."""
+    """Another speed, with the end that is to stay; None if the speed is to stay, or a beginning that is another one."""
     if "speed" in kept.facts:
         return None
+    if moves is not None and kept.start is not None and abs(kept.start - moves.start) > _AS_TOLD:
+        return None  # "it still departs at 1.7 s", and departs at 0.5 s now
     if kept.facts >= set(_ITS_OWN):
         return op if moves is not None and moves.turns else None
     if "stop" not in kept.facts or moves is None or moves.turns or stop is None:

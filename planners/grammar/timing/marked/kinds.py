@@ -75,6 +75,18 @@ _HIDES = re.compile(
 _EVIDENCE = {kind: re.compile(rf"(?<!\S)(?:{words})(?!\S)") for kind, words in _BY_WORDS.items()}
 
 
+_UNSEEN = re.compile(
+    r"\b(?:nobody|no one|no-one) (?:\w+ )?(?:saw|sees?|to see)\b|\b(?:invisible|unseen|out of sight)\b|"
+    r"\bnot (?:to )?be seen\b",
+    re.IGNORECASE,
+)
+_TO_TAKE = re.compile(  # "the cart should take half a second", which is wished
+    r"\b(?:should|must|shall|has to|needs to|ought to|is to|are to|have to|let \w+(?: \w+)?) (?:only |just )?take "
+    r"(?:\w+ ){0,3}(?:seconds?|secs?|s)\b",
+    re.IGNORECASE,
+)
+
+
 def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
     """The kinds of wish that an instruction may be of, with probabilities, the likeliest first; none if it is likelier
     no such wish.
@@ -83,6 +95,12 @@ def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
         still: whether what it is about does not move by itself: it then asks for no other course of a motion.
     """
     known = list(told(TASK, tuple(word.text for word in split(said))).kinds)
+    chances = dict(known)
+    if _TO_TAKE.search(said) is not None:
+        chances["duration"] += chances.pop(NO_WISH)
+    if _UNSEEN.search(said) is not None:  # is asked of no course of a motion
+        chances["hide"] += sum(chances.pop(kind, 0.0) for kind in COURSES)
+    known = sorted(chances.items(), key=lambda own: -own[1])
     if still:
         rest = 1.0 - sum(chance for kind, chance in known if kind in COURSES)
         known = [(kind, chance / rest) for kind, chance in known if kind not in COURSES and chance >= LEAST]

@@ -47,10 +47,13 @@ def leaves_out(
 
 
 def _loses_colors(words: Sequence[str], ops: Sequence[Fields], shades: Set[int], spans: Sequence[Span]) -> bool:
-    """Whether a look is for a time, and another colour that is told stands nowhere: "red while it rolls, else blue"."""
+    """Whether a look is for a time, or things are put in order, and another colour that is told stands nowhere: "red
+    while it rolls, else blue"."""
+    held = set(re.findall(r"[a-z]+", str(ops)))
+    if any(op["op"] == "order" and op.get("first") for op in ops) and any(w in hues() and w not in held for w in words):
+        return True  # a thing that is named by its colour
     if not any(op["op"] == "recolor" and op.get("when") is not None for op in ops):
         return False
-    held = set(re.findall(r"[a-z]+", str(ops)))
     idle = {
         at for tag, start, stop in spans if tag == "off" and _DISLIKES.search(" ".join(words[start:stop]))
         for at in range(start, stop)

@@ -164,7 +164,7 @@ def together(slots: Slots) -> Iterator[Wanted]:
     slots.pass_goals()
     who = tuple(dict.fromkeys((*slots.queries, *others)))
     hasty = slots.moment.slowly or slots.moment.quickly or slots.tell(SLOWER) or slots.tell(_HASTE)
-    several = len(who) > 1 or who[0].pick != "one" or bool(who[0].also)
+    several = len(who) > 1 or who[0].pick in ("all", "any") or bool(who[0].also)
     if not hasty and several and (slots.happening is None or slots.happening.until is None):
         things = replace(slots, queries=who)
         yield Wanted(ordered(whose_of(things), "together"), plainly(slots.moment), slots.happening)

@@ -265,6 +265,17 @@ _REVISED = re.compile(r"\b(?:revise|change|raise|adjust|reduce|increase|lower|se
 _NOT_UNTIL = re.compile(r"\bnot (?:before|until|till) (?:the|my|a) \w+ \w+")
 
 
+def _with_another(span: Span, words: Sequence[str]) -> tuple[Span, ...]:
+    """The marks of a thing and of the one that it is to be like, of which one mark tells: "the middle drawer with the
+    top drawer"."""
+    tag, start, stop = span
+    said = list(words[start:stop])
+    at = start + said.index("with") if tag == "x" and "with" in said[1:-1] else None
+    if at is None or not is_opened(words[at - 1]) or not is_opened(words[stop - 1]):
+        return (span,)
+    return (tag, start, at), ("y", at + 1, stop)
+
+
 def asks_more(words: Sequence[str], tag: str) -> bool:
     """Whether words that seem to ask for nothing ask for more: "and the lamp should sing", "except in the mirror"."""
     said = " ".join(words)
@@ -298,6 +309,8 @@ def slots(
         return " ".join(words[span[1] : span[2]]).strip(_TRIM)
 
     spans = [_joined(span, words, kind) for span in sorted(spans, key=lambda span: span[1])]
+    if kind in ("open", "close", "together"):
+        spans = [own for span in spans for own in _with_another(span, words)]
     thing = with_colors(thing, words, spans)
     if kind == "amount":
         spans = [_as_amount(span, text(span)) for span in spans]

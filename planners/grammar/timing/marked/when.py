@@ -58,6 +58,7 @@ _PLAINER = (  # times in plainer words
     (re.compile(r"\bhas (?:taken|made|done) (?:its|his|her) (?:very )?last step$"), "has stopped"),
     (re.compile(rf"^(?:until|till|not (?:until|till|before)) (?={DURATION} (?:after|once|past|from) )"), ""),
     (re.compile(r"\b(?:couple(?: of)?) (?=seconds?\b)"), "two "),
+    (re.compile(r"^(?P<lead>(?:for|in|of|over|within|taking|lasting) )?second and a half\b"), r"\g<lead>1.5 seconds"),
     (
         re.compile(r"^(?P<lead>(?:by|until|till|before|at) the )(?P<rank>first|second|third|fourth|fifth)$"),
         r"\g<lead>\g<rank> second",
@@ -87,6 +88,7 @@ _ARRIVES = re.compile(
 )
 _ENDED = ("hide", "recolor", "pause", "halt")  # kinds that two times begin and end: "gone at 1 s, and back at 3 s"
 _A_NUMBER = re.compile(r"^(?:at|from|in) (?:t ?= ?|second )?\d")
+_BY_SO_MUCH = re.compile(rf"^by (?:another )?{DURATION}$")  # "shift it by one second" tells no time
 _ONLY = re.compile(r"^(?:right|only|just|exactly|precisely|immediately|directly|shortly|already|not) ")
 _JUST_BEFORE = re.compile(r"^(?:right |just |directly |immediately )*before ")
 _LIKEWISE = re.compile(
@@ -332,6 +334,8 @@ def _told(
         said: all of the words.
         happening: what happens at the time that is told so far.
     """
+    if tag == "from" and _BY_SO_MUCH.match(phrase):
+        return None
     if (likewise := _LIKEWISE.match(phrase)) is not None and (other := thing(likewise["who"])) is not None:
         if happening is not None:
             return None, _as_well(happening, other, tag, phrase)

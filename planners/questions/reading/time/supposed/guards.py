@@ -37,6 +37,8 @@ def _is_another(kind: str, said: Said, plain: str) -> bool:
         kind in ("far_turns", "far_opens") and _A_SHARE.search(plain)
     ):
         return True
+    if kind == "when_reaches" and _CROSSED.search(plain):
+        return True
     several = any(word in NUMBERS and word != "one" for word in said.x.split())
     if kind.startswith("when_") and (_UNTIL_WHEN.search(plain) or (several and ALL_OF.match(said.x) is None)):
         return True  # "when have two books fallen"
@@ -102,6 +104,7 @@ _A_FULL_ONE = re.compile(r"\b(?:one|full|whole|complete)\b")
 _A_SHARE = re.compile(r"\b(?:fraction|share|part|percent\w*|portion)\b")
 _EACH_SECOND = re.compile(r" (?:per|a|each|every) (?:second|minute)(?= )")
 _FROM_WHEN = re.compile(r"\b(?:from|since|until|till|to) (?:when|the moment)\b")  # a time without a mark
+_CROSSED = re.compile(r"\b(?:cross\w*|passed|past|through|over|across)\b")
 _UNTIL_WHEN = re.compile(r"\b(?:until|till|up to) (?:what|which|when)\b")
 _WHICH_PLACE = re.compile(
     r"\b(?:(?:up)?on|in|at|against|by|to|onto|over) (?:the )?(?:what|which) (?:(?:piece|bit|item|kind|sort) of )?"

@@ -36,8 +36,8 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
         kind = max(found, key=found.__getitem__)
     if kind == "none" and _COUNTS.search(said) and sorted(found, key=found.__getitem__)[-2] == "how_many":
         return "how_many", found["none"] + found["how_many"]  # of what stands still, too
-    if kind == "where_ends" and _WHERE_IS.match(said):
-        return "where_at", found[kind] + found["where_at"]
+    if kind in _WHERES and _WHERE_IS.match(said):
+        return "where_at", sum(found[own] for own in _WHERES)
     if kind in ("fast", "fast_most"):
         return ("fast_most" if _GREATEST.search(said) else "fast"), found["fast"] + found["fast_most"]
     return kind, found[kind]
@@ -97,6 +97,7 @@ _FILM = re.compile(
 )
 
 
+_WHERES = ("where_at", "where_ends", "where_starts")
 _WHERE_IS = re.compile(r"^where (?:is|are|was|were) ")
 _IS_SHUT = re.compile(r"\bis (?:the|that|my|our|every)\w*\b.*\b(?:shut|closed)\b")
 
