@@ -247,12 +247,12 @@ class Judge:
     def _loses(self, ops: Sequence[Fields], wording: Sequence[str], held: Slots) -> bool:
         """Whether operations leave out what an instruction tells, and does not tell twice or of how it is now: only
         where they seem to, the scene is asked how that is."""
-        if not leaves_out(wording, ops, spans=held.spans, timed=False):
+        if not leaves_out(wording, ops, spans=held.spans):
             return False
         moves = self._moves_how(ALL_MOVING)
         end = math.inf if moves is None else moves.end
         free = held.said_twice(self._facts(held), end)
-        return leaves_out(wording, ops, free, held.spans, timed=False, shades=set(self._own_colors(held)))
+        return leaves_out(wording, ops, free, held.spans, shades=set(self._own_colors(held)))
 
     def _own_colors(self, held: Slots) -> Iterator[int]:
         """Where colours stand that the thing of an instruction has now, in words about what is not wanted, what stays,

@@ -16,8 +16,12 @@ from ...vocabulary.quantities import NUMBERS
 from ..command import Fields
 from ..moments import TIMED
 from .kinds import marked
+from .times import TIMES
 
 CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too|now|currently|presently)\b")
+
+
+_DENIED = re.compile(r"\b(?:not|no|instead|than|never|without)\b")
 
 
 def leaves_out(
@@ -43,15 +47,22 @@ def leaves_out(
         return True
     said = " ".join(words)
     counts = not timed or TIMED.search(said) is not None or _A_SECOND.search(said) is not None
-    return counts and _loses_numbers(words, ops, free, spans)
+    if not counts:  # only numbers of times: "by four and a half"
+        times = {at for tag, start, stop in spans if tag in TIMES for at in range(start, stop)}
+        free = free | (set(range(len(words))) - times)
+    return _loses_numbers(words, ops, free, spans)
 
 
 def _loses_colors(words: Sequence[str], ops: Sequence[Fields], shades: Set[int], spans: Sequence[Span]) -> bool:
     """Whether a look is for a time, or things are put in order, and another colour that is told stands nowhere: "red
     while it rolls, else blue"."""
     held = set(re.findall(r"[a-z]+", str(ops)))
-    if any(op["op"] == "order" and op.get("first") for op in ops) and any(w in hues() and w not in held for w in words):
-        return True  # a thing that is named by its colour
+    if any(op["op"] == "order" and op.get("first") for op in ops):  # of things that are named by their colours
+        idle = {
+            at for tag, start, stop in spans if tag != "not" or _DENIED.search(" ".join(words[start:stop]))
+            for at in range(start, stop)
+        }  # fmt: skip
+        return any(word in hues() and word not in held for at, word in enumerate(words) if at not in idle)
     if not any(op["op"] == "recolor" and op.get("when") is not None for op in ops):
         return False
     idle = {
