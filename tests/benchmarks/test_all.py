@@ -204,6 +204,7 @@ def test_the_page_has_each_chart_table_and_failure(tmp_path: Path) -> None:
         assert Result.from_json((tmp_path / f"{name}.json").read_text()).name == name
 
 
+@pytest.mark.slow
 def test_the_command_writes_the_page_and_tells_what_is_worse(
     tmp_path: Path, processes: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -117,6 +117,7 @@ def test_only_what_is_nowhere_is_absent(room: Table) -> None:
     assert names and names.isdisjoint({"sofa", "loveseat", "armchair", "table", "chair", "vase", "floor lamp"})
 
 
+@pytest.mark.slow
 def test_the_same_seed_asks_the_same(room: Table) -> None:
     first, again = (questions([room, replace(room, name="again", seed=2)], VOCABULARY, 60) for _ in range(2))
     assert first == again

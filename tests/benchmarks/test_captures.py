@@ -118,6 +118,7 @@ def test_the_best_union_of_rows_is_found_as_by_trying_all() -> None:
     assert case.best_union(truth) == pytest.approx(max(every))
 
 
+@pytest.mark.slow
 def test_a_composed_room_loses_its_table_and_nothing_else() -> None:
     true, blind = composed.composed_room("closet", 7200)
     assert blind.scene.language is None and bool((blind.scene.cloud.group == -1).all())

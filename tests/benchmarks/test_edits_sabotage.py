@@ -75,6 +75,7 @@ def outcome_of(room: tuple[Scene, dict[str, int], Context], data: dict[str, Any]
 
 
 @pytest.mark.parametrize("data", spread(HONEST, 2), ids=lambda d: " ".join(map(str, d.values()))[:30])
+@pytest.mark.slow
 def test_honest_edits_pass_and_spoilt_ones_are_refused(
     room: tuple[Scene, dict[str, int], Context], data: dict[str, Any]
 ) -> None:

@@ -11,6 +11,7 @@ from scenewright.gaussians import harmonics
 from scenewright.gaussians.rotations import to_matrix
 
 
+@pytest.mark.slow
 def test_every_format_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bench, "folder", lambda name: None)
     monkeypatch.setattr(bench, "QUICK_GLOSSY", 600)

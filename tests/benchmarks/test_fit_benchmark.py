@@ -98,6 +98,7 @@ def test_the_plain_recipe_moves_higher_bands_at_the_published_rate() -> None:
     assert float(moved.max()) == pytest.approx(2.5e-3 / 20, rel=1e-3)  # Adam's first step is as long as its rate
 
 
+@pytest.mark.slow
 def test_quick_compares_the_default_with_classic_growth_and_the_plain_recipe() -> None:
     result = fit.run(quick=True)
     found = {metric.key: metric for metric in result.metrics}
@@ -127,6 +128,7 @@ def test_all_settings_of_the_hour_are_told_apart() -> None:
     assert {name for pair in fit.COMPARED for name in pair} | set(fit.GOALS) <= {run.name for run in runs}
 
 
+@pytest.mark.slow
 def test_quick_sizes_tell_what_every_degree_takes() -> None:
     result = fit_sizes.run(quick=True)
     found = {metric.key: metric.value for metric in result.metrics}

@@ -124,6 +124,7 @@ def test_a_curve_is_drawn_with_its_end(tmp_path: Path) -> None:
     assert _chart.shown(Result("", "", (), curve)) == curve
 
 
+@pytest.mark.slow
 def test_a_chart_is_the_same_every_time(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     wide = Result("t", "dB", (), tuple(Point("m", f"{i}", 1.0 + i, float(i), 10**i) for i in range(3)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from scenewright.benchmarks._motion.marks_read import _is_read, _room, marked_words
 from scenewright.training.wording import Sentence
 
@@ -17,6 +19,7 @@ def test_marks_stand_at_the_words_that_planners_read() -> None:
     assert _room(words) == "fan" and _room(["nothing", "of", "ours"]) is None
 
 
+@pytest.mark.slow
 def test_a_plan_is_made_of_what_marks_hold_or_not_at_all() -> None:
     for room, kind, marked, read in (
         ("fan", "hide", "Hide [x the vase] [in from 1 to 2 s].", True),

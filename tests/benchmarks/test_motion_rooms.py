@@ -72,6 +72,7 @@ def test_a_film_of_a_furnished_room_shows_two_things_that_move():
     assert frame.mask.any() and frame.photo.any()
 
 
+@pytest.mark.slow
 def test_gaussians_belong_to_what_they_show_and_no_longer_when_they_stay_behind():
     made = films.film("ball", "4", (64, 48), fps=1.0, detail=0.15)
     things = np.full(len(made.scene.cloud), -1, np.int32)
@@ -91,6 +92,7 @@ def test_gaussians_belong_to_what_they_show_and_no_longer_when_they_stay_behind(
     assert 0.3 < half.assigned < 0.7
 
 
+@pytest.mark.slow
 def test_what_moves_is_counted_by_when_it_begins() -> None:
     session = Session(rooms.moving_room("books", 0.1))
     books = [g.id for g in session.scene.language.groups if "book" in g.label.split()]  # from left to right

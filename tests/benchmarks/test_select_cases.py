@@ -170,6 +170,7 @@ def test_attribute_rooms_hold_pairs_that_differ_in_what_is_asked() -> None:
             assert (own.color,) == one.query.colors and others[0].color != own.color
 
 
+@pytest.mark.slow
 def test_swapped_rooms_hold_the_same_things_in_each_others_colours() -> None:
     (first, asked), (second, asked_again) = pairs.swap_rooms(8011)
     assert [o.kind for o in first.objects] == [o.kind for o in second.objects]

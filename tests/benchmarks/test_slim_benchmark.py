@@ -22,6 +22,7 @@ def case() -> bench.Case:
     return bench.Case("balls", whole, prepare(whole, RING, SIZE), encoder)
 
 
+@pytest.mark.slow
 def test_every_setting_is_measured_and_the_stronger_promise_takes_more_bytes(
     case: bench.Case, monkeypatch: pytest.MonkeyPatch
 ) -> None:

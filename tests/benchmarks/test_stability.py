@@ -84,6 +84,7 @@ def test_a_row_without_levels_or_with_a_figure_that_is_none_is_refused() -> None
 # -- disturbances ---------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_every_disturbance_makes_another_scene_whose_truth_is_aligned(room: Case) -> None:
     for one in scenes.disturbances(0.05):
         label, spoil = one.levels[-1]

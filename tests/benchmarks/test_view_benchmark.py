@@ -10,6 +10,7 @@ from scenewright.benchmarks import view
 from scenewright.benchmarks._view import browser, faults, levels, words
 
 
+@pytest.mark.slow
 def test_without_a_browser_the_rest_is_measured_and_what_was_left_out_is_told(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

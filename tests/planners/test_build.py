@@ -100,6 +100,7 @@ def test_things_stay_in_their_boxes() -> None:
         assert (np.abs(local) <= np.array(group.box.size) / 2 + 2e-3).all(), group.label  # float32 and millimetres
 
 
+@pytest.mark.slow
 def test_the_same_arguments_give_the_same_bytes() -> None:
     first, again = (build(study(), seed=5, detail=DRAFT) for _ in range(2))
     assert first.cloud.digest() == again.cloud.digest()
@@ -224,6 +225,7 @@ def test_a_face_is_found_by_its_height() -> None:
 # --- edits -----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_edits_work_on_a_built_scene_at_once() -> None:
     session = Session(built().scene, planner="grammar")
     assert session.do("make the armchair teal").receipts
@@ -263,6 +265,7 @@ def _folder(path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_folder_gives_what_its_files_captions_and_tags_name(tmp_path: Path) -> None:
     size = [0.4, 0.3, 0.6]
     rows = [

@@ -76,6 +76,7 @@ class Blind:
 
 
 @pytest.mark.parametrize("first", spread(range(3), 3))
+@pytest.mark.slow
 def test_where_the_grammar_answers_nobody_else_is_asked(first: int) -> None:
     for case in _written.cases()[first::3]:
         alone = GRAMMAR.plan(case["text"], previous=case.get("context"))

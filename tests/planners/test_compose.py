@@ -116,6 +116,7 @@ def test_a_small_thing_alone_gets_something_to_stand_on() -> None:
     assert any("desk" in r for r in made.remarks)
 
 
+@pytest.mark.slow
 def test_things_that_stand_on_each_other_are_told_and_do_no_harm() -> None:
     made = compose("a room with a table on a chair and the chair on the table")
     assert check(made.layout.graph).ok
@@ -283,6 +284,7 @@ def test_a_circle_is_round_and_looks_at_its_middle() -> None:
         assert (math.sin(turn) * dx - math.cos(turn) * dy) / far > 0.99
 
 
+@pytest.mark.slow
 def test_either_side_is_both_sides() -> None:
     text = "a bedroom with a double bed, a nightstand on either side of it and a lamp on each nightstand"
     (bed,), stands = boxes(text, "bed"), boxes(text, "nightstand")
@@ -314,6 +316,7 @@ def test_a_named_corner_is_that_corner() -> None:
     assert min(piano.position[1], harp.position[1]) > 0.2 * graph.room.size[1]
 
 
+@pytest.mark.slow
 def test_a_stand_grows_for_its_television_and_a_tier_for_its_buckets() -> None:
     (television,), (stand,) = (boxes("a den with a huge tv on a tiny tv stand", n) for n in ("television", "tv stand"))
     assert television.size[0] <= stand.size[0]

@@ -65,6 +65,7 @@ def test_names_of_things_stay(text: str) -> None:
     assert len(read(text).things) == 2
 
 
+@pytest.mark.slow
 def test_things_and_styles_have_materials() -> None:
     brief = read("a rustic kitchen with an oak table and a workbench of plywood")
     graph = compose(brief, seed=1).layout.graph
@@ -91,6 +92,7 @@ def lightness_and_hue(scene: Scene, label: str) -> torch.Tensor:
     return rgb_to_lab(dc_to_color(scene.cloud.sh[rows, 0]).clamp(0, 1).double()).mean(dim=0)
 
 
+@pytest.mark.slow
 def test_materials_become_pixels_and_the_room_stays_the_same() -> None:
     graph = SceneGraph.model_validate(
         {"room": {"size": [4, 3, 2.5]}, "nodes": [
@@ -119,6 +121,7 @@ def test_words_that_name_no_material_are_told() -> None:
     assert "“something nice” is no material or colour" in " ".join(construct(graph, seed=1).notes)
 
 
+@pytest.mark.slow
 def test_a_style_dresses_what_it_has_materials_for_and_says_so() -> None:
     graph = SceneGraph.model_validate(
         {"room": {"size": [3, 3, 2.5]}, "nodes": [

@@ -73,6 +73,7 @@ def problems(draw: st.DrawFn) -> Problem:
 
 @settings(max_examples=some(60), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(problems(), st.integers(0, 3))
+@pytest.mark.slow
 def test_what_is_returned_is_sound_and_all_is_accounted_for(problem: Problem, seed: int) -> None:
     layout = solve(problem, seed, effort=0.3)
     assert not unsound(layout)
@@ -90,6 +91,7 @@ def test_what_is_returned_is_sound_and_all_is_accounted_for(problem: Problem, se
 
 @settings(max_examples=some(15), deadline=None)
 @given(problems())
+@pytest.mark.slow
 def test_the_same_problem_and_seed_give_the_same_layout(problem: Problem) -> None:
     assert without_time(solve(problem, 5, effort=0.3)) == without_time(solve(problem, 5, effort=0.3))
 

@@ -7,6 +7,8 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from scenewright.gaussians.world.finishes import described
 from scenewright.gaussians.world.words import singular
 from scenewright.planners.grammar.planner import GrammarPlanner
@@ -61,6 +63,7 @@ def outcome(case: dict[str, Any]) -> str:
     return "unanswered" if left else "right"
 
 
+@pytest.mark.slow
 def test_words_of_people_for_looks() -> None:
     found = Counter((case["group"], outcome(case)) for case in CASES)
     groups = Counter(case["group"] for case in CASES)

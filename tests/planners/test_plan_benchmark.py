@@ -62,6 +62,7 @@ def test_missing_set_is_told(tmp_path: Path) -> None:
         bench.cases(tmp_path / "none.jsonl")
 
 
+@pytest.mark.slow
 def test_spoiled_plans_are_wrong_and_are_not_carried_out() -> None:
     right = _spoiled.right_plans()
     assert len(right) > 500 and all(not one.how for one in right)

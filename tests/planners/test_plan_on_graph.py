@@ -38,6 +38,7 @@ def test_the_written_set_is_large_varied_and_halved() -> None:
         assert known >= {str(i) for i in meant}, case["id"]
 
 
+@pytest.mark.slow
 def test_every_sentence_of_the_half_to_look_at() -> None:
     judged = _written.measure(PLANNER, [c for c in _written.cases() if not _written.is_held(c)])
     wrong = [(j.case["text"], j.told) for j in judged if j.outcome == "wrong_edit"]
@@ -45,6 +46,7 @@ def test_every_sentence_of_the_half_to_look_at() -> None:
     assert _written.share(judged, "right") >= 0.97
 
 
+@pytest.mark.slow
 def test_the_half_held_back_in_totals() -> None:
     judged = _written.measure(PLANNER, [c for c in _written.cases() if _written.is_held(c)])
     assert _written.right_of_answered(judged) >= 0.9

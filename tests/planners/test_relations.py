@@ -123,6 +123,7 @@ def random_box(rng: np.random.Generator) -> YawBox:
     return YawBox(x, y, low, *rng.uniform(0.1, 1.5, 3), float(rng.choice([0.0, 90.0, 180.0, -90.0])))
 
 
+@pytest.mark.slow
 def test_wishes_are_kept_where_the_geometry_says_so_clearly() -> None:
     rng, seen = np.random.default_rng(7), Counter[str]()
     for k in range(1200):

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
-ALL, SHARE = 100, 0.3  # hypothesis' own number of examples, and the share of the default run
+ALL, SHARE = 100, 0.2  # hypothesis' own number of examples, and the share of the default run
 
 
 def some(count: int) -> int:

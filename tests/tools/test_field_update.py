@@ -95,6 +95,7 @@ def assert_seen(scene: Scene, viewer: Camera) -> None:
 
 
 @pytest.mark.parametrize("seed", spread(range(6), 3))
+@pytest.mark.slow
 def test_a_row_of_random_edits_keeps_the_table_true(corner: Scene, context: Context, viewer: Camera, seed: int) -> None:
     scene = with_parts(corner, (0, 1))
     assert_true(scene)

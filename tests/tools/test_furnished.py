@@ -302,6 +302,7 @@ def test_a_receipt_survives_json_and_a_preview_changes_nothing(corner: Scene, co
     assert corner.cloud.digest() == digest
 
 
+@pytest.mark.slow
 def test_pixels_change_only_within_the_silhouette(corner: Scene, context: Context) -> None:
     looking = replace(context, pixel_checks=True, pixel_width=96, renderer="reference")
     for op, fields in (("delete", {}), ("recolor", {"color": "yellow"}), ("move", {"direction": "left"})):

@@ -45,6 +45,7 @@ def pictures(filmed: Scene) -> list[Render]:
 
 
 @pytest.mark.parametrize("fields", MAPS, ids=str)
+@pytest.mark.slow
 def test_the_scenes_cameras_see_the_same_picture(
     fields: dict[str, Any], filmed: Scene, pictures: list[Render], context: Context
 ) -> None:

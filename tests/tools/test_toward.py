@@ -44,6 +44,7 @@ def session() -> Session:
     return Session(rooms.moving_room("drawer", 0.3))
 
 
+@pytest.mark.slow
 def test_the_wardrobe_comes_as_near_to_the_bed_as_it_can(session: Session) -> None:
     session.do("move the wardrobe to the bed in 2 seconds")
     assert session.scene.motion is not None and session.scene.language is not None

@@ -30,6 +30,7 @@ def quick(true: tuple[Any, Any], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fitted_rooms, "known_room", lambda recipe: true)
 
 
+@pytest.mark.slow
 def test_objects_are_carried_over_to_the_same_place_and_not_far_away(true: tuple[Any, Any]) -> None:
     scene, objects = true
     assert (carried_over(scene, objects, scene) == objects).mean() > 0.999  # Gaussians at one place may swap objects
@@ -68,6 +69,7 @@ def test_recipes_have_names_of_their_own_and_no_held_out_room_trains() -> None:
     assert not {(r.room, r.seed) for r in ROOMS} & {(r.room, r.seed) for r in HELD_OUT}
 
 
+@pytest.mark.slow
 def test_composed_rooms_count_parts_as_their_object_and_hide_their_field() -> None:
     scene, objects = composed_room("closet", 1)
     assert scene.language is None and (scene.cloud.group == -1).all() and len(objects) == len(scene.cloud)

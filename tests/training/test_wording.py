@@ -34,6 +34,7 @@ def test_marks_stand_in_the_words() -> None:
     assert sentence.spans == (("off", 0, 2), ("x", 3, 6), ("from", 7, 10))
 
 
+@pytest.mark.slow
 def test_what_is_learned_tells_the_kinds_and_marks_of_new_sentences() -> None:
     model = networks(TASKS, passes=20, count=1)
     words = [
@@ -44,6 +45,7 @@ def test_what_is_learned_tells_the_kinds_and_marks_of_new_sentences() -> None:
     assert model.told("wishes", words[1]).spans == (("x", 1, 4), ("t", 4, 9))
 
 
+@pytest.mark.slow
 def test_the_same_sentences_give_the_same_weights() -> None:
     made = (networks(TASKS, passes=2).members for _ in range(2))
     for one, other in zip(*made, strict=True):
@@ -56,6 +58,7 @@ def test_each_of_them_begins_elsewhere() -> None:
     assert not np.array_equal(one.weights["rows.words"], other.weights["rows.words"])
 
 
+@pytest.mark.slow
 def test_writers_are_told_by_what_others_wrote() -> None:
     left, held = without(TASKS, {"wishes": ["2"]})
     told = told_of(networks(left, passes=20, count=1), "wishes", held["wishes"])
@@ -64,6 +67,7 @@ def test_writers_are_told_by_what_others_wrote() -> None:
 
 
 @pytest.mark.parametrize("path", FILES.values())
+@pytest.mark.slow
 def test_every_sentence_has_its_marks_in_its_words(path: Path) -> None:
     known = sentences(path)
     for sentence in known:
@@ -73,6 +77,7 @@ def test_every_sentence_has_its_marks_in_its_words(path: Path) -> None:
 
 
 @pytest.mark.parametrize("task", FILES)
+@pytest.mark.slow
 def test_the_weights_are_those_of_the_sentences(task: str) -> None:
     """Every sixtieth is asked; all are learned from."""
     told = told_of(kept(), task, sentences(FILES[task])[::60])

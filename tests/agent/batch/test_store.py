@@ -104,6 +104,7 @@ def _complete(fs: Any, root: str, jobs: list[Job]) -> None:
     assert all(there[name] == size for name, size in named.items()) and len(named) == len(jobs)
 
 
+@pytest.mark.slow
 def test_scenes_and_results_by_url(memory: Any, stool: bytes, tmp_path: Path) -> None:
     memory.pipe_file("/in/stool.ply", stool)
     jobs = _jobs("memory://in/stool.ply", 3)
@@ -176,6 +177,7 @@ def test_results_that_do_not_arrive_do_not_count(memory: Any, stool: bytes) -> N
     assert totals.failed == 1 and "did not arrive" in totals.receipts[0]["messages"]
 
 
+@pytest.mark.slow
 def test_a_store_that_fails_now_and_then_costs_repetitions_and_no_result(
     memory: Any, stool: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -206,6 +208,7 @@ def test_two_batches_do_not_share_a_store(memory: Any) -> None:
     assert not memory.exists("/out/batch/lock.json")
 
 
+@pytest.mark.slow
 def test_the_lock_of_a_dead_batch_is_taken_over_and_that_of_a_live_one_elsewhere_is_not(
     memory: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -40,6 +40,7 @@ def test_every_verb_refuses_what_is_no_effort(call: Any, tmp_path: Path, verb: s
     assert code == 2 and "fast, balanced, accurate or a number of seconds" in err
 
 
+@pytest.mark.slow
 def test_compose_searches_as_long_as_was_said(call: Any, tmp_path: Path) -> None:
     for effort, setting in (("fast", "search effort 0.2"), ("accurate", "search effort 2"), ("60", "search effort 2")):
         code, out, err = call("compose", "a room with a chair", "--effort", effort, "--json")
@@ -72,6 +73,7 @@ def test_filling_is_chosen_by_an_edit_that_reveals_something(call: Any, room: Pa
 SLIM = ("--psnr", 30, "--pixels", 64, "--json", "--effort", "fast")
 
 
+@pytest.mark.slow
 def test_slim_has_one_point(call: Any, room: Path, tmp_path: Path) -> None:
     code, out, err = call("slim", room, "-o", tmp_path / "a.sog", *SLIM)
     assert code == 0, err

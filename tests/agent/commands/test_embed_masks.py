@@ -39,6 +39,7 @@ def files(boxes: Scene, tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_masks_name_what_text_vectors_then_find(files: Path, call: Any) -> None:
     spec = f"vectors:{files / 'text.npy'},{files / 'names.json'}"
     masks, capture = f"folder:{files / 'masks'}", files / "transforms.json"

@@ -41,6 +41,7 @@ def film(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_film_in_which_nothing_moves_is_fitted_as_photographs(call: Any, film: Path) -> None:
     answer = call("fit", film, "-o", film / "a.ply", "--steps", "20", "--sh-degree", "1", "--json")
     assert answer.code == 0, answer.err

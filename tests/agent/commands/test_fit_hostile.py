@@ -408,6 +408,7 @@ def test_a_folder_in_the_outputs_place_is_refused_even_by_force(call: Call, tmp_
     assert code == 2 and "is a folder" in said
 
 
+@pytest.mark.slow
 def test_a_disk_that_is_full_in_the_end_costs_no_training(
     call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -332,6 +332,7 @@ def command(call: Any) -> Any:
     return run
 
 
+@pytest.mark.slow
 def test_edit_and_plan_tell_of_the_model(room: Path, fake: list[Fake], command: Any, tmp_path: Path) -> None:
     spec = ("--planner", f"auto:{SPEC}", "--budget", "9s,1usd", "--picture")
     code, out, err = command("edit", room, HARD, "-o", tmp_path / "out.ply", *spec)

@@ -141,6 +141,7 @@ def test_a_broken_source_is_a_file_error(render: Any, tmp_path: Path) -> None:
     assert not (tmp_path / "a.gif").exists()
 
 
+@pytest.mark.slow
 def test_nothing_is_overwritten_unasked(render: Any, tmp_path: Path) -> None:
     small = ("--orbit", 2, "--size", "8x8")
     for output in (tmp_path / "a.gif", tmp_path / "film"):

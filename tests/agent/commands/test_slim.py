@@ -26,6 +26,7 @@ def room(boxes: Scene, tmp_path: Path) -> Path:
     return tmp_path / "room.ply"
 
 
+@pytest.mark.slow
 def test_the_file_its_field_and_the_map_of_ids(call: Any, room: Path, tmp_path: Path) -> None:
     small, ids = tmp_path / "small.sog", tmp_path / "ids.npy"
     code, out, err = call("slim", room, "-o", small, "--psnr", 30, "--ids", ids, *SMALL, "--json")

@@ -28,6 +28,7 @@ def folder(call: Any, room: Path, tmp_path: Path) -> Path:
     return tmp_path / "boxes.tiles"
 
 
+@pytest.mark.slow
 def test_a_folder_of_tiles_is_told_selected_from_drawn_and_converted(
     call: Any, room: Path, folder: Path, tmp_path: Path
 ) -> None:
@@ -93,6 +94,7 @@ def test_what_does_not_fit_together_is_told(
     assert answer.code == 2 and said in answer.err
 
 
+@pytest.mark.slow
 def test_what_needs_all_of_a_scene_that_does_not_fit_says_what_to_do(
     call: Any, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

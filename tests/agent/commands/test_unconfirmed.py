@@ -23,6 +23,7 @@ def test_without_a_terminal_an_edit_is_refused_and_says_how_to_go_on(
     assert data.code == 3 and data.data["verdict"] == "unconfirmed" and data.data["candidates"][0]["group"] == 1
 
 
+@pytest.mark.slow
 def test_yes_goes_on_with_what_was_chosen(call: Any, gizmo_room: Path, tmp_path: Path) -> None:
     answer = call("edit", gizmo_room, ORDER, "-o", tmp_path / "o.ply", "--yes", "--log", tmp_path / "log.jsonl")
     assert answer.code == 0, answer.err

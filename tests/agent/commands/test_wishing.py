@@ -44,6 +44,7 @@ def living() -> Scene:
         "arrange the chairs in a circle",
     ],
 )
+@pytest.mark.slow
 def test_a_wish_is_carried_out_with_every_check_and_undone(living: Scene, wish: str) -> None:
     plan = WishPlanner().plan(wish, observation=Looking(living))
     assert plan.ok and len(plan.ops) >= 2, plan.reason

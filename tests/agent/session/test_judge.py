@@ -63,6 +63,7 @@ def test_nothing_is_judged_unless_asked(boxes: Scene, encoder: Any) -> None:
 
 
 @pytest.mark.parametrize("text", ["delete the green thing", "move the green thing 90 cm to the left"])
+@pytest.mark.slow
 def test_a_residue_is_repaired_to_the_last_gaussian(torn: Scene, encoder: Any, text: str) -> None:
     session = Session(torn, encoder=encoder, viewer=torn.cameras[0], judge="built-in")
     result = session.do(text)

@@ -85,6 +85,7 @@ def test_a_bad_verdict_takes_the_edit_back(boxes: Scene, encoder: Any, fault: di
     assert session.scene is boxes and check in str(told.value)
 
 
+@pytest.mark.slow
 def test_an_insertion_that_looks_wrong_is_made_anew(boxes: Scene, encoder: Any) -> None:
     session, model = judged(boxes, encoder, says(looks_right=False, reason="It floats."), says())
     judgement = session.do("add a stool").receipts[0].judged
@@ -100,6 +101,7 @@ def test_a_model_that_is_no_help_leaves_the_measured_verdict(boxes: Scene, encod
     assert any("the vision model was no help" in note for note in receipt.notes)
 
 
+@pytest.mark.slow
 def test_a_compound_instruction_is_seen_once_as_a_whole(boxes: Scene, encoder: Any) -> None:
     session, model = judged(boxes, encoder, says())
     receipts = session.do(f"{TEXT} and delete the blue thing").receipts

@@ -84,6 +84,7 @@ def test_without_groups_all_objects_are_numbered(looker: SceneLooker) -> None:
     assert all(set(v.visible) == {RED, BLUE} for v in views)
 
 
+@pytest.mark.slow
 def test_the_next_overview_is_a_new_view(looker: SceneLooker) -> None:
     names = [v.name for v in looker.overview([RED, BLUE], 1)]
     while (view := looker.look("overview")) is not None and len(names) < 20:

@@ -34,6 +34,7 @@ def asked(session: Session, text: str) -> Any:
     return session.question
 
 
+@pytest.mark.slow
 def test_an_unknown_word_is_offered_what_the_views_show_the_most_visible_first(session: Session, room: Scene) -> None:
     question = asked(session, STRANGE)
     scores = [c.score for c in question.candidates]
@@ -43,6 +44,7 @@ def test_an_unknown_word_is_offered_what_the_views_show_the_most_visible_first(s
     assert len({c.group for c in question.candidates}) == len(scores)
 
 
+@pytest.mark.slow
 def test_an_answer_edits_exactly_what_was_chosen_and_its_name_is_known_from_then_on(session: Session) -> None:
     question = asked(session, STRANGE.replace("delete", "raise") + " by 10 cm")
     chosen = question.candidates[1].group
@@ -51,6 +53,7 @@ def test_an_answer_edits_exactly_what_was_chosen_and_its_name_is_known_from_then
     assert session.do("make the flumbergast red").selection.groups == (chosen,)  # type: ignore[union-attr]
 
 
+@pytest.mark.slow
 def test_pieces_that_are_chosen_together_are_one_thing(session: Session) -> None:
     asked(session, STRANGE)
     assert session.question is not None

@@ -50,6 +50,7 @@ def test_a_size_that_is_none_of_its_kind_is_read_in_another_unit(boxes: Scene, e
     assert any("scaled by 0.0" in said and "usual size of a chair" in said for said in result.sentences())
 
 
+@pytest.mark.slow
 def test_it_replaces_and_takes_a_colour(boxes: Scene, encoder: Any, folder: Path) -> None:
     session = Session(boxes, encoder=encoder, assets=folder)
     session.do("replace the green thing with a red gargoyle")

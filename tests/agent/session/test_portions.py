@@ -87,6 +87,7 @@ def test_without_a_number_a_portion_is_of_the_one_thing_that_is_asked_about() ->
     assert found is not None and found.places == (0,)
 
 
+@pytest.mark.slow
 def test_a_side_is_edited_alone_and_keeps_the_name(session: Session, room: Scene) -> None:
     assert session.question is not None and room.language is not None
     chosen = session.question.candidates[1].group

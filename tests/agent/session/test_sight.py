@@ -48,6 +48,7 @@ def test_without_a_vision_model_an_ambiguity_stays(boxes: Scene, encoder: Any) -
     assert opened(boxes, encoder, None).select("the red thing").verdict == "ambiguous"
 
 
+@pytest.mark.slow
 def test_an_ambiguity_is_settled_by_sight(boxes: Scene, encoder: Any) -> None:
     session, model = seeing(boxes, encoder, [RIGHT], LEFT, RIGHT)
     found = session.select("the red thing")
@@ -64,6 +65,7 @@ def test_a_phrase_is_asked_once(boxes: Scene, encoder: Any) -> None:
     assert len(model.asked) == asked
 
 
+@pytest.mark.slow
 def test_an_instruction_is_settled_by_sight_and_undone(boxes: Scene, encoder: Any) -> None:
     session, _ = seeing(boxes, encoder, [LEFT], LEFT, RIGHT)
     before = session.scene.cloud.digest()

@@ -50,6 +50,7 @@ def talk(folder: Path, encoder: Any, *lines: str, memory: int = SMALL) -> tuple[
     return terminal.out.getvalue(), terminal.err.getvalue()
 
 
+@pytest.mark.slow
 def test_edits_are_in_the_folder_and_undo_reaches_those_of_earlier_chats(
     boxes: Scene, folder: Path, encoder: Any, tmp_path: Path
 ) -> None:

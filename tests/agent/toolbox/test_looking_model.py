@@ -29,6 +29,7 @@ def look(tool: str, words: str = "") -> str:
     return json.dumps({"look": {"tool": tool, "words": words}})
 
 
+@pytest.mark.slow
 def test_a_model_looks_and_then_plans(session: Session, boxes: Scene) -> None:
     model = ScriptedModel(look("select", "the red thing"), look("check"), json.dumps({"answer": PLAN}))
     session.planner = looking_planner(session, model)
@@ -106,6 +107,7 @@ def test_an_unfinished_look_is_not_carried_out(session: Session, end: Any) -> No
     assert answer.end == end and len(model.asked) == 1
 
 
+@pytest.mark.slow
 def test_the_schema_is_valid_for_both_and_can_be_tightened() -> None:
     jsonschema = pytest.importorskip("jsonschema")
     schema = with_look(reply.schema())

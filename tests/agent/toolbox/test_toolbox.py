@@ -29,6 +29,7 @@ def test_every_operation_of_the_registry_is_a_tool(toolbox: Toolbox) -> None:
     assert [d["name"] for d in toolbox.definitions()] == list(toolbox.tools)
 
 
+@pytest.mark.slow
 def test_schemas_are_valid_and_take_the_operations_own_examples(toolbox: Toolbox) -> None:
     jsonschema = pytest.importorskip("jsonschema")
     for name, tool in toolbox.tools.items():
@@ -81,6 +82,7 @@ def test_too_many_steps_change_nothing(toolbox: Toolbox) -> None:
     assert toolbox.state() == {**before, "digest": toolbox.state()["digest"], "undo": 0}
 
 
+@pytest.mark.slow
 def test_the_digest_ignores_groups_and_nothing_else(boxes: Scene, encoder: Any) -> None:
     """Embedding numbers the Gaussians by group and is no edit."""
 

@@ -46,6 +46,7 @@ def test_commands_do_what_they_do_in_the_chat(server: Server, page: Page) -> Non
     assert [things["text"], *things["lines"]][1] == "1 · blue box · 343"
 
 
+@pytest.mark.slow
 def test_a_preview_has_a_picture_and_a_view_moves_the_camera(server: Server, page: Page) -> None:
     before = page.state["digest"]
     tried = page.ask("say", text="/preview remove the green thing")

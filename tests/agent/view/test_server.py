@@ -57,6 +57,7 @@ def test_words_change_what_every_tab_shows_and_undo_restores_it(server: Server, 
         assert page.state["digest"] == digest and page.state["can_redo"] and same(page, server.hub)
 
 
+@pytest.mark.slow
 def test_rows_that_go_and_come_back_keep_the_page_right(server: Server, page: Page) -> None:
     for text in ("delete the green thing", "undo", "duplicate the green thing", "delete the green things", "undo"):
         said = page.ask("say", text=text)
@@ -88,6 +89,7 @@ def test_a_slot_selects_its_thing_and_slots_a_part_of_it(server: Server, page: P
     assert page.state["selection"]["box"] is not None
 
 
+@pytest.mark.slow
 def test_operations_go_to_the_selection_as_one_step(server: Server, page: Page) -> None:
     move = {"op": "move", "direction": "up", "distance": {"value": 0.5, "unit": "m"}}
     assert page.ask("operate", ops=[move])["type"] == "error"  # nothing is selected
@@ -99,6 +101,7 @@ def test_operations_go_to_the_selection_as_one_step(server: Server, page: Page) 
     assert page.ask("operate", ops=[{"op": "nonsense"}])["type"] == "error"
 
 
+@pytest.mark.slow
 def test_a_question_is_answered_by_a_click(server: Server, page: Page) -> None:
     asked = page.ask("say", text="delete the red thing")
     question = page.state["question"]
@@ -130,6 +133,7 @@ def test_a_tab_that_comes_back_gets_what_it_missed_only(server: Server, page: Pa
         assert same(page, server.hub) and page.state["digest"] == other.state["digest"]
 
 
+@pytest.mark.slow
 def test_the_log_makes_the_work_again_after_a_crash(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
     from scenewright.agent.session.restoring import restore, unfinished
 
@@ -156,6 +160,7 @@ def test_the_log_makes_the_work_again_after_a_crash(boxes: Scene, encoder: Any, 
     again.close()
 
 
+@pytest.mark.slow
 def test_what_was_all_undone_can_be_redone_after_a_crash(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
     from scenewright.agent.session.restoring import restore, unfinished
 
@@ -194,6 +199,7 @@ def test_the_scene_is_exported_as_a_page_to_download(server: Server, page: Page)
     assert asked(server.port, link)[0] == 403
 
 
+@pytest.mark.slow
 def test_an_answer_shows_what_it_rests_on(server: Server, page: Page) -> None:
     said = page.ask("say", text="is there a green thing?")
     assert said["ok"] and len(said["pictures"]) == 1

@@ -96,6 +96,7 @@ def test_an_odd_message_closes_its_socket_and_changes_nothing(server: Server) ->
     assert server.hub.session.scene is scene
 
 
+@pytest.mark.slow
 def test_a_few_hundred_random_messages(server: Server) -> None:
     assert random_messages(server, 300, seed=1) == []
 

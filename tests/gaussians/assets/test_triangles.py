@@ -140,6 +140,7 @@ def test_merged_cells_keep_area_middle_and_moments() -> None:
     assert one.weights[0] == pytest.approx(cells.weights[area.argmax()])
 
 
+@pytest.mark.slow
 def test_a_tree_of_many_leaves_keeps_its_trunk(tmp_path: Path) -> None:
     """Every leaf takes a cell; a spacing so wide that the others are few would leave a trunk of six large Gaussians."""
     rng = np.random.default_rng(0)

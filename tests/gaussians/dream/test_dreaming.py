@@ -52,6 +52,7 @@ def _same(a: GaussianCloud, b: GaussianCloud) -> bool:
     return all(torch.equal(x, getattr(b, name)) for name, x in a.columns())
 
 
+@pytest.mark.slow
 def test_a_sphere_becomes_what_the_denoiser_knows() -> None:
     target, start = _target(), sphere(np.random.default_rng(0), 800)
     done = dream(Knowing(target, SIDE), start, SETTINGS)
@@ -61,6 +62,7 @@ def test_a_sphere_becomes_what_the_denoiser_knows() -> None:
     assert len(done.cloud) <= SETTINGS.max_gaussians
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_also_after_an_interruption(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

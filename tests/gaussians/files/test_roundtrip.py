@@ -137,6 +137,7 @@ def test_spz(tmp_path: Path, cloud: GaussianCloud, version: int) -> None:
 
 @every
 @given(clouds)
+@pytest.mark.slow
 def test_sog(tmp_path: Path, cloud: GaussianCloud) -> None:
     want, got = put(cloud, tmp_path / "a.sog")
     meta = json.loads(zipfile.ZipFile(tmp_path / "a.sog").read("meta.json"))

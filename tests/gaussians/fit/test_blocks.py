@@ -191,6 +191,7 @@ def test_some_photographs_are_different_ones_all_along(parts: int, count: int, l
     assert max(np.diff([*chosen, chosen[0] + parts])) <= math.ceil(parts / len(chosen))
 
 
+@pytest.mark.slow
 def test_counted_in_seconds_layers_are_drawn_for_as_many_photographs_as_their_time_allows() -> None:
     shots = tuple(Shot(along_camera(), np.full((1, 1, 3), i, np.uint8)) for i in range(60))
 
@@ -205,6 +206,7 @@ def test_counted_in_seconds_layers_are_drawn_for_as_many_photographs_as_their_ti
     assert done.steps >= 7 and math.isfinite(done.quality.psnr)  # everything, and three blocks twice
 
 
+@pytest.mark.slow
 def test_blocks_learn_what_they_are_shown_to_the_same_bytes_and_go_on_after_a_stop(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

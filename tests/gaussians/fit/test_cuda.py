@@ -92,6 +92,7 @@ def test_steps_in_torch_equal_those_in_numba(growth: str) -> None:
 
 
 @pytest.mark.parametrize("growth", ["budgeted", "classic"])
+@pytest.mark.slow
 def test_refinement_and_added_bands_agree_in_torch_and_numba(growth: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Refinement uses thresholds and random draws over all Gaussians, so rounding may change which ones are copied. The
     numbers of Gaussians and the quality must agree."""
@@ -109,6 +110,7 @@ def test_refinement_and_added_bands_agree_in_torch_and_numba(growth: str, monkey
 
 
 @pytest.mark.parametrize(("first", "second"), [(CpuEngine, IN_TORCH), (IN_TORCH, CpuEngine), (IN_TORCH, IN_TORCH)])
+@pytest.mark.slow
 def test_a_state_of_one_engine_resumes_in_the_other(
     first: EngineFactory, second: EngineFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:

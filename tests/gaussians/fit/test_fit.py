@@ -58,6 +58,7 @@ def photos(count: int = 16) -> Photos:
 
 
 @pytest.mark.parametrize("growth", ["budgeted", "classic"])
+@pytest.mark.slow
 def test_training_learns_what_it_is_shown(growth: Any) -> None:
     shown = photos()
     short, long = (fit(shown, Settings(steps=n, max_gaussians=400, degree=1, growth=growth)) for n in (1, 450))
@@ -66,6 +67,7 @@ def test_training_learns_what_it_is_shown(growth: Any) -> None:
     assert long.scene.cloud.degree == 1 and [c.name for c in long.scene.cameras] == sorted(c.name for c in around(16))
 
 
+@pytest.mark.slow
 def test_counted_in_steps_the_same_seed_gives_the_same_bytes_and_another_one_does_not() -> None:
     shown, settings = photos(8), Settings(steps=320, max_gaussians=360)
     clouds = [fit(shown, s).scene.cloud for s in (settings, settings, replace(settings, seed=1))]
@@ -73,6 +75,7 @@ def test_counted_in_steps_the_same_seed_gives_the_same_bytes_and_another_one_doe
     assert first == again != other
 
 
+@pytest.mark.slow
 def test_training_goes_on_from_its_checkpoint_to_the_same_bytes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -121,6 +124,7 @@ def test_a_full_disk_ends_training_with_a_clear_error(tmp_path: Path, monkeypatc
         fit(photos(8), Settings(steps=310, max_gaussians=300), checkpoint_path=tmp_path / "file" / "checkpoint")
 
 
+@pytest.mark.slow
 def test_without_points_training_starts_from_scattered_ones() -> None:
     shown = replace(photos(), points=Points(np.zeros((0, 3)), np.zeros((0, 3))))
     short, long = (fit(shown, Settings(steps=n, max_gaussians=4000)) for n in (1, 400))

@@ -35,6 +35,7 @@ def shiny(strength: float) -> GaussianCloud:
     return replace(cloud, sh=torch.cat([cloud.sh, band], dim=1))
 
 
+@pytest.mark.slow
 def test_a_band_stays_where_colours_change_with_the_view_and_not_where_they_do_not() -> None:
     # The last band costs 0.24 to 0.36 dB where no colour changes, and 0.75 to 1.2 dB where all do, whatever the seed.
     gain = 0.5
@@ -48,6 +49,7 @@ def test_a_band_stays_where_colours_change_with_the_view_and_not_where_they_do_n
         assert done.scene.cloud.degree == 3 - sum(c.taken for c in bands)
 
 
+@pytest.mark.slow
 def test_gaussians_are_dropped_while_that_costs_less_than_the_gain() -> None:
     photos, gain = shown(world(40), points=600), 0.2
     done = fit(photos, Settings(steps=600, max_gaussians=600, degree=0, gain=gain))

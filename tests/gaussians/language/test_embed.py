@@ -80,6 +80,7 @@ def table(field: LanguageField | None) -> str:
     return json.dumps([asdict(g) for g in field.groups]) + field.embeddings.tobytes().hex() + repr(field.notes)
 
 
+@pytest.mark.slow
 def test_only_the_group_column_and_the_frame_change(room: Room, embedded: Scene) -> None:
     before, after = dict(room.scene.cloud.columns()), dict(embedded.cloud.columns())
     for name in before:
@@ -156,6 +157,7 @@ def test_the_same_scene_gives_the_same_bytes(room: Room, embedded: Scene) -> Non
     assert again.frame == embedded.frame
 
 
+@pytest.mark.slow
 def test_groups_that_a_file_brought_are_not_looked_at(room: Room, embedded: Scene) -> None:
     leaked = torch.from_numpy(np.asarray(room.truth.ids).astype(np.int32))
     scene = room.scene.replace(cloud=room.scene.cloud.replace(group=leaked, ids=room.scene.cloud.ids + 17))
@@ -251,6 +253,7 @@ def best_ious(scene: Scene, truth: NDArray[np.int32], objects: int) -> NDArray[n
 @pytest.mark.parametrize(
     "count", [pytest.param(100, marks=pytest.mark.slow), 1500, pytest.param(6000, marks=pytest.mark.slow)]
 )
+@pytest.mark.slow
 def test_floaters_belong_to_nothing_and_leave_things_as_they_were(room: Room, embedded: Scene, count: int) -> None:
     added = strays(room.scene.cloud, count, seed=count)
     start = len(room.scene.cloud)
@@ -285,6 +288,7 @@ def test_every_wall_is_a_thing_of_its_own(embedded: Scene, field: LanguageField)
 
 
 @pytest.mark.parametrize("kept", [0, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_dropping_views_changes_no_group(room: Room, embedded: Scene, kept: int) -> None:
     """Where fewer pictures were taken, things are as whole as before: borders are found in space."""
     fewer = embed(room.scene.replace(cameras=room.scene.cameras[:kept]), ENCODER)

@@ -188,6 +188,7 @@ def _two_boxes(world: type[World]) -> Scene:
 
 
 @pytest.mark.parametrize("fixture", ["saved_clip", "exported_clip"])
+@pytest.mark.slow
 def test_a_scene_is_embedded_and_asked_with_real_towers(
     world: type[World], fixture: str, request: pytest.FixtureRequest
 ) -> None:
@@ -209,6 +210,7 @@ def test_a_scene_is_embedded_and_asked_with_real_towers(
         resolve(scene, Query(text="chair"), camera, encoders.load())
 
 
+@pytest.mark.slow
 def test_embedding_again_encodes_nothing_again(world: type[World]) -> None:
     scene = _two_boxes(world)
     first, again = Counting("embedding"), Counting("embedding")

@@ -99,6 +99,7 @@ def test_a_tall_thing_alone_is_not_laid_on_its_side(world: type[Any]) -> None:
     assert abs(frame_of(slab.cloud()).up[1]) > 0.9
 
 
+@pytest.mark.slow
 def test_the_same_cloud_gives_the_same_frame(world: type[Any]) -> None:
     assert frame_of(room(world).cloud()) == frame_of(room(world).cloud())
 

@@ -173,6 +173,7 @@ def ious(made: Any, frame: Frame, noise: float) -> dict[str, float]:
     return found | {n: float((kinds[piece == names.index(n)] == NONE).mean()) for n in ("rug", "crate")}
 
 
+@pytest.mark.slow
 def test_no_amount_of_noise_turns_a_floor_into_something_else(world: type[Any]) -> None:
     made = room(world).sheet("rug", (-0.9, -1.3, 0.012), (1.8, 0, 0), (0, 0.8, 0), GREEN, 0.03)
     curve = [ious(made, Frame(), noise) for noise in NOISES]
@@ -260,6 +261,7 @@ def test_a_layer_much_thicker_than_the_floor_is_no_wall(world: type[Any], thickn
     assert (own == kind).mean() > 0.8
 
 
+@pytest.mark.slow
 def test_walls_and_ceiling_of_a_hasty_fit_are_found_by_positions_alone(world: type[Any]) -> None:
     """Normals are random and every plane is a layer some centimetres thick, as after a training of two minutes."""
     made = world().sheet("floor", (-2, -1.5, 0), (4, 0, 0), (0, 3, 0), BROWN, 0.05)

@@ -55,6 +55,7 @@ def test_a_watertight_mesh_has_two_faces_at_every_edge_and_faces_out(made: Mesh)
     assert loaded.volume == pytest.approx(volume, rel=0.06)  # edges are rounded within a cell of 2 cm
 
 
+@pytest.mark.slow
 def test_the_mesh_is_in_metres_stands_on_its_own_and_y_is_up(made: Mesh) -> None:
     low, high = _loaded(made).bounds
     # 1.4 x 1.2 x 2 units of half a metre; a cell is 2 cm.

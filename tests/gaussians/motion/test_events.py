@@ -37,6 +37,7 @@ def sliding(way: float, start: float, stop: float, *more: tuple[str, object]) ->
 
 @settings(max_examples=12, deadline=None)
 @given(st.floats(2.3, 2.7), st.floats(0.05, 1.5), st.floats(0.8, 2.4))
+@pytest.mark.slow
 def test_when_a_sliding_cube_moves_touches_and_is_on(way: float, start: float, seconds: float) -> None:
     scene, stop, speed = sliding(way, start, start + seconds), start + seconds, way / seconds
     assert events.intervals(scene, 0, "moving") == [pytest.approx((start, stop), abs=MS)]

@@ -273,6 +273,7 @@ def rolling_film(rolls: bool) -> tuple[Footage, Body, Columns, np.ndarray]:
 
 
 @pytest.mark.parametrize("rolls", [True, False])
+@pytest.mark.slow
 def test_the_turns_of_what_rolls_are_told_by_its_way_and_those_of_what_does_not_are_its_own(rolls):
     footage, body, columns, labels = rolling_film(rolls)
     seen = columns[0][labels == 1]
@@ -290,6 +291,7 @@ def test_the_turns_of_what_rolls_are_told_by_its_way_and_those_of_what_does_not_
         assert np.degrees(2 * np.arccos(np.clip(np.abs((turns.quats * body.quats).sum(axis=1)), 0, 1))).max() < 20
 
 
+@pytest.mark.slow
 def test_a_ball_in_haze_rolls_by_the_radius_of_its_surface():
     footage, body, columns, labels = rolling_film(True)
     rng = np.random.default_rng(2)

@@ -184,6 +184,7 @@ def test_a_path_that_errs_along_the_line_of_sight_is_mended_by_the_times_around(
     assert np.allclose(found.offsets[0], 0) and np.allclose(found.quats[0], [1, 0, 0, 0])
 
 
+@pytest.mark.slow
 def test_a_leaf_that_swings_before_a_moving_camera_is_a_hinge_at_its_edge(room):
     columns, labels = room
     values = -1.2 * np.clip((np.arange(FRAMES) - 3) / 7, 0, 1)
@@ -224,6 +225,7 @@ def test_exposure_a_gloss_and_an_edge_that_is_a_pixel_off_are_no_difference_and_
 
 
 @pytest.mark.parametrize("exposed", [False, True])
+@pytest.mark.slow
 def test_whether_anything_moves_is_told_by_a_short_training(room, exposed):
     columns, labels = room
     rng, body = np.random.default_rng(3), Body.at_rest(np.zeros(3), FRAMES)

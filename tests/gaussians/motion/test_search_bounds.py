@@ -102,6 +102,7 @@ def test_the_cameras_that_cover_a_film_leave_no_gap():
     assert (covering(resting_camera) >= 200).sum() >= STEREO_FRAMES - 1  # a camera that waits adds nothing
 
 
+@pytest.mark.slow
 def test_the_depth_of_no_more_frames_than_cover_a_film_is_searched(monkeypatch):
     counts = []
 
@@ -249,6 +250,7 @@ def test_the_search_of_the_ends_stops_when_there_is_no_time(monkeypatch):
     assert best().beyond == 2 and len(told) == 10  # what was found before is kept
 
 
+@pytest.mark.slow
 def test_a_search_whose_time_is_gone_gives_up_and_says_so(swinging):
     columns, _, _, footage = swinging
     clock, parameters = Clock(), Parameters.of(as_cloud(columns))

@@ -260,6 +260,7 @@ VIEWS = {
 
 
 @pytest.mark.parametrize("name", spread(VIEWS, 3))
+@pytest.mark.slow
 def test_fast_and_readable_agree_on_real_scenes(data_dir: Path, name: str) -> None:
     cloud = files.load(data_dir / "scenes" / name).cloud
     eye, target = VIEWS[name]

@@ -65,6 +65,7 @@ def test_a_leg_brings_the_pictures_nearer_to_the_original() -> None:
     assert (better.sh.shape == fewer.sh.shape) and truth.loss(scene.cloud).psnr == EXACT
 
 
+@pytest.mark.slow
 def test_optimising_for_steps_gives_smaller_files_and_equal_bytes() -> None:
     plain = slim(balls(900), ".sog", Settings(30.0, SIZE), RING)
     first, second = (slim(balls(900), ".sog", Settings(30.0, SIZE, steps=2 * LEG), RING) for _ in range(2))

@@ -79,6 +79,7 @@ def test_a_file_gets_smaller_than_its_format_alone_makes_it(scene: Scene, slimme
 
 
 @pytest.mark.parametrize("suffix", spread([".spz", ".ply", ".compressed.ply"], 3))
+@pytest.mark.slow
 def test_stronger_promises_take_more_bytes_and_no_count_is_raised(suffix: str) -> None:
     scene = balls(600, degree=1)
     done = [slim(scene, suffix, Settings(psnr, SIZE), RING) for psnr in (24.0, 36.0)]
@@ -141,6 +142,7 @@ def test_an_empty_scene_is_refused() -> None:
         slim(Scene(GaussianCloud.empty()), ".ply", Settings())
 
 
+@pytest.mark.slow
 def test_without_cameras_views_are_computed(tmp_path: Path) -> None:
     scene = balls(400)
     done = slim(scene, ".compressed.ply", Settings(28.0, 32))

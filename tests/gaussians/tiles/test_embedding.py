@@ -118,6 +118,7 @@ def test_margins_follow_the_scale_or_the_tiles(tiles: Tiles) -> None:
     assert 0.1 < margin_of(sample, None) < 2.0
 
 
+@pytest.mark.slow
 def test_groups_that_all_blocks_see_alike_are_those_of_the_whole_and_can_be_undone(
     tiles: Tiles, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -164,6 +165,7 @@ def table(count: int) -> LanguageField:
     return LanguageField(groups, np.zeros((count, 2), np.float32), "test:1")
 
 
+@pytest.mark.slow
 def test_an_embedding_that_was_stopped_goes_on_where_it_stopped(tiles: Tiles, monkeypatch: pytest.MonkeyPatch) -> None:
     truth = load(tiles.folder.with_name("street.ply"))
     made: list[int] = []

@@ -15,6 +15,7 @@ from scenewright.gaussians.tiles import leveling
 from scenewright.gaussians.tiles.making import make
 
 
+@pytest.mark.slow
 def test_parts_become_one_folder_of_levels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tiles = make([saved_street(tmp_path)], tmp_path / "a.tiles", most=1000)
     monkeypatch.setattr(leveling, "_MOST", 1500)

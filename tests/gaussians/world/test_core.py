@@ -55,6 +55,7 @@ def test_one_percent_of_far_strays_does_not_move_the_core(kind: str, far: float,
     assert core.belongs[: len(clean)].all() and not core.belongs[len(clean) :].any()
 
 
+@pytest.mark.slow
 def test_a_thing_without_strays_is_whole() -> None:
     """No kind of the library has strays, and their box is that of all their solid Gaussians."""
     for kind in sorted(assets.KINDS)[::4]:

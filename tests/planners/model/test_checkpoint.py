@@ -27,6 +27,7 @@ def asked(instruction: str, system: str = "Answer with JSON.") -> list[Message]:
     return [Message("system", system), Message("user", instruction)]
 
 
+@pytest.mark.slow
 def test_a_folder_is_named_in_one_string(tiny_llama: Path) -> None:
     loaded = models.load(f"transformers:{tiny_llama}")
     assert loaded.name == f"transformers:{tiny_llama}" and loaded.window == 4096 and not loaded.sees

@@ -145,6 +145,7 @@ def reads(answer: Constrained, text: str) -> bool:
 
 
 @pytest.mark.parametrize("count", [200, pytest.param(800, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_schemas_say_exactly_what_validators_check(vocabulary: Vocabulary, count: int) -> None:
     """Operations that keep to their fields' types but not to what goes together: schema and validator agree on each."""
     schema = ONE_OP.json_schema()

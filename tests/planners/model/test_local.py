@@ -57,6 +57,7 @@ def counted(parts: checkpoint.Checkpoint, seeds: range) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("count", [4, pytest.param(12, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_random_weights_give_valid_plans(parts: checkpoint.Checkpoint, count: int) -> None:
     valid, ended = counted(parts, range(count))
     assert valid == count and ended >= count * 10 / 12  # a text of random words may well be cut
@@ -68,6 +69,7 @@ def test_a_hundred_of_a_hundred_are_valid(parts: checkpoint.Checkpoint) -> None:
     assert valid == 100 and ended >= 90
 
 
+@pytest.mark.slow
 def test_the_reply_that_planners_ask_for_is_valid_too(parts: checkpoint.Checkpoint) -> None:
     for seed in range(6):
         warm = backend.LocalModel(parts, "transformers:tiny", temperature=1.0, seed=seed, max_tokens=400)
@@ -75,6 +77,7 @@ def test_the_reply_that_planners_ask_for_is_valid_too(parts: checkpoint.Checkpoi
         reply.read(answer.text)
 
 
+@pytest.mark.slow
 def test_the_same_question_gets_the_same_answer(parts: checkpoint.Checkpoint, llama: backend.LocalModel) -> None:
     first = llama.answer(asked(WORDS[0]), SCHEMA, seconds=120)
     llama.answer(asked(WORDS[1]), SCHEMA, seconds=120)
@@ -84,6 +87,7 @@ def test_the_same_question_gets_the_same_answer(parts: checkpoint.Checkpoint, ll
     assert drawn(parts, 3).text == drawn(parts, 3).text != drawn(parts, 7).text
 
 
+@pytest.mark.slow
 def test_it_says_what_reading_everything_again_gives(parts: checkpoint.Checkpoint, llama: backend.LocalModel) -> None:
     """Against the slow reference: no cache, no chunks, every token read again for each."""
     messages = asked(WORDS[3])

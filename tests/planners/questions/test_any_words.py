@@ -60,6 +60,7 @@ def survey(request: pytest.FixtureRequest) -> Survey:
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_no_question_raises_an_error(survey: Survey, seed: int) -> None:
     for text in questions(seed):
         assert answer(text, survey).text, text

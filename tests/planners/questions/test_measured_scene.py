@@ -96,6 +96,7 @@ def test_each_candidate_of_an_ambiguous_phrase_has_its_own_answer(rooms: Survey)
     assert sorted(lengths) == [pytest.approx(2.882, abs=0.03), pytest.approx(3.623, abs=0.03)]
 
 
+@pytest.mark.slow
 def test_it_means_what_the_answer_was_about_until_the_scene_changes() -> None:
     session = Session(CHAIRS.build(detail=0.1), planner="grammar")
     assert session.ask("how tall is the piano?").answer == pytest.approx(1.2, abs=0.02)

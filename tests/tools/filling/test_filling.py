@@ -104,6 +104,7 @@ def _found(scene: Scene, query: Query, *_: object, **__: object) -> Selection:
     return Selection(query, "found", scene.cloud.ids[scene.cloud.group == BOX], (BOX,))
 
 
+@pytest.mark.slow
 def test_the_hole_is_closed_and_looks_like_the_floor_and_the_wall(room: Scene) -> None:
     bare, done = _delete(room, infill=False), _delete(room)
     truth = render(_numbered([_floor(), _wall()]), VIEW)
@@ -118,6 +119,7 @@ def test_the_hole_is_closed_and_looks_like_the_floor_and_the_wall(room: Scene) -
     assert any("filled what it hid" in note for note in done.receipt.notes)
 
 
+@pytest.mark.slow
 def test_old_rows_stay_bit_for_bit_and_new_ones_continue_their_groups(room: Scene) -> None:
     bare, done = _delete(room, infill=False).scene.cloud, _delete(room).scene.cloud
     shaded = (done.sh[: len(bare)] != bare.sh).any(dim=2).any(dim=1)
@@ -130,6 +132,7 @@ def test_old_rows_stay_bit_for_bit_and_new_ones_continue_their_groups(room: Scen
     assert set(new.group[floor].tolist()) == {FLOOR} and set(new.group[new.means[:, 2] > 0.1].tolist()) == {WALL}
 
 
+@pytest.mark.slow
 def test_the_same_edit_gives_the_same_bytes_and_leaves_the_scene_alone(room: Scene) -> None:
     was = room.cloud.digest()
     assert _delete(room).scene.cloud.digest() == _delete(room).scene.cloud.digest()
@@ -157,6 +160,7 @@ def test_a_fill_that_fails_leaves_the_edit_as_it_is(room: Scene, monkeypatch: py
     assert any("not filled" in note and "no border" in note for note in done.receipt.notes)
 
 
+@pytest.mark.slow
 def test_a_hole_that_stays_is_said_with_its_place() -> None:
     """A box at the edge of all that is seen: what lies behind it on the other side nobody knows."""
     floor = _floor()
@@ -196,6 +200,7 @@ def test_the_middle_of_a_ring_of_things_is_not_closed() -> None:
     assert len(made) > 50 and float(made.means[:, 2].max()) < 0.1
 
 
+@pytest.mark.slow
 def test_a_move_fills_where_it_was_and_not_where_it_is(room: Scene) -> None:
     op = parse({"op": "move", "target": {"groups": [BOX]}, "direction": "left", "distance": {"value": 1, "unit": "m"}})
     context = Context(VIEW, resolver=_found)
@@ -233,6 +238,7 @@ def test_a_named_wall_is_filled_and_an_opening_is_left(room: Scene) -> None:
     assert again.receipt.added == 0
 
 
+@pytest.mark.slow
 def test_things_that_touch_are_filled_together_without_a_seam(room: Scene) -> None:
     """The box as two halves in two groups: deleted together they leave the same as in one piece."""
     halves = room.cloud.group.clone()

@@ -70,6 +70,7 @@ def hole() -> tuple[Scene, GaussianCloud, GaussianCloud]:
     return _scene(bank[~_unseen(bank, ball)]), ball, bank
 
 
+@pytest.mark.slow
 def test_the_bank_behind_the_ball_is_closed_in_its_colours(hole: tuple[Scene, GaussianCloud, GaussianCloud]) -> None:
     scene, ball, bank = hole
     new = merged(scene, patches_behind(scene, ball))
@@ -83,6 +84,7 @@ def test_the_bank_behind_the_ball_is_closed_in_its_colours(hole: tuple[Scene, Ga
         assert error[1] < 0.12 < 0.25 < error[0]
 
 
+@pytest.mark.slow
 def test_what_photographs_see_past_the_ball_stays_as_it_looks(hole: tuple[Scene, GaussianCloud, GaussianCloud]) -> None:
     scene, ball, _ = hole
     full = concat([scene.cloud, merged(scene, patches_behind(scene, ball))])
@@ -92,6 +94,7 @@ def test_what_photographs_see_past_the_ball_stays_as_it_looks(hole: tuple[Scene,
         assert float((was.rgb - now.rgb)[away].abs().max()) < 0.1
 
 
+@pytest.mark.slow
 def test_a_second_fill_adds_nothing(hole: tuple[Scene, GaussianCloud, GaussianCloud]) -> None:
     scene, ball, _ = hole
     first = merged(scene, patches_behind(scene, ball))

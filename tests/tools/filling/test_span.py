@@ -49,6 +49,7 @@ def _scene(cloud: GaussianCloud) -> Scene:
     return Scene(cloud, Frame((0, 0, 1), 0.0, 1.0, "given", "given"), cameras=EYES)
 
 
+@pytest.mark.slow
 def test_what_stands_at_the_end_of_a_scene_is_not_filled_beyond_it() -> None:
     """A box in the corner of wall, floor and open side, and the wall and floor that it hid."""
     room = _room()

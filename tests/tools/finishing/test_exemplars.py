@@ -150,6 +150,7 @@ def like(corner: Scene, context: Context, target: str, source: str, **more: Any)
     return carry_out(corner, parse(op), context)
 
 
+@pytest.mark.slow
 def test_a_thing_gets_the_pattern_of_another(corner: Scene, context: Context) -> None:
     op = {"op": "restyle", "target": {"text": "floor"}, "material": "checks", "color": "red", "unit": {"value": 0.3}}
     checked = carry_out(corner, parse(op), context).scene
@@ -167,11 +168,13 @@ def test_a_thing_gets_the_pattern_of_another(corner: Scene, context: Context) ->
     )
 
 
+@pytest.mark.slow
 def test_a_thing_is_not_its_own_model(corner: Scene, context: Context) -> None:
     with pytest.raises(InstructionError, match="part of what is to be changed"):
         like(corner, context, "table", "table")
 
 
+@pytest.mark.slow
 def test_what_is_too_coarse_gives_no_pattern(corner: Scene, context: Context) -> None:
     coarse = corner.replace(cloud=corner.cloud[(corner.cloud.group != 3) | (corner.cloud.ids % 40 == 0)])
     coarse = coarse.replace(cloud=coarse.cloud.replace(scales=coarse.cloud.scales * 3))
@@ -197,6 +200,7 @@ def saved(path: Path, picture: F64, **more: Any) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_photograph_is_reduced_upright_and_without_what_is_transparent(tmp_path: Path) -> None:
     wide = read_photograph(saved(tmp_path / "wide.png", np.kron(stripes(400, 40.0), np.ones((4, 8, 1)))))
     assert wide.rgb.shape == (256, 512, 3)

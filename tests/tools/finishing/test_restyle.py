@@ -31,6 +31,7 @@ def rows(scene: Scene, group: int) -> torch.Tensor:
     return (scene.cloud.group == group).nonzero().squeeze(1)
 
 
+@pytest.mark.slow
 def test_a_marble_table_is_pale_and_found_as_before(corner: Scene, context: Context) -> None:
     done = restyled(corner, context, "table", "marble")
     shown = lit_face(seen_colors(done.scene, rows(done.scene, TABLE)))
@@ -52,6 +53,7 @@ def test_nothing_else_changes_in_any_bit(corner: Scene, context: Context) -> Non
         assert torch.equal(column[kept], getattr(done.scene.cloud, name)[after]), name
 
 
+@pytest.mark.slow
 def test_the_same_words_give_the_same_bytes(corner: Scene, context: Context) -> None:
     one, two = (restyled(corner, context, "chair", "brick").scene.cloud for _ in range(2))
     assert all(torch.equal(a, b) for (_, a), (_, b) in zip(one.columns(), two.columns(), strict=True))

@@ -90,6 +90,7 @@ def _same(a: GaussianCloud, b: GaussianCloud) -> bool:
     return all(torch.equal(x, y) for (_, x), (_, y) in zip(a.columns(), b.columns(), strict=True))
 
 
+@pytest.mark.slow
 def test_old_gaussians_stay_and_new_ids_are_fresh(room: Room, lifted: Result) -> None:
     scene, ids, told = lifted
     before = _emptied(room).cloud
@@ -99,6 +100,7 @@ def test_old_gaussians_stay_and_new_ids_are_fresh(room: Room, lifted: Result) ->
     assert set(scene.cloud.group[len(before) :].tolist()) == {FLOOR}
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_bytes(room: Room, lifted: Result) -> None:
     after = _emptied(room)
     again, _, _ = with_inpainted(room.fitted, after, NONE, _oracle(room, after, NONE))
@@ -118,6 +120,7 @@ def test_what_a_good_model_says_is_seen_from_other_sides(room: Room, lifted: Res
         assert error[1] < error[0] / 15 and -10 * np.log10(error[1]) > 18
 
 
+@pytest.mark.slow
 def test_only_what_is_missing_is_asked_again(room: Room) -> None:
     after = _emptied(room)
     oracle = _oracle(room, after, NONE)
@@ -126,6 +129,7 @@ def test_only_what_is_missing_is_asked_again(room: Room) -> None:
     assert all(s.mask.sum() < 0.5 * first.mask.sum() for s in later)
 
 
+@pytest.mark.slow
 def test_a_fill_tells_the_depth_and_is_replaced(room: Room, lifted: Result) -> None:
     """What views show of the fill from the scene goes; what none shows, under the box, stays."""
     oracle = _oracle(room, room.filled, room.new)
@@ -154,6 +158,7 @@ def test_a_model_that_fails_leaves_the_fill(room: Room, answer: object, said: st
     assert told.views == 0 and __import__("re").search(said, told.reason)
 
 
+@pytest.mark.slow
 def test_a_model_that_crashes_leaves_the_edit(room: Room) -> None:
     """An `Inpainter` of the user's own may raise anything."""
     scene = room.fitted

@@ -45,6 +45,7 @@ def _same(a: GaussianCloud, b: GaussianCloud) -> bool:
     return all(torch.equal(x, y) for (_, x), (_, y) in zip(a.columns(), b.columns(), strict=True))
 
 
+@pytest.mark.slow
 def test_old_gaussians_stay_bit_for_bit(room: Room, lifted: Result) -> None:
     own = mask_of_ids(room.filled.cloud.ids, room.new)
     assert _same(room.filled.cloud[~own], lifted[0].cloud[~own])
@@ -52,6 +53,7 @@ def test_old_gaussians_stay_bit_for_bit(room: Room, lifted: Result) -> None:
     assert not _same(room.filled.cloud[own], lifted[0].cloud[own])
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_bytes(room: Room, lifted: Result) -> None:
     again, told = with_photographs(room.filled, room.photographs, room.new)
     assert _same(again.cloud, lifted[0].cloud)
@@ -158,6 +160,7 @@ def test_differing_finds_what_changed(room: Room) -> None:
     assert after.ids[b].tolist() == [5]
 
 
+@pytest.mark.slow
 def test_delete_with_photographs(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
     """The whole way: the box is deleted, the floor is filled in grey, and this is optimised."""
     grey = Filled(surface="the floor", gaussians=len(room.new), area=0.4, sure=0.5)

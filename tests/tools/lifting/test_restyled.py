@@ -53,6 +53,7 @@ def _box(room: Room) -> torch.Tensor:
     return room.fitted.cloud.ids[room.fitted.cloud.group == BOX]
 
 
+@pytest.mark.slow
 def test_colours_follow_the_model_and_nothing_else_changes(room: Room) -> None:
     painter = Painter()
     assert isinstance(painter, Restyler)

@@ -99,6 +99,7 @@ def test_a_size_cannot_change_for_a_while(moving: Scene, context: Context) -> No
         done(moving, {"op": "scale", "target": A_CHAIR, "factor": 2, "when": {"start": 1}}, context)
 
 
+@pytest.mark.slow
 def test_an_edit_without_a_time_holds_at_all_times_and_is_placed_at_the_time_it_is_said(
     moving: Scene, context: Context
 ) -> None:

@@ -88,6 +88,10 @@ _ARRIVES = re.compile(
 )
 _ENDED = ("hide", "recolor", "pause", "halt")  # kinds that two times begin and end: "gone at 1 s, and back at 3 s"
 _A_NUMBER = re.compile(r"^(?:at|from|in) (?:t ?= ?|second )?\d")
+_REASON = re.compile(  # "since it's leaking, take it out"
+    r"^since (?:it|he|she|they|that|the \w+) (?:is|are|'s|looks?|seems?)\b"
+    r"(?! (?:\w+ )?(?:open|shut|closed|out|up|down|gone|there|still|moving|rolling|turning|falling|at|on|in)\b)"
+)
 _BY_SO_MUCH = re.compile(rf"^by (?:another )?{DURATION}$")  # "shift it by one second" tells no time
 _ONLY = re.compile(r"^(?:right|only|just|exactly|precisely|immediately|directly|shortly|already|not) ")
 _JUST_BEFORE = re.compile(r"^(?:right |just |directly |immediately )*before ")
@@ -334,7 +338,7 @@ def _told(
         said: all of the words.
         happening: what happens at the time that is told so far.
     """
-    if tag == "from" and _BY_SO_MUCH.match(phrase):
+    if tag == "from" and (_BY_SO_MUCH.match(phrase) or _REASON.match(said)):
         return None
     if (likewise := _LIKEWISE.match(phrase)) is not None and (other := thing(likewise["who"])) is not None:
         if happening is not None:

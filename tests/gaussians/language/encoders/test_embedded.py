@@ -94,6 +94,7 @@ def test_unknown_words_are_reported_not_guessed(encoder: encoders.Encoder) -> No
     assert why_unknown(encoder, "the") is not None and why_unknown(encoder, "red sofa") is None
 
 
+@pytest.mark.slow
 def test_new_designs_are_recognised(encoder: encoders.Encoder, fresh: tuple[list[str], np.ndarray, np.ndarray]) -> None:
     truth, vectors, sizes = fresh
     pooled = vectors.mean(axis=1)

@@ -60,12 +60,14 @@ def best_ious(made: Scene, truth: NDArray[np.int64]) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("spoil", [list, coarse], ids=["true masks", "coarse masks"])
+@pytest.mark.slow
 def test_masks_of_all_views_give_the_true_objects(scene: Any, spoil: Any) -> None:
     cloud, truth = scene
     found = best_ious(groups_of(cloud, spoil(seen_by(cloud, truth, around(20)))), truth)
     assert min(found.values()) > 0.8  # the underside of the cup is seen by no view
 
 
+@pytest.mark.slow
 def test_a_source_without_masks_changes_no_group(scene: Any) -> None:
     cloud, _ = scene
     nothing = [ViewMasks(c, np.full(SIZE[::-1], -1, np.int32), (), np.zeros(0, np.float32)) for c in around(3)]
@@ -73,6 +75,7 @@ def test_a_source_without_masks_changes_no_group(scene: Any) -> None:
     assert alone.cloud.group.numpy().tobytes() == beside.cloud.group.numpy().tobytes()
 
 
+@pytest.mark.slow
 def test_the_order_of_views_and_masks_does_not_change_the_groups(scene: Any) -> None:
     cloud, truth = scene
     views = seen_by(cloud, truth, around(9))
@@ -81,6 +84,7 @@ def test_the_order_of_views_and_masks_does_not_change_the_groups(scene: Any) -> 
     assert (one == other).mean() > 0.999  # sums over views in another order
 
 
+@pytest.mark.slow
 def test_a_mask_inside_a_mask_is_a_part(scene: Any) -> None:
     cloud, truth = scene
     top = table_top(cloud, truth)
@@ -92,6 +96,7 @@ def test_a_mask_inside_a_mask_is_a_part(scene: Any) -> None:
     assert (top & union).sum() / (top | union).sum() > 0.75  # the top is one colour with the rest of the table
 
 
+@pytest.mark.slow
 def test_masks_of_half_the_scene_leave_the_rest_to_geometry(scene: Any) -> None:
     cloud, truth = scene
     views = [
@@ -118,6 +123,7 @@ def test_embedding_with_masks_names_things_by_text_vectors(scene: Any) -> None:
         assert np.allclose(field.embeddings[group.id], np.eye(6, 8)[i], atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_field_tells_how_far_each_source_was_believed(scene: Any) -> None:
     cloud, truth = scene
     views, rng = seen_by(cloud, truth, around(12)), np.random.default_rng(3)
@@ -139,6 +145,7 @@ def test_a_field_tells_how_far_each_source_was_believed(scene: Any) -> None:
     assert any(f"agree to {right.agreement:.0%}" in line for line in made.making.lines())
 
 
+@pytest.mark.slow
 def test_vectors_of_another_encoder_are_refused(scene: Any) -> None:
     cloud, truth = scene
     encoder = vector_encoder.wrap([["chair"], ["table"]], np.eye(2, 8))

@@ -146,6 +146,7 @@ def names_of(scene: Scene) -> list[str]:
     return sorted(g.label for g in scene.language.objects())
 
 
+@pytest.mark.slow
 def test_only_encoders_of_photographs_are_shown_them(tmp_path: Path, room: Scene) -> None:
     capture = repainted(capture_of(tmp_path, room))
     photographic, rendered = Named(on_background=True), Named(on_background=False)
