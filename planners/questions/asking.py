@@ -183,9 +183,16 @@ def _guesses(text: str, words: Words, names: frozenset[str], misread: bool) -> I
     surely = supposed(text, names, SURE)
     yield surely
     if misread:
-        yield loosely(plain(words), names)
+        said = plain(words)
+        yield [guess for guess in loosely(said, names) if not _asks_for_named(guess, said)]
         if (likely := supposed(text, names)) != surely:
             yield likely
+
+
+def _asks_for_named(question: str, said: str) -> bool:
+    """Whether a question asks which ball it is, of words that name the ball."""
+    found = re.match(r"which (\w+) ", question)
+    return found is not None and re.search(rf"\bthe (?:\w+ )?{found[1]}\b", said) is not None
 
 
 # How reasons begin where words may have been taken for what they are not: a name, a time.
@@ -231,11 +238,21 @@ def _of_motion(asked: Asked, survey: Survey) -> Reading | None:
                 or (given.answer_type == "yesno" and wants_more)
             ):
                 continue
+            if kind.name == "which_moves" and isinstance(given, Answer) and _is_named(given.answer, asked.said):
+                continue
             if isinstance(given, Answer) and given.answer is None:
                 refused = refused or Reading(given, kind.name)
             elif given is not None:
                 return _reading(kind, given if survey.scaled else _in_units(given))
     return refused
+
+
+def _is_named(answer: object, said: str) -> bool:
+    """Whether the one thing that a question is answered with is the one that it names: "on what is the ball rolling?"
+    does not ask for the ball."""
+    if not isinstance(answer, str) or re.search(r"\bor\b", said):
+        return False
+    return re.search(rf"\bthe (?:\w+ )?{re.escape(answer.split()[-1])}\b", said) is not None
 
 
 def _of_moments(asked: Asked, survey: Survey, timeline: Timeline) -> Reading | None:

@@ -91,7 +91,7 @@ _PLACED = bag(
     "if_turns where_ends far_opens how_many turn_way what_fell what_up does long_closes long_opens"
 )
 _BY_A_PLACE = re.compile(  # "comes to rest at which wall", "quits the shelf board"
-    r" (?:(?:in|into|to|from|at|off|on|onto|of|out of|back to|face|quits?|leaves?|against|towards?) )"
+    r" (?:(?:in|into|to|from|at|off|on|onto|of|out of|back to|around|round|by|face|quits?|leaves?|against|towards?) )"
     r"(?:the |its |his |her |which |what |that )?(?:[a-z]+ )?[a-z]+(?= )"
 )
 _WHAT_SECOND = re.compile(

@@ -34,6 +34,8 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     if re.search(r"\bcross\w*", said):
         found["long_on"] = found.get("long_on", 0.0) + found.pop("long_reach", 0.0)
         kind = max(found, key=found.__getitem__)
+    if kind == "when_turns" and _LASTS.search(said):
+        return "long_moves", found[kind] + found["long_moves"]
     if kind == "none" and _COUNTS.search(said) and sorted(found, key=found.__getitem__)[-2] == "how_many":
         return "how_many", found["none"] + found["how_many"]  # of what stands still, too
     if kind in _WHERES and _WHERE_IS.match(said):
@@ -43,6 +45,7 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     return kind, found[kind]
 
 
+_LASTS = re.compile(r"\b(?:duration|how long|how much time|time (?:\w+ )*?(?:needs?|takes?|spends?|spent))\b")
 _COUNTS = re.compile(r"\bhow (?:many|much)\b|\bcount\b|\b(?:number|quantity) of\b")
 _RANKS_ALL = re.compile(r"^(?:please )?(?:rank|sort|order|arrange|line up)\b")
 _CUTS_OUT = re.compile(r"\b(?:cuts?|conks?|gives?|gave|switch(?:es)?|shuts?|powers?) (?:out|off|down)\b")

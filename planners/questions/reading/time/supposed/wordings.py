@@ -106,6 +106,7 @@ _MOVING = re.compile(
 )
 
 
+_SEEN = re.compile(r"\b(?:do|did|can|could) (?:i|you|we|they|one) (?:have|see|find|count)\b")
 _LEFT_UP = re.compile(
     r"\b(?:left|still|remain\w*|stay\w*) (?:(?:sitting|standing|resting|lying|perched|there|upright) )*"
     r"(?:up|on the (?:\w+ )?(?:shelf|board|high))\b"
@@ -143,7 +144,7 @@ def _counted(said: Said) -> Iterator[str]:
     if (
         deed == "fall"
         and re.match(r"^(?:at|by|after) \d", said.time)
-        and re.search(r"\b(?:down|fallen|dropped|landed)\b", said.rest)
+        and re.search(r"\b(?:down|fallen|dropped|landed|crashed)\b", said.rest)
     ):
         deed = "have fallen"
     x, *others = said.x.split(" and ")
@@ -154,7 +155,10 @@ def _counted(said: Said) -> Iterator[str]:
         fallen = re.search(r"\b(?:fallen|dropped|landed|come down)\b", said.rest)
         yield f"how many {noun} {'have not fallen' if fallen else _NOT_DONE.get(deed, 'do not move')}"
         return
-    if deed == "move" and not said.time and not _MOVING.search(said.rest):
+    if deed == "open" and re.search(r"\b(?:is|are|stands?|lies?|stays?) (?:still |fully |wide )?open\b", said.rest):
+        yield f"how many {noun} are open"
+        return
+    if deed == "move" and not said.time and not _MOVING.search(_SEEN.sub(" ", said.rest)):
         yield f"how many {noun} are there"
         return
     yield f"how many {noun} {deed}"
@@ -217,6 +221,11 @@ def _when_open(said: Said) -> Iterator[str]:
 
 
 _WHICH = re.compile(r"\b(?:which|name|list|what)\b")
+
+
+def _if_open(said: Said) -> Iterator[str]:
+    if said.x:
+        yield f"is {said.x} {'fully ' if _FULLY.search(said.rest) else ''}open"
 
 
 def _those_shut(said: Said) -> Iterator[str]:
@@ -372,7 +381,7 @@ PLAIN: Mapping[str, Plain] = {
     "if_still": _about("does {x} stand still"),
     "if_opens": _about("does {x} open"),
     "if_closes": _about("does {x} close"),
-    "if_open": _about("is {x} open"),
+    "if_open": _if_open,
     "if_shut": _either(_those_shut, _about("is {x} closed")),
     "if_falls": _about("does {x} fall"),
     "if_reaches": _about("does {x} touch {y}"),
