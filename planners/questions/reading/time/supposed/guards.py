@@ -10,7 +10,7 @@ from .....grammar.tagging.words import bag
 from .....grammar.vocabulary.quantities import NUMBERS
 from ...noun_phrase import is_color_word
 from ..loosely import HARD
-from .phrases import ALL_OF, DENIED, is_kind
+from .phrases import ALL_OF, DENIED, deed_of, is_kind
 from .said import ASKS_WHEN, Said
 
 SURE = 0.8  # probability from which words without a mark are taken for those of the question
@@ -61,7 +61,9 @@ def _wants_another(kind: str, said: Said, rest: list[str]) -> bool:
     """Whether yes or no is wanted of what is no such question: "is the ball at its top speed then?"."""
     sides = kind == "turn_way" and not {"or", "left", "right"}.isdisjoint(rest)  # to one of them, or to which
     asks = not _ASKS.isdisjoint(rest) or sides or ASKS_WHEN.match(said.off) is not None
-    return not kind.startswith("if_") and not said.unit and said.first in _AUXILIARIES and not asks
+    states = kind.startswith("when_") and not _STATED.isdisjoint(rest) and _TIME_NOUNS.isdisjoint(rest)
+    wants = said.first in _AUXILIARIES or states  # "the fan is starting immediately?"
+    return not kind.startswith("if_") and not said.unit and wants and not asks
 
 
 def _tells_more(kind: str, chance: float, rest: list[str], names: Collection[str]) -> bool:
@@ -80,9 +82,12 @@ def _tells_more(kind: str, chance: float, rest: list[str], names: Collection[str
             return True  # "which way does it turn" wants no yes or no; two deeds, or things to choose from
         if any(word in _HARD for word in told):
             return True
+    said = f" {' '.join(rest)} "
+    does = kind != "how_many" or deed_of(said, "") != ""  # else what stands somewhere is counted
     if chance >= CERTAIN and kind in _PLACED:
-        told = _BY_A_PLACE.sub(" ", f" {' '.join(rest)} ").split()
-    return any(singular(w) in names for w in told if w not in _VERBS and not (kind in _TO_THE_FLOOR and w in _LEVELS))
+        told = (_BY_A_PLACE if does else _AROUND).sub(" ", said).split()
+    falls = does and kind in _TO_THE_FLOOR
+    return any(singular(w) in names for w in told if w not in _VERBS and not (falls and w in _LEVELS))
 
 
 CERTAIN = 0.95  # probability of a kind from which the place of what happens needs no mark
@@ -94,6 +99,7 @@ _BY_A_PLACE = re.compile(  # "comes to rest at which wall", "quits the shelf boa
     r" (?:(?:in|into|to|from|at|off|on|onto|of|out of|back to|around|round|by|face|quits?|leaves?|against|towards?) )"
     r"(?:the |its |his |her |which |what |that )?(?:[a-z]+ )?[a-z]+(?= )"
 )
+_AROUND = re.compile(r" (?:around|round) (?:the |this |that )?(?:[a-z]+ )?[a-z]+(?= )")
 _WHAT_SECOND = re.compile(
     r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b|"
     r"\bthe (?:exact |precise |very )?second (?:(?:at|in|on) which|where|when|that)\b"
@@ -131,6 +137,8 @@ _RANKS = bag("second third first last other another twice again anew afresh resu
 _LEVELS = bag("floor ground board shelf")
 _TO_THE_FLOOR = bag("when_lands when_falls if_falls long_falls how_many what_fell what_up far_falls first last order")
 _ASKS = bag("which what how when where who whose")
+_STATED = bag("is are was were")
+_TIME_NOUNS = bag("time moment second instant point timestamp timecode stamp frame mark")
 _AUXILIARIES = bag("is are was were does do did has have had")
 _NEGATED = bag("if_still what_still long_still long_open what_up what_shut if_shut how_many")
 _VERBS = bag("fall falls light turn turns open close drop step steps start stop move swing spin fan walk roll slide")

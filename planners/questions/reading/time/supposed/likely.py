@@ -34,6 +34,8 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     if re.search(r"\bcross\w*", said):
         found["long_on"] = found.get("long_on", 0.0) + found.pop("long_reach", 0.0)
         kind = max(found, key=found.__getitem__)
+    if kind in _POSES and _POSED.search(said):
+        return "long_open", sum(found[own] for own in _POSES)
     if kind == "when_turns" and _LASTS.search(said):
         return "long_moves", found[kind] + found["long_moves"]
     if kind == "none" and _COUNTS.search(said) and sorted(found, key=found.__getitem__)[-2] == "how_many":
@@ -45,6 +47,11 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     return kind, found[kind]
 
 
+_POSES = ("long_open", "long_still")
+_POSED = re.compile(  # "how long does it just sit there pulled all the way out"
+    r"\b(?:all the way|fully|completely|pulled|slid|wide|hang\w*|stick\w*|sits?|stands?|stays?) (?:out|open)\b|"
+    r"\b(?:extended|outermost|outstretched)\b"
+)
 _LASTS = re.compile(r"\b(?:duration|how long|how much time|time (?:\w+ )*?(?:needs?|takes?|spends?|spent))\b")
 _COUNTS = re.compile(r"\bhow (?:many|much)\b|\bcount\b|\b(?:number|quantity) of\b")
 _RANKS_ALL = re.compile(r"^(?:please )?(?:rank|sort|order|arrange|line up)\b")

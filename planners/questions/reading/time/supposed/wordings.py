@@ -158,6 +158,9 @@ def _counted(said: Said) -> Iterator[str]:
     if deed == "open" and re.search(r"\b(?:is|are|stands?|lies?|stays?) (?:still |fully |wide )?open\b", said.rest):
         yield f"how many {noun} are open"
         return
+    if said.y and not deed_of(said.rest, "") and (at := re.search(r"\b(?:on|in|under)\b", said.rest)) is not None:
+        yield f"how many {noun} are {at[0]} {said.y}"
+        return
     if deed == "move" and not said.time and not _MOVING.search(_SEEN.sub(" ", said.rest)):
         yield f"how many {noun} are there"
         return
