@@ -9,7 +9,9 @@ import pytest
 from scenewright.planners.grammar.planner import SUPPOSED, GrammarPlanner, _operations, _thing
 from scenewright.planners.grammar.timing.marked.events import told_by_event
 from scenewright.planners.grammar.timing.marked.kinds import is_clear, likely, marked
+from scenewright.planners.grammar.timing.marked.lost import leaves_out
 from scenewright.planners.grammar.timing.reading import TimeReader
+from scenewright.tools.when import When
 from scenewright.training.timed_words import FILES
 from scenewright.training.wording import sentences
 
@@ -537,3 +539,28 @@ def test_marks_make_commands(text: str, plainly: str | None) -> None:
     else:
         assert ops[0]["change"] == "stop" and ops[0]["when"]["lasting"] == 0.5
         assert ops[0]["when"]["during"]["state"] == "turning" and ops[0]["when"]["during"]["part"] == "from"
+
+
+def test_a_number_of_a_time_is_never_left_out() -> None:
+    """Other numbers may be, where no time has its unit: "the door shuts four times"."""
+    words, spans = ["the", "door", "shuts", "by", "four", "and", "a", "half"], [("x", 0, 2), ("to", 3, 7)]
+    assert leaves_out(words, ({"op": "articulate"},), spans=spans)
+    assert not leaves_out(words, ({"op": "articulate", "when": When(stop=4.5)},), spans=spans)
+    assert not leaves_out(["the", "door", "shuts", "four", "times"], ({"op": "articulate"},), spans=[("x", 0, 2)])
+
+
+def test_a_color_in_an_order_is_a_thing_unless_it_is_denied() -> None:
+    spans, op = [("not", 0, 2), ("x", 3, 4), ("x", 5, 6)], {"op": "order", "first": ["red book", "blue book"]}
+    assert leaves_out(["rather", "green", "then", "red", "then", "blue"], (op,), spans=spans)
+    assert not leaves_out(["not", "green", "then", "red", "then", "blue"], (op,), spans=spans)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("I'd rather nobody saw the sofa until the fan has stopped", "hide"),
+        ("the cart should take half a second", "duration"),
+    ],
+)
+def test_words_that_say_a_kind_are_of_it(text: str, kind: str) -> None:
+    assert likely(text)[0][0] == kind

@@ -121,6 +121,7 @@ NEAR = 0.03  # seconds
         ("when does the cat jump?", None, ""),
         ("when does the book fall?", None, ""),
         ("how many fall off the board altogether?", 2.0, ""),
+        ("how many books are on the floor at 1.5 s?", 1.0, ""),
         ("turns per second of the clock?", 0.5, "turns/s"),
         ("how long is it from when the ball stops to the end of the film?", 1.0, "s"),
         ("by what second have both the books landed?", 2.4, "s"),
@@ -190,6 +191,7 @@ def test_numbers(session: Session, text: str, value: float | None, unit: str) ->
         ("does a cat ever sit on the chair?", None),
         ("who turns off the clock?", None),
         ("who stops the ball?", None),
+        ("please tell me, at 2.2 s the ball is rolling on which thing?", None),
     ],
 )
 def test_words(session: Session, text: str, value: str | tuple[str, ...] | None) -> None:
