@@ -192,7 +192,12 @@ def _guesses(text: str, words: Words, names: frozenset[str], misread: bool) -> I
 def _asks_for_named(question: str, said: str) -> bool:
     """Whether a question asks which ball it is, of words that name the ball."""
     found = re.match(r"which (\w+) ", question)
-    return found is not None and re.search(rf"\bthe (?:\w+ )?{found[1]}\b", said) is not None
+    return found is not None and _tells_of(found[1], said)
+
+
+def _tells_of(noun: str, said: str) -> bool:
+    """Whether words are about the thing with a noun: "the red ball"."""
+    return re.search(rf"\bthe (?:\w+ )?{re.escape(noun)}\b", said) is not None
 
 
 # How reasons begin where words may have been taken for what they are not: a name, a time.
@@ -250,9 +255,8 @@ def _of_motion(asked: Asked, survey: Survey) -> Reading | None:
 def _is_named(answer: object, said: str) -> bool:
     """Whether the one thing that a question is answered with is the one that it names: "on what is the ball rolling?"
     does not ask for the ball."""
-    if not isinstance(answer, str) or re.search(r"\bor\b", said):
-        return False
-    return re.search(rf"\bthe (?:\w+ )?{re.escape(answer.split()[-1])}\b", said) is not None
+    chosen = re.search(r"\bor\b", said) is not None
+    return isinstance(answer, str) and not chosen and _tells_of(answer.split()[-1], said)
 
 
 def _of_moments(asked: Asked, survey: Survey, timeline: Timeline) -> Reading | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +54,11 @@ def spans_of(labels: Sequence[str]) -> Iterator[Span]:
             tag = ""
         if label.startswith("B-"):
             tag, start = label[2:], at
+
+
+def held_by(spans: Collection[Span], *tags: str) -> set[int]:
+    """Where the words of marks stand: of all, or of those with some tags."""
+    return {at for tag, start, stop in spans if not tags or tag in tags for at in range(start, stop)}
 
 
 def labels_of(count: int, spans: Sequence[Span]) -> list[str]:

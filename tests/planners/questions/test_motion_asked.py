@@ -192,6 +192,7 @@ def test_numbers(session: Session, text: str, value: float | None, unit: str) ->
         ("who turns off the clock?", None),
         ("who stops the ball?", None),
         ("please tell me, at 2.2 s the ball is rolling on which thing?", None),
+        ("where is the ball at which second?", None),
     ],
 )
 def test_words(session: Session, text: str, value: str | tuple[str, ...] | None) -> None:

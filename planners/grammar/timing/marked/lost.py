@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 from .....gaussians import late_re as re
 from .....gaussians.world.words import singular
-from ...learned.marks import Span
+from ...learned.marks import Span, held_by
 from ...learned.seen import hues
 from ...tagging.words import bag
 from ...vocabulary.nouns import is_known
@@ -48,8 +48,7 @@ def leaves_out(
     said = " ".join(words)
     counts = not timed or TIMED.search(said) is not None or _A_SECOND.search(said) is not None
     if not counts:  # only numbers of times: "by four and a half"
-        times = {at for tag, start, stop in spans if tag in TIMES for at in range(start, stop)}
-        free = free | (set(range(len(words))) - times)
+        free = free | (set(range(len(words))) - held_by(spans, *TIMES))
     return _loses_numbers(words, ops, free, spans)
 
 
@@ -86,7 +85,7 @@ _NOT_WANTED = bag(
 
 def _loses_numbers(words: Sequence[str], ops: Sequence[Fields], free: Set[int], spans: Sequence[Span]) -> bool:
     """Whether a number stands in no operation, and not among what is not wanted."""
-    named = {at for tag, start, stop in spans if tag in ("x", "y") for at in range(start, stop)}  # "the red one"
+    named = held_by(spans, "x", "y")  # "the red one"
     missing = set(_missing(words, ops)) - free - named
     if missing and "not" in words and "but" in words[words.index("not") :]:  # "not at 1 s but at 3 s"
         missing -= set(range(words.index("not"), words.index("but", words.index("not"))))

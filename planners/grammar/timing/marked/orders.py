@@ -10,7 +10,7 @@ from typing import Any, Literal
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
 from .....gaussians.world.words import singular
-from ...learned.marks import Span
+from ...learned.marks import Span, held_by
 from ...learned.seen import hues
 from ...tagging.words import bag
 from ...vocabulary.nouns import is_known, is_opened
@@ -326,7 +326,7 @@ def _named(words: Sequence[str], spans: Sequence[Span], thing: Thing) -> Iterato
     marks = [
         (start, stop) for tag, start, stop in spans if tag == "x" or (tag == "y" and words[start - 1] not in _SOURCES)
     ]
-    held = {at for _, start, stop in spans for at in range(start, stop)}
+    held = held_by(spans)
     marks += [(at - 1, at + 1) for at in range(1, len(words)) if at not in held and _is_bare_color(words, at)]
     if noun := next((noun for noun in map(singular, words) if is_opened(noun)), ""):
         whole = [mark for mark in marks if not set(words[mark[0] : mark[1]]) <= _RANKS_OF_PLACE | {"the", "one"}]

@@ -11,7 +11,7 @@ from itertools import chain, islice, pairwise
 from .....gaussians import late_re as re
 from .....gaussians.language.query.query import Query
 from .....gaussians.world.words import singular
-from ...learned.marks import Span
+from ...learned.marks import Span, held_by
 from ...learned.seen import hues
 from ...tagging.words import bag
 from ...vocabulary.nouns import is_known, is_opened
@@ -177,7 +177,7 @@ class Slots:
 
     def _without(self, *tags: str) -> str:
         """The words that stand in no mark with one of some tags."""
-        left_out = {at for tag, a, b in self.spans if tag in tags for at in range(a, b)}
+        left_out = held_by(self.spans, *tags)
         return " ".join(word for at, word in enumerate(self.words) if at not in left_out)
 
     @cached_property
@@ -201,7 +201,7 @@ class Slots:
             end: seconds of the end of the scene: what goes on until then may be told in numbers.
         """
         lasts = isinstance(self.moment.stop, float) and abs(self.moment.stop - end) < NEAR
-        marked = {at for _, start, stop in self.spans for at in range(start, stop)}
+        marked = held_by(self.spans)
         found = {at for at, word in enumerate(self.words) if word in PLACES and at not in marked}  # "1. blue, 2. red"
         for tag, start, stop in self.spans:
             said = " ".join(self.words[start:stop])
@@ -375,12 +375,12 @@ def slots(
     shades = [span for span in spans if span[0] == "as"]
     wanted = [span for span in shades if len(shades) == 1 or not _is_former(words[: span[1]])]
     colors = dict.fromkeys(_color(text(span)) for span in wanted)
-    marked = {at for _, start, stop in spans for at in range(start, stop)}
+    marked = held_by(spans)
     left = [word for at, word in enumerate(words) if at not in marked]
     numbers = any(_is_number(word, then) for word, then in pairwise([*left, ""]) if word not in _SAYS_SO.get(kind, ()))
     if len(colors) > (kind == "recolor") or numbers:
         return None
-    asking = {at for tag, start, stop in spans if tag in ("x", "y", "by") for at in range(start, stop)}
+    asking = held_by(spans, "x", "y", "by")
     said = " ".join(word for at, word in enumerate(words) if at not in marked or at in asking)
     return Slots(
         names, queries, goals, *time, tuple(amounts), next(iter(colors), ""), _rest(words, spans), said,
@@ -409,7 +409,7 @@ def _named_elsewhere(
     """What an instruction is about where no mark names that: what its other words name, or else that which its time is
     told by: "once the door has been open for a second, shut it"."""
     if not any(tag in ("x", "y") for tag, _, _ in spans):
-        taken = {at for _, start, stop in spans for at in range(start, stop)}
+        taken = held_by(spans)
         bare = " ".join("," if at in taken else word for at, word in enumerate(words))
         if found := names_in(bare, thing)[:1] or tuple(m[0] for m in islice(_A_THING.finditer(bare), 1)):
             return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .....gaussians import late_re as re
-from ...learned.marks import Span
+from ...learned.marks import Span, held_by
 from ...tagging.words import bag
 from ..asides import HUES
 from .kinds import SURE
@@ -92,8 +92,7 @@ def is_wished(words: Sequence[str], spans: Sequence[Span], chance: float, kind: 
         chance: the probability that it is a wish of its kind.
         kind: that kind.
     """
-    idle = {at for tag, start, stop in spans if tag in ("off", "not") for at in range(start, stop)}
-    held = {at for _, start, stop in spans for at in range(start, stop)}
+    idle, held = held_by(spans, "off", "not"), held_by(spans)
     left = [word for at, word in enumerate(words) if at not in held and word.isalpha()]
     asked = " ".join(word for at, word in enumerate(words) if at not in idle).strip(" ,.")
     said = " ".join(words)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ......gaussians import late_re as re
 from .....grammar.tagging.words import bag, clean, split
 from .kinds import kinds_of
@@ -9,42 +11,51 @@ from .phrases import SUMMED
 
 
 def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
-    """The likeliest kind with its probability; an average and a greatest speed are told apart by their words."""
+    """The likeliest kind with its probability; kinds that the networks take for each other are told apart by words."""
     found, said = dict(kinds_of(words)), " ".join(words)
     if not _FILM.search(said):
         found.pop("film_long")
     if _IS_SHUT.search(said):
-        found["if_shut"] = found.get("if_shut", 0.0) + found.pop("if_closes", 0.0)
+        _give(found, "if_shut", "if_closes")
     if _YES_OR_NO.search(said):
         found = {kind: chance for kind, chance in found.items() if kind.startswith("if_")}
     if SUMMED.search(said):
-        found["far"] = found.get("far", 0.0) + found.pop("far_opens", 0.0)
-    kind = max(found, key=found.__getitem__)
+        _give(found, "far", "far_opens")
     if "how many times" in said:
-        found["often"] = found.get("often", 0.0) + found.pop("how_many", 0.0)
+        _give(found, "often", "how_many")
     if _RANKS_ALL.match(said):
-        found["order"] = sum(found.pop(own, 0.0) for own in ("order", "first", "last"))
+        _give(found, "order", "first", "last")
     if _CUTS_OUT.search(said):
-        found["when_stops"] = found.get("when_stops", 0.0) + found.pop("when_starts", 0.0)
-    kind = max(found, key=found.__getitem__)
+        _give(found, "when_stops", "when_starts")
     if _TIMECODE.search(said):
-        for place, time in (("where_ends", "when_stops"), ("where_starts", "when_starts")):
-            found[time] = found.get(time, 0.0) + found.pop(place, 0.0)
-        kind = max(found, key=found.__getitem__)
-    if re.search(r"\bcross\w*", said):
-        found["long_on"] = found.get("long_on", 0.0) + found.pop("long_reach", 0.0)
-        kind = max(found, key=found.__getitem__)
+        _give(found, "when_stops", "where_ends")
+        _give(found, "when_starts", "where_starts")
+    if _CROSSES.search(said):
+        _give(found, "long_on", "long_reach")
+    kind = max(found, key=found.__getitem__)
     if kind in _POSES and _POSED.search(said):
-        return "long_open", sum(found[own] for own in _POSES)
+        return "long_open", _sum(found, *_POSES)
     if kind == "when_turns" and _LASTS.search(said):
-        return "long_moves", found[kind] + found["long_moves"]
+        return "long_moves", _sum(found, kind, "long_moves")
     if kind == "none" and _COUNTS.search(said) and sorted(found, key=found.__getitem__)[-2] == "how_many":
-        return "how_many", found["none"] + found["how_many"]  # of what stands still, too
+        return "how_many", _sum(found, "none", "how_many")  # of what stands still, too
     if kind in _WHERES and _WHERE_IS.match(said):
-        return "where_at", sum(found[own] for own in _WHERES)
+        return "where_at", _sum(found, *_WHERES)
     if kind in ("fast", "fast_most"):
-        return ("fast_most" if _GREATEST.search(said) else "fast"), found["fast"] + found["fast_most"]
+        return ("fast_most" if _GREATEST.search(said) else "fast"), _sum(found, "fast", "fast_most")
     return kind, found[kind]
+
+
+def _sum(found: Mapping[str, float], *kinds: str) -> float:
+    """The probability of one of some kinds; those that another has taken have none."""
+    return sum(found.get(kind, 0.0) for kind in kinds)
+
+
+def _give(found: dict[str, float], kind: str, *others: str) -> None:
+    """Give the probability of other kinds to one."""
+    found[kind] = _sum(found, kind, *others)
+    for other in others:
+        found.pop(other, None)
 
 
 _POSES = ("long_open", "long_still")
@@ -53,6 +64,7 @@ _POSED = re.compile(  # "how long does it just sit there pulled all the way out"
     r"\b(?:extended|outermost|outstretched)\b"
 )
 _LASTS = re.compile(r"\b(?:duration|how long|how much time|time (?:\w+ )*?(?:needs?|takes?|spends?|spent))\b")
+_CROSSES = re.compile(r"\bcross\w*")
 _COUNTS = re.compile(r"\bhow (?:many|much)\b|\bcount\b|\b(?:number|quantity) of\b")
 _RANKS_ALL = re.compile(r"^(?:please )?(?:rank|sort|order|arrange|line up)\b")
 _CUTS_OUT = re.compile(r"\b(?:cuts?|conks?|gives?|gave|switch(?:es)?|shuts?|powers?) (?:out|off|down)\b")

@@ -14,7 +14,7 @@ from functools import lru_cache
 from ......gaussians.world import kinds as kinds_of_things
 from ......gaussians.world.spelling import best_slip
 from ......gaussians.world.words import is_plural, plural, singular
-from .....grammar.learned.marks import Span
+from .....grammar.learned.marks import Span, held_by
 from .....grammar.tagging.spelling import is_word
 from .....grammar.tagging.words import bag, clean, split
 from .....grammar.timing.spoken import in_figures
@@ -63,7 +63,7 @@ def _plainly(
     told: tuple[str, ...], spans: Collection[Span], leg: str, kind: str, chance: float, names: frozenset[str]
 ) -> Iterator[str]:
     """The words of a question of a kind, with these marks, as plain questions; none if they say more."""
-    aside = {at for tag, start, stop in spans if tag == "off" for at in range(start, stop)}
+    aside = held_by(spans, "off")
     if asks_why(kind, " ".join(told), " ".join(word for at, word in enumerate(told) if at not in aside)):
         return
     said = said_of(told, spans, names)

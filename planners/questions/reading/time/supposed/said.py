@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from ......gaussians import late_re as re
 from ......gaussians.world import kinds as kinds_of_things
 from ......gaussians.world.words import singular
+from .....grammar.learned.marks import Span, held_by
 from .....grammar.tagging.words import bag
 from ...noun_phrase import is_color_word
 from ..frames import UNIT
@@ -15,6 +16,7 @@ from .phrases import PRONOUNS
 
 _DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|your|his|her|its|their|all|both|any|every)\b")
 
+_EACH = re.compile(r"(?:per|a|each|every) (?:second|minute)$")  # so many turns
 _IN_UNIT = re.compile(rf"\b(?:{UNIT}|rpm|revs? (?:a|per) minute)\b")
 
 
@@ -50,21 +52,20 @@ class Said:
     asked: bool = False
 
 
-def said_of(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], names: Collection[str]) -> Said | None:
+def said_of(words: tuple[str, ...], spans: Collection[Span], names: Collection[str]) -> Said | None:
     """The words of a question by their marks; None if two things stand where one can, or a time would be lost."""
     found: dict[str, list[str]] = {tag: [] for tag in ("x", "y", "t", "u", "off")}
-    inside = set[int]()
     before = ("", *words)  # the word before each
     spans = [(tag, a - (tag == "t" and before[a] in _CONJUNCTIONS), b) for tag, a, b in spans]
+    inside = held_by(spans)
     for tag, start, stop in spans:
         found[tag].append(" ".join(words[start:stop]).strip(" ,.?"))
-        inside |= set(range(start, stop))
     rest = " ".join(word for at, word in enumerate(words) if at not in inside)
     starts = {start for _, start, _ in spans}
     barred = " ".join(
         "|" if at in starts else word for at, word in enumerate(words) if at not in inside or at in starts
     )
-    idle = {at for tag, start, stop in spans if tag == "off" for at in range(start, stop)}
+    idle = held_by(spans, "off")
     first = next((word for at, word in enumerate(words) if at not in idle and word.isalpha()), "")
     events = [name for name in found["x"] if _AN_EVENT.match(name)]
     found["x"] = [name for name in found["x"] if name not in events and not _ONES.match(name)]
@@ -90,8 +91,8 @@ def said_of(words: tuple[str, ...], spans: Collection[tuple[str, int, int]], nam
     asides = (words[start:stop] for tag, start, stop in spans if tag == "off" and not _is_apart(words, start, stop))
     if len(found["t"]) > 2 or any(_TIMED.search(ASKS_WHEN.sub("", " ".join(aside))) for aside in asides):
         return None
-    each = re.match(r"(?:per|a|each|every) (?:second|minute)$", " ".join(found["u"]))  # of turns
-    unit = None if each else _IN_UNIT.search(re.sub(r"metre", "meter", " ".join(found["u"])))
+    wanted = re.sub(r"metre", "meter", " ".join(found["u"]))
+    unit = None if _EACH.match(wanted) else _IN_UNIT.search(wanted)
     return Said(
         x=_joined(things["x"]), y=_joined(things["y"][:1]), time=" ".join(found["t"]), unit=unit[0] if unit else "",
         rest=f" {rest} ", times=tuple(found["t"]), off=" ".join(found["off"]), places=things["y"],

@@ -238,7 +238,7 @@ def _plain_time(kind: str, said: str) -> str:
         return ""
     if kind == "apart" and _STRAIGHT.search(said):
         return ""
-    if (_FURTHEST.match(said) and kind.startswith("far")) or (kind == "long_open" and BEFORE_BACK.match(said)):
+    if _FURTHEST.match(said) and kind.startswith("far"):
         return ""
     if (way := _OUT.match(said)) is not None:
         return "while it is opening" if (way["way"] or way["doing"]) in ("out", "open") else "while it is closing"

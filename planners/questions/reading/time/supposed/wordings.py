@@ -67,7 +67,7 @@ def _moves(said: Said) -> Iterator[str]:
 
 
 _PLACE = re.compile(
-    r"^(?P<place>.*\b(?P<noun>corner|wall|side|middle|centre|center)(?:s|ner)?)(?: (?:of|in) (?:the |this )?\w+)?$"
+    r"^(?P<place>.*\b(?P<noun>corner|wall|side|middle|centre|center)s?)(?: (?:of|in) (?:the |this )?\w+)?$"
 )
 
 
@@ -181,9 +181,7 @@ def _often(said: Said) -> Iterator[str]:
 
 
 def _turns(said: Said) -> Iterator[str]:
-    if said.x and _wants_time(said):
-        yield f"how long does {said.x} take for one turn"
-    elif said.x:
+    if said.x:
         degrees = "degree" in f"{said.unit} {said.rest}" or "angle" in said.rest
         yield f"how many degrees does {said.x} turn" if degrees else f"how many turns does {said.x} make"
 
@@ -191,14 +189,15 @@ def _turns(said: Said) -> Iterator[str]:
 _HOW_LONG = re.compile(r"\b(?:how long|how many seconds|how much time|what (?:length|amount) of time|period)\b")
 
 
-def _wants_time(said: Said) -> bool:
-    return said.unit in ("seconds", "second", "s", "sec") or _HOW_LONG.search(f"{said.rest} {said.unit}") is not None
+def _one_turn(said: Said) -> Iterator[str]:
+    """How long one turn takes, where a time is wanted of how fast, or how often, something turns."""
+    timed = said.unit in ("seconds", "second", "s", "sec") or _HOW_LONG.search(f"{said.rest} {said.unit}")
+    if said.x and timed:
+        yield f"how long does {said.x} take for one turn"
 
 
 def _fast(said: Said) -> Iterator[str]:
-    if said.x and _wants_time(said):
-        yield f"how long does {said.x} take for one turn"
-    elif said.x:
+    if said.x:
         yield f"how fast does {said.x} move in {said.unit}" if said.unit else f"what is the average speed of {said.x}"
 
 
@@ -371,9 +370,9 @@ PLAIN: Mapping[str, Plain] = {
     "far": _either(_in_total, _about("how far does {x} move", unit=True)),
     "far_opens": _either(_in_total, _about("how far does {x} open", unit=True)),
     "far_turns": _about("by how many degrees does {x} turn"),
-    "fast": _fast,
+    "fast": _either(_one_turn, _fast),
     "fast_most": _about("what is the maximum speed of {x}", unit=True),
-    "turns": _turns,
+    "turns": _either(_one_turn, _turns),
     "often": _often,
     "where_ends": _about("where does {x} stop"),
     "where_starts": _about("where does {x} start"),
