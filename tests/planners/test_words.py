@@ -177,7 +177,7 @@ def test_synonyms_are_mutual() -> None:
     assert ("couch",) in narrower(("seat",)) and narrower(("sofa",)) == frozenset()
 
 
-@pytest.mark.parametrize("every", [80, pytest.param(40, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("every", [80, 40])
 @pytest.mark.slow
 def test_other_peoples_sentences(data_dir: Path, every: int) -> None:
     path = data_dir / "language" / "nr3d_utterances.json.gz"

@@ -83,7 +83,6 @@ def test_an_edit_in_a_window_has_the_bytes_of_the_edit_in_memory(source: Path, e
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_what_looks_further_has_the_same_bytes_where_all_of_it_fits(source: Path, encoder: Any) -> None:
     plan = EditPlan(
         instruction="move", ops=(Move(target=PIANO, direction="left", distance={"value": 0.3}),), planner="said"

@@ -74,7 +74,6 @@ def test_a_dream_through_a_pipeline(pipelines: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_photograph_is_seen_upright(pipelines: Path, tmp_path: Path) -> None:
     shown = Image.fromarray(np.random.default_rng(0).integers(0, 255, (8, 12, 3), dtype=np.uint8))
     shown.save(tmp_path / "upright.png")

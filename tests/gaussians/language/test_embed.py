@@ -250,9 +250,7 @@ def best_ious(scene: Scene, truth: NDArray[np.int32], objects: int) -> NDArray[n
     return np.array([max((m & t).sum() / (m | t).sum() for m in masks) for t in wholes])
 
 
-@pytest.mark.parametrize(
-    "count", [pytest.param(100, marks=pytest.mark.slow), 1500, pytest.param(6000, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("count", [100, 1500, 6000])
 @pytest.mark.slow
 def test_floaters_belong_to_nothing_and_leave_things_as_they_were(room: Room, embedded: Scene, count: int) -> None:
     added = strays(room.scene.cloud, count, seed=count)
@@ -287,7 +285,7 @@ def test_every_wall_is_a_thing_of_its_own(embedded: Scene, field: LanguageField)
         assert min(wall.box.size[:2]) < 0.1 * max(wall.box.size)  # one plane, not a corner of two
 
 
-@pytest.mark.parametrize("kept", [0, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kept", [0, 1])
 @pytest.mark.slow
 def test_dropping_views_changes_no_group(room: Room, embedded: Scene, kept: int) -> None:
     """Where fewer pictures were taken, things are as whole as before: borders are found in space."""

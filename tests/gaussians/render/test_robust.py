@@ -13,7 +13,6 @@ import numba
 import numpy as np
 import pytest
 import torch
-from amounts import spread
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -259,7 +258,7 @@ VIEWS = {
 }
 
 
-@pytest.mark.parametrize("name", spread(VIEWS, 3))
+@pytest.mark.parametrize("name", VIEWS)
 @pytest.mark.slow
 def test_fast_and_readable_agree_on_real_scenes(data_dir: Path, name: str) -> None:
     cloud = files.load(data_dir / "scenes" / name).cloud

@@ -56,7 +56,7 @@ def counted(parts: checkpoint.Checkpoint, seeds: range) -> tuple[int, int]:
     return len(answers), sum(answer.end == "done" for answer in answers)
 
 
-@pytest.mark.parametrize("count", [4, pytest.param(12, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [4, 12])
 @pytest.mark.slow
 def test_random_weights_give_valid_plans(parts: checkpoint.Checkpoint, count: int) -> None:
     valid, ended = counted(parts, range(count))
