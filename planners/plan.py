@@ -15,6 +15,8 @@ from ..tools.alternatives import either, given
 from ..tools.registry import AnyOp
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ..gaussians.language.query.query import Query
     from .rooms.graph import SceneGraph
 
@@ -165,6 +167,7 @@ class Movement(NamedTuple):
         degrees: its widest angle from the start.
         metres: the length of its way; of what slides how far out that takes it.
         edges: seconds at which it begins, ends or changes what it does, if these are few.
+        spells: from when to when it moves, each time and each way, seconds.
     """
 
     start: float
@@ -174,6 +177,7 @@ class Movement(NamedTuple):
     degrees: float = 0.0
     metres: float = 0.0
     edges: tuple[float, ...] = ()
+    spells: tuple[tuple[float, float], ...] = ()
 
     @property
     def rate(self) -> float:
@@ -203,6 +207,11 @@ class Observation(Protocol):
 
     def movement(self, query: Query) -> Movement | None:
         """How what a query names moves; None if it does not, or if that cannot be told."""
+        ...
+
+    def after(self, ops: Sequence[AnyOp], query: Query) -> Movement | None:
+        """How what a query names would move after operations that change when and how fast things do; None if it would
+        not, if they cannot be carried out, or if that cannot be told."""
         ...
 
     def has(self, query: Query) -> bool:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...gaussians.errors import UserError
+from ...gaussians.errors import ScenewrightError, UserError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ...gaussians.camera import Camera
     from ...gaussians.language.query.query import Query
     from ...gaussians.language.query.selection import Selection
@@ -17,6 +20,8 @@ if TYPE_CHECKING:
     from ...planners.plan import Movement
     from ...planners.rooms.graph import SceneGraph
     from ...planners.rooms.graph_scene import Stage
+    from ...tools.operation import Context
+    from ...tools.registry import AnyOp
 
 _FEW = 12  # keys of a way that somebody wrote, and that was not fitted to a film
 WIDTH = 768  # pixels, of the picture sent to a model: vision models scale down much larger pictures
@@ -54,20 +59,39 @@ def movement_of(scene: Scene, selection: Selection) -> Movement | None:
     """How the Gaussians of a selection move; None if they stand still, or if nothing was found."""
     from ...planners.plan import Movement
     from ...tools.ops.pace import is_turning
-    from ...tools.timing.retiming import divided, extent, movement
+    from ...tools.timing.retiming import divided, extent, spells
 
     if scene.motion is None or not selection.chosen:
         return None
     tracks, inside = divided(scene.motion, selection.ids.cpu().numpy())
     own = [track for track, belongs in zip(tracks, inside, strict=True) if belongs]
-    span = movement(own, scene.motion.start, scene.motion.stop)
-    if span is None:
+    times = spells(own, scene.motion.start, scene.motion.stop)
+    if not times:
         return None
+    span = times[0][0], max(end for _, end in times)
     radians, units = extent(own, span, scene.frame.up_vector)
     metres = units * (scene.frame.metres_per_unit or 1.0)
     turning = all(is_turning(track) for track in own)
     edges = sorted({float(time) for track in own if len(track.times) <= _FEW for time in track.times})
-    return Movement(*span, turning, scene.motion.stop, math.degrees(radians), metres, tuple(edges))
+    return Movement(*span, turning, scene.motion.stop, math.degrees(radians), metres, tuple(edges), tuple(times))
+
+
+def paced(scene: Scene, ops: Sequence[AnyOp], context: Context) -> Scene | None:
+    """The scene after operations that change when and how fast things move, without any check; None if one of them does
+    something else, or cannot be carried out."""
+    from ...tools.ops.pace import Pace
+    from ...tools.timing.spans import moving_one
+
+    for op in ops:
+        if not isinstance(op, Pace):
+            return None
+        try:
+            chosen = moving_one(scene, op.target, context, moves=True)
+            scene = op.apply(scene, chosen, context).scene
+        except ScenewrightError:
+            return None
+        context = replace(context, last=chosen)
+    return scene
 
 
 def picture_of(scene: Scene, camera: Camera) -> bytes:
@@ -111,6 +135,10 @@ class GraphObservation:
         return None
 
     def movement(self, query: Query) -> None:
+        """None: a written graph does not tell how something moves."""
+        return None
+
+    def after(self, ops: Sequence[AnyOp], query: Query) -> None:
         """None: a written graph does not tell how something moves."""
         return None
 

@@ -27,7 +27,7 @@ from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
-from .observation import any_moves, graph_of, movement_of, picture_of
+from .observation import any_moves, graph_of, movement_of, paced, picture_of
 from .own_references import own_references
 from .picture_models import infill_of, photographed, restyler_of
 from .plan_runner import PlanFailed, has_queries, run_plan
@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from ...tools.lifting.inpainters import Inpainter
     from ...tools.lifting.restylers import Restyler
     from ...tools.operation import Context
+    from ...tools.registry import AnyOp
     from .clarify import Question
     from .naming import Named
 
@@ -301,6 +302,14 @@ class Session:
         is not embedded yet."""
         found = self._in_motion(query, moves=True)
         return None if found is None else movement_of(self.scene, found)
+
+    def after(self, ops: Sequence[AnyOp], query: Query) -> Movement | None:
+        """How what a query names would move after operations that change when and how fast things do; None if it would
+        not, if they cannot be carried out, or if it names nothing there. Embeds the scene if it is not embedded yet."""
+        if (found := self._in_motion(query, moves=True)) is None:
+            return None
+        then = paced(self.scene, ops, self._context(self.last))
+        return None if then is None else movement_of(then, found)
 
     def has(self, query: Query) -> bool:
         """Whether a scene with motion surely has what a query names; no of others. Embeds the scene if it is not

@@ -41,7 +41,7 @@ from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import Word, clean, split, without_owners
 from .timing.ending import with_end
-from .timing.judging import Judge
+from .timing.judging import Judge, wording_of
 from .timing.keeping import Kept, held, without_kept
 from .timing.marked.kinds import SURE
 from .timing.reading import TimeReader, is_misread, may_be_timed
@@ -208,8 +208,11 @@ def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -
     except Refusal:
         if not kept:
             raise
-        asked, kept = cleaned, ()  # what seems to stay as it is may be what is asked for
-        outcome = _in_time(asked, previous, scene, reader, judge)
+        outcome = _in_time(cleaned, previous, scene, reader, judge)  # what seems to stay may be what is asked for
+        try:
+            return replace(outcome, ops=_as_kept(outcome.ops, asked, kept, scene))
+        except Refusal:
+            asked, kept = cleaned, ()
     return replace(outcome, ops=_as_kept(outcome.ops, asked, kept, scene))
 
 
@@ -248,7 +251,7 @@ def judge_of(scene: Observation | None, reader: TimeReader | None = None) -> Jud
         reader: reads its times, names and commands; None: a new one.
     """
     reader = TimeReader(_operations, _thing) if reader is None else reader
-    return Judge(reader) if scene is None else Judge(reader, scene.moves, scene.movement, scene.has)
+    return Judge(reader) if scene is None else Judge(reader, scene.moves, scene.movement, scene.has, scene.after)
 
 
 def _unknown(query: Query) -> None:
@@ -294,6 +297,10 @@ def _in_time(
             return _guessed(supposed)
         if judge.is_of_another_kind(cleaned, outcome.ops, SURE):
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
+    if not judge.does_as_told(outcome.ops, wording_of(cleaned)):
+        if supposed := judge.likeliest(cleaned):
+            return _guessed(supposed)
+        raise Refusal("what moves would not do so at the time that this tells", cleaned[:200])
     if scene is not None and _lacks(scene, outcome.ops) and (supposed := judge.likeliest(cleaned)):
         return outcome if _lacks(scene, supposed) else _guessed(supposed)
     of_all = any(query.text == "everything" for op in outcome.ops for query in _targets(op))

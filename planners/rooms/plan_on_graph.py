@@ -5,7 +5,7 @@ No scene is built or edited. impossible.py refuses steps that sizes make impossi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -14,6 +14,7 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...tools.binding import bound_targets, exchanged_likes
 from ...tools.operation import EditOp
+from ...tools.registry import AnyOp
 from ..impossible import Step, StepRefused, metres, refuse_above, refuse_impossible, refuse_part
 from ..plan import EditPlan, Movement, Observation, Planner, Verdict
 from .graph import SceneGraph
@@ -89,6 +90,10 @@ class _Later:
 
     def movement(self, query: Query) -> Movement | None:
         return self.before.movement(query)
+
+    def after(self, ops: Sequence[AnyOp], query: Query) -> Movement | None:
+        """As the scene's own."""
+        return self.before.after(ops, query)
 
     def has(self, query: Query) -> bool:
         """As the scene's own."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -135,24 +136,51 @@ def angles_at(track: Track, times: F64) -> F64:
     return np.asarray(np.interp(times, track.times, track.angles) + rate * np.maximum(0.0, times - track.times[-1]))
 
 
-def movement(tracks: tuple[Track, ...] | list[Track], start: float, stop: float) -> tuple[float, float] | None:
-    """When what the tracks move begins and ends to move, seconds; None if it never does."""
-    first, last = np.inf, -np.inf
+def spells(tracks: Iterable[Track], start: float, stop: float) -> list[tuple[float, float]]:
+    """From when to when what the tracks move does so, each time and each way, seconds: where it turns back, another
+    spell begins."""
+    found = list[tuple[float, float]]()
     for track in tracks:
         times = np.unique(
             np.clip(np.concatenate([track.times, [start, stop]]), start, max(stop, float(track.times[-1])))
         )
         turns, shifts = poses(track, times)
         places = turns @ track.pivot + shifts
-        reach = np.eye(3) * 0.5  # points half a unit from the pivot tell turns
-        corners = np.einsum("tij,kj->tki", turns, reach) + places[:, None]
-        steps = np.abs(np.diff(corners, axis=0)).max(axis=(1, 2))
-        moving = np.flatnonzero(steps > _STILL)
         if track.kind in ("spin", "hinge") and track.angles is not None:  # whole turns between keys
-            moving = np.flatnonzero(np.abs(np.diff(angles_at(track, times))) > _STILL)
-        if len(moving):
-            first, last = min(first, float(times[moving[0]])), max(last, float(times[moving[-1] + 1]))
-    return (first, last) if last > first else None
+            steps = np.diff(angles_at(track, times))[:, None]
+            far = np.abs(steps[:, 0])
+        else:
+            reach = np.eye(3) * 0.5  # points half a unit from the pivot tell turns
+            corners = np.einsum("tij,kj->tki", turns, reach) + places[:, None]
+            far = np.abs(np.diff(corners, axis=0)).max(axis=(1, 2), initial=0.0)
+            steps = np.diff(places, axis=0)
+        own = list[tuple[float, float]]()
+        for at in np.flatnonzero(far > _STILL):
+            goes_on = own and own[-1][1] == times[at] and float(steps[at - 1] @ steps[at]) >= 0
+            own[-1:] = [(own[-1][0], float(times[at + 1]))] if goes_on else [*own[-1:], _span(times, int(at))]
+        found += own
+    return _united(found)
+
+
+def _span(times: F64, at: int) -> tuple[float, float]:
+    return float(times[at]), float(times[at + 1])
+
+
+def _united(found: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Spells of several tracks as those of one thing: what overlaps is one, what only meets is not."""
+    made = list[tuple[float, float]]()
+    for begin, end in sorted(found):
+        if made and begin < made[-1][1] - _SAME:
+            made[-1] = (made[-1][0], max(made[-1][1], end))
+        else:
+            made.append((begin, end))
+    return made
+
+
+def movement(tracks: Iterable[Track], start: float, stop: float) -> tuple[float, float] | None:
+    """When what the tracks move begins and ends to move, seconds; None if it never does."""
+    found = spells(tracks, start, stop)
+    return (found[0][0], max(end for _, end in found)) if found else None
 
 
 def extent(tracks: list[Track], span: tuple[float, float], up: F64) -> tuple[float, float]:

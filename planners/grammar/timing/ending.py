@@ -18,7 +18,9 @@ _ENDS = re.compile(
     r"\b(?:reach(?:es|ing)?|gets? (?:there|to)|stop(?:s|ping)?|halt\w*|finish\w*|end(?:s|ing)?|arriv\w+|be there|"
     r"(?:switch|turn|cut|go)\w* (?:off|out)|come\w* to (?:a |its )?(?:stop|halt|rest|standstill))\b"
 )
-_STARTS = re.compile(r"\b(?:start\w*|begin\w*|set\w* off|leav\w+|clos\w+|shut\w*|open\w*|back|fall\w*|drop\w*)\b")
+_STARTS = re.compile(
+    r"\b(?:start\w*|begin\w*|depart\w*|set\w* off|leav\w+|clos\w+|shut\w*|open\w*|back|fall\w*|drop\w*)\b"
+)
 _STOPS = re.compile(r"\b(?:stop|halt|standstill|rest|off)")
 _SHORTEST = 0.05  # seconds of a movement
 

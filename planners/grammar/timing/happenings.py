@@ -17,6 +17,7 @@ from .clauses import Clause, owner, told
 from .manner import MOTION, Manner, Thing
 
 IT = Query(last=True)
+_ITSELF = re.compile(r"\b(?:it|him|her)self\b")
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,8 @@ class Happening:
             until = until.model_copy(update={"anchors": during.anchors})
         if during.state in ("open", "opening", "fully_open") and until.state == "moving" and " back" in other.said:
             until = until.model_copy(update={"state": "closing"})
-        if until.of == IT and during.of not in (None, IT):
+        itself = _ITSELF.search(other.said) is not None  # the thing that is changed
+        if until.of == IT and during.of not in (None, IT) and not itself:
             until = until.model_copy(update={"of": during.of})
         elif during.of == IT and until.of not in (None, IT):
             during = during.model_copy(update={"of": until.of})  # "after the turn and until the robot stops"

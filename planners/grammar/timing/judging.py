@@ -12,7 +12,9 @@ from pydantic import ValidationError
 from ....gaussians import late_re as re
 from ....gaussians.errors import UserError
 from ....gaussians.language.query.query import Query
+from ....tools.operation import EditOp
 from ....tools.registry import OPS
+from ....tools.registry import parse as parse_op
 from ....tools.when import When
 from ...plan import Movement
 from ..learned.marks import Span
@@ -30,6 +32,7 @@ from .marked.kinds import COURSES, LEAST, STATIC, SURE, is_changed_by, is_clear,
 from .marked.lost import leaves_out
 from .marked.names import MOVING, with_nouns
 from .marked.orders import each_in_time
+from .marked.proof import is_borne_out, moments_of
 from .marked.slots import ALL_MOVING, Slots, asks_more, slots
 from .marked.times import TIMES
 from .marked.wanted import Wanted
@@ -38,6 +41,7 @@ from .reading import CLAUSE, TIMELESS, TimeReader
 from .whens import of_one_movement
 from .wording import LONG_WORDS, in_words, spelt_out, spelt_right
 
+After = Callable[[Sequence[EditOp], Query], Movement | None]  # how something would move after operations
 Moves = Callable[[Query], bool | None]  # whether what a query names moves in the scene; None if that cannot be told
 
 _SURELY = 0.7  # probability from which it speaks against another change of a motion
@@ -101,15 +105,23 @@ _LOCKED = re.compile(  # "lock the ball to its spot while it rolls to the wall"
     r"\b(?:while|whilst|as) (?:it|he|she|they) (?:also |still )?"
     r"(?:rolls?|walks?|moves?|goes|drives?|travels?|spins?|opens?)\b"
 )
-_AT_REST = r"(?:still|shut|closed|motionless|not move|not be moving|stays? put|perfectly still|at rest)"
-_MOVES = r"(?:spin\w*|mov(?:e|es|ing)|roll\w*|walk\w*|turn\w*|open\w*|fall\w*|run\w*|rotat\w*)"
+_AT_REST = (
+    r"(?:still|shut|closed|motionless|not move|not be moving|stays? put|perfectly still|at rest|frozen|stationary)"
+)
+_MOVES = r"(?:spin\w*|mov(?:e|es|ing)|roll\w*|walk\w*|turn\w*|open\w*|fall\w*|run\w*|rotat\w*|going)"
+_THE_SAME_TIME = (
+    r"(?:(?:at|in|during|over|for) (?:the|that|those|this|these) (?:very )?same (?:time|moment|instant|seconds|period)|"
+    r"simultaneously|all at once|, together ,)"
+)
 _BOTH_AT_ONCE = re.compile(
     rf"\b{_MOVES}\b.{{0,40}}\b(?:and|but|yet|while)\b.{{0,30}}\b{_AT_REST}\b.{{0,20}}\b(?:at the same time|"
     rf"simultaneously|all at once)\b|"
     rf"\b{_AT_REST}\b.{{0,30}}\b(?:and|but|yet|while)\b.{{0,30}}\b{_MOVES}\b.{{0,40}}\b(?:at the same time|"
     rf"simultaneously|all at once)\b|"
     rf"\b{_MOVES}\b.{{0,40}}\b(?:and|but|yet)\b.{{0,8}}\b(?:at|in) the (?:same|very same) (?:time|moment|instant)\b"
-    rf".{{0,20}}\b{_AT_REST}\b"
+    rf".{{0,20}}\b{_AT_REST}\b|"
+    rf"\b{_MOVES}\b.{{0,40}}{_THE_SAME_TIME}(?: ,)? .{{0,25}}\b{_AT_REST}\b|"
+    rf"\b{_AT_REST}\b.{{0,40}}{_THE_SAME_TIME}(?: ,)? .{{0,25}}\b{_MOVES}\b"
 )
 _AT_A_RATE = re.compile(
     r"\b(?:once|twice|thrice|turns?|rounds?|revolutions?) (?:in|every|per|each) (?!a circle)", re.IGNORECASE
@@ -144,6 +156,7 @@ class Judge:
         reader: reads its times, names and commands.
         moves, movement: tell what moves in the scene, and how; None if there is none.
         has: tells whether the scene surely has what is named.
+        after: tells how something would move after operations.
     """
 
     def __init__(
@@ -152,8 +165,9 @@ class Judge:
         moves: Moves | None = None,
         movement: MovementOf | None = None,
         has: Callable[[Query], bool] | None = None,
+        after: After | None = None,
     ) -> None:
-        self._reader, self._moves, self._movement, self._has = reader, moves, movement, has
+        self._reader, self._moves, self._movement, self._has, self._after = reader, moves, movement, has, after
         self._likeliest: dict[tuple[str, float], tuple[Fields, ...] | None] = {}
 
     def likeliest(self, cleaned: str, least: float = 0.0) -> tuple[Fields, ...] | None:
@@ -197,7 +211,10 @@ class Judge:
         """As `_marked`, with these marks."""
         if any(asks_more(wording[start:stop], tag) for tag, start, stop in spans):
             return None
+        named = self._named_by(wording, spans)
         for still in (False, True):
+            if still and any(map(self._does_move, named)):
+                return None  # it then asks for a course of that
             kinds = likely(cleaned, still)
             kind, chance = next(iter(kinds), ("", 0.0))
             if kind in _EACH and (parts := each_in_time(wording, spans, self._reader.thing)):
@@ -228,7 +245,12 @@ class Judge:
         for wanted in commands(kind, held):
             with suppress(Refusal, UserError, ValidationError):
                 found = self._ops(wanted)
-                if found and not self._loses(found, wording, held) and not self.is_still(found):
+                if (
+                    found
+                    and not self._loses(found, wording, held)
+                    and not self.is_still(found)
+                    and self.does_as_told(found, wording, spans, kind)
+                ):
                     return of_one_movement(held.meant, found, held.aside)
         return None
 
@@ -441,6 +463,33 @@ class Judge:
             if OPS[op["op"]].makes_motion:
                 return False
         return False
+
+    def does_as_told(
+        self, ops: Sequence[Fields], wording: Sequence[str], spans: Sequence[Span] | None = None, kind: str = ""
+    ) -> bool:
+        """Whether a change of a motion changes it, and begins and ends something at the seconds that marks tell, as far
+        as a scene tells that.
+
+        Args:
+            spans: the marks; None: the likeliest.
+            kind: of the wish; "": the likeliest.
+        """
+        changes = [op.get("change") for op in ops if op["op"] == "pace"]
+        if changes.count("speed") > 1 and all(op.get("when") is None for op in ops):
+            return False  # "too slow for me, make it twice as fast"
+        if self._after is None or len(ops) != 1 or not changes:
+            return True
+        before = self._moves_how(ops[0]["target"])
+        if before is None:
+            return True
+        try:
+            done = tuple(map(parse_op, ops))
+        except UserError:
+            return True
+        spans = marked(wording) if spans is None else spans
+        kind = kind or next(iter(likely(" ".join(wording))), ("", 0.0))[0]
+        moments = moments_of(wording, spans, self._reader.thing, kind)
+        return is_borne_out(ops[0]["change"], before, self._after(done, ops[0]["target"]), moments)
 
     def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
         """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if

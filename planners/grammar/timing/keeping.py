@@ -6,7 +6,8 @@ so anyway nothing changes, where the plan can be made so it is, and what contrad
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 
 from ....gaussians import late_re as re
@@ -15,6 +16,7 @@ from ...plan import Movement
 from ..parsing import Refusal
 from ..tagging.words import bag
 from ..vocabulary.nouns import is_known
+from ..vocabulary.quantities import NUMBERS
 from .command import Fields
 from .ending import MovementOf, between
 from .marked.kinds import marked
@@ -30,7 +32,8 @@ _SAME = re.compile(  # words by which something stays as it is
     r"before|"
     r"specified|planned|ever|in the|at present|usual|today|fast|long|quick|slow)|like (?:now|before|it|they|always)|"
     r"always|(?:it|they|he|she) always|final|"
-    r"when (?:it|they|he|she) \w+|(?:it|they|he|she) (?:does|do|has|have) now|(?:keep|stay|remain|retain|leav)\w*|"
+    r"when (?:it|they|he|she) \w+|no (?:later|earlier|sooner) than|"
+    r"(?:it|they|he|she) (?:does|do|has|have) now|(?:keep|stay|remain|retain|leav)\w*|"
     r"kept|left|without \w+ing|"
     r"not (?:(?:to|being|is|are|be) )*(?:chang|alter|touch|affect|mov|modif|retim|delay)\w*)\b"
 )
@@ -45,7 +48,8 @@ _SUBJECTS = {  # what stays, and the words for it
     r"kick\w*|set(?:ting)? out|"
     r"letting go|take ?off|(?:tips?|takes?|goes|go|heads?) off|comes? out|falls?|drops?|opens?|timings?|times|"
     r"schedule|moment|cue|entrance|slots?",
-    "stop": r"ends?|until|till|out ?point|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|"
+    "stop": r"reach\w*|"
+    r"ends?|until|till|out ?point|ending|stops?|stopping|finish\w*|switch(?:es)? off|cut(?:s|ting)? out|"
     r"arriv\w*|"
     r"(?<!set )(?<!sets )(?<!tips )(?<!takes )(?<!goes )(?<!kicks )(?<!setting )"
     r"(?<!stepping )(?<!heading )(?<!moving )off|done|"
@@ -56,8 +60,13 @@ _SUBJECTS = {  # what stays, and the words for it
 _SAID = {name: re.compile(rf"\b(?:{words})\b") for name, words in _SUBJECTS.items()}
 _AS_EVER = re.compile(  # "then back on duty till 4 like always"
     r"\b(?:stop\w*|end\w*|finish\w*|until|till|off)\b.*\d.*\b(?:like|as) "
-    r"(?:always|ever|now|before|usual|it (?:does|did))\b"
+    r"(?:always|ever|now|before|usual|it (?:does|did))\b|"
+    r"\b(?:stop\w*|end\w*|finish\w*|off)\b.*\bwhen (?:it|he|she) (?:always |usually )?"
+    r"(?:stop|end|finish|did|does|used)\w*|"
+    r"\bno (?:later|earlier|sooner) than (?:now|before|at present|(?:it|he|she) (?:does|did))\b"
 )
+_ARRIVES = re.compile(r"\b(?:reach\w*|arriv\w*|there|appointment|home|until|till|stops?|ends?|finish\w*|off|over)\b")
+_OTHERWISE = re.compile(r"\b(?:not|no|instead|than|never|without|rather|too)\b")
 _STILL = re.compile(  # "..., but it should still stop at four seconds", "? It should still be off at 4 s"
     r" (?:[,.?;!] )?(?:and |but )*(?:(?:it|he|she|they) )?(?:(?:should|must|has to|is to|needs to|to) )*"
     r"still (?:has to )?"
@@ -68,7 +77,8 @@ _AS_TOLD = 0.3  # seconds by which what is said to stay may differ from how it i
 _NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?=$| (?!x\b|times|rpm|turns?|rounds?|rev|cm|m\b|deg|%))")
 _ITS_OWN = ("start", "stop")
 _OTHERS = re.compile(r"\b(?:others?|rest)\b")
-_NO_OTHERS = bag("start beginning fall drop stop end speed turn time second roll walk swing opening motion")
+_TO_A_PLACE = re.compile(r"\b(?:reach\w*|to|at|by|into|onto|against) (?:the|its|his|her|my) [a-z]+\b")
+_NO_OTHERS = bag("can start beginning fall drop stop end speed turn time second roll walk swing opening motion")
 
 
 @dataclass(frozen=True)
@@ -79,12 +89,14 @@ class Kept:
         facts: "start", "stop", "speed".
         start, stop: seconds that are said with it.
         said: the words.
+        supposed: whether only the seconds tell that: they are those of how it is now.
     """
 
     facts: frozenset[str]
     start: float | None = None
     stop: float | None = None
     said: str = ""
+    supposed: bool = False
 
 
 def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
@@ -94,23 +106,36 @@ def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
     'make the door open half as fast'
     """
     words = in_words(cleaned).split(" ")
+    tagged = [(tag, a, b, " ".join(words[a:b]).strip(" ,.;:")) for tag, a, b in marked(words) if tag in (TAG, "not")]
     if _SAME.search(" ".join(words)) is None:
-        return cleaned, ()
-    tagged = ((tag, a, b, " ".join(words[a:b]).strip(" ,.;:")) for tag, a, b in marked(words))
-    told = ((a, b, said) for tag, a, b, said in tagged if tag == TAG or (tag == "not" and _AS_EVER.search(said)))
+        return cleaned, tuple(_supposed(said for _, _, _, said in tagged))
+    told = ((a, b, said) for tag, a, b, said in tagged if tag == TAG or _AS_EVER.search(said))
     spans = [(a, b) for a, b, said in told if _SAME.search(said) and not _A_COMMAND.search(said)]
     if not spans and (found := _STILL.search(said := " ".join(words))) is not None:
         spans = [(said[: found.start()].count(" ") + 1, len(words))]
     cut = {at for a, b in spans for at in range(a, b)}
     rest = " ".join(word for at, word in enumerate(words) if at not in cut).strip(" ,;:")
+    supposed = tuple(_supposed(said for _, a, b, said in tagged if (a, b) not in spans))
     if not spans or len(re.findall(r"[a-z]+", rest)) < _LEAST:
-        return cleaned, ()
-    return rest, tuple(kept_by(" ".join(words[a:b]).strip(" ,.;:")) for a, b in spans)
+        return cleaned, supposed
+    return rest, (*(kept_by(" ".join(words[a:b]).strip(" ,.;:")) for a, b in spans), *supposed)
+
+
+def _supposed(said: Iterable[str]) -> Iterator[Kept]:
+    """What words that only may tell it say of an end that stays: "and afterwards it goes on until four"."""
+    for words in said:
+        numbers = [float(NUMBERS.get(word, word)) for word in words.split() if _A_NUMBER.fullmatch(word)]
+        if len(numbers) == 1 and _ARRIVES.search(words) and not _OTHERWISE.search(words):
+            yield Kept(frozenset({"stop"}), stop=numbers[0], said=words, supposed=True)
+
+
+_A_NUMBER = re.compile(rf"\d+(?:\.\d+)?|{'|'.join(word for word in NUMBERS if word not in ('a', 'an', 'one', 'half'))}")
 
 
 def kept_by(said: str) -> Kept:
     """What words say that stays. Of what other things do nothing is told: no operation changes that."""
-    if _OTHERS.search(said) or any(is_known(word) and word not in _NO_OTHERS for word in said.split()):
+    others = _TO_A_PLACE.sub(" ", said).split()
+    if _OTHERS.search(said) or any(is_known(word) and word not in _NO_OTHERS for word in others):
         return Kept(frozenset(), said=said)
     facts = frozenset(name for name, words in _SAID.items() if words.search(said))
     numbers = [float(found) for found in _NUMBER.findall(said)]
@@ -131,7 +156,8 @@ def held(ops: Sequence[Fields], kept: Sequence[Kept], movement: MovementOf) -> t
         Refusal: they change just what is to stay.
     """
     for own in kept:
-        ops = tuple(made for op in ops for made in _held(op, own, movement))
+        with suppress(Refusal) if own.supposed else nullcontext():
+            ops = tuple(made for op in ops for made in _held(op, own, movement))
     return tuple(ops)
 
 
@@ -140,6 +166,8 @@ def _held(op: Fields, kept: Kept, movement: MovementOf) -> tuple[Fields, ...]:
     if change is None or not kept.facts:
         return (op,)
     moves = movement(op["target"])
+    if kept.supposed and (moves is None or kept.stop is None or abs(kept.stop - moves.stop) > _AS_TOLD):
+        return (op,)
     start = kept.start if kept.start is not None or moves is None else moves.start
     stop = kept.stop if kept.stop is not None or moves is None else moves.stop
     made: Fields | None = op
@@ -147,15 +175,28 @@ def _held(op: Fields, kept: Kept, movement: MovementOf) -> tuple[Fields, ...]:
         made = _faster(op, kept, moves, stop)
     elif change in ("begin", "later"):
         made = _begun(op, kept, start, stop)
+        if made is not None and moves is not None and moves.turns and made is not op and _begins_only(op):
+            return op, _stopped(op, moves.stop)  # as fast as now
     elif change == "stop" and "stop" in kept.facts:
         if not _ends(op):
             made = None  # it stops early
         elif moves is not None and moves.turns and stop is not None:  # it runs no longer for its rest
-            return op, {"op": "pace", "target": op["target"], "change": "stop", "when": When(start=round(stop, 4))}
+            return op, _stopped(op, stop)
     if made is None:
         reason = "it asks to change what it says is to stay as it is; leave one of the two out"
         raise Refusal(reason, kept.said, verdict="impossible")
     return (made,)
+
+
+def _begins_only(op: Fields) -> bool:
+    """Whether a movement only gets another beginning, and no other duration."""
+    when = op.get("when") or When()
+    return when.lasting is None and when.stop is None
+
+
+def _stopped(op: Fields, stop: float) -> Fields:
+    """What lets the target of an operation rest from then on."""
+    return {"op": "pace", "target": op["target"], "change": "stop", "when": When(start=round(stop, 4))}
 
 
 def _faster(op: Fields, kept: Kept, moves: Movement | None, stop: float | None) -> Fields | None:

@@ -23,6 +23,7 @@ _SWAYS = {
     "tremble": "shake", "vibrate": "shake", "jiggle": "shake", "rattle": "shake", "quiver": "shake", "shiver": "shake",
     "swing": "swing", "sway": "swing", "wobble": "wobble", "rock": "wobble", "totter": "wobble", "teeter": "wobble",
 }  # fmt: skip
+_IN_PLACE = re.compile(r"\b(?:there|in place|in (?:the |mid )?air)\b")
 _HUNG = bag("door gate window drawer lid hatch flap cupboard cabinet fridge")  # which swing on a hinge
 _LONGER = bag("further farther more another extra longer again wider")
 _TURNING = bag("fan propeller wheel globe rotor windmill carousel blade top")
@@ -40,6 +41,8 @@ def swayed(clause: Clause, manner: Manner, moment: Moment) -> Iterator[Command]:
         how == "swing" and any(singular(w) in _HUNG for w in clause.target.text.split())
     ):
         return
+    if clause.verb.first == "hover" and _IN_PLACE.search(" ".join(clause.tail)) is not None:
+        return  # "lift it, and let it hover there"
     if manner.way not in ("", "up") or (manner.way and how not in ("hop", "bob")) or (manner.way and not manner.length):
         return
     if (manner.length is not None and how in ("swing", "wobble")) or (

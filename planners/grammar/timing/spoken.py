@@ -45,6 +45,7 @@ _NOTATION = tuple(  # of times and rates
             r"\b(?P<what>turns?|rotations?|rev(?:olution)?s?|spins?|rounds?) ?/ ?s(?:ec(?:onds?)?)?\b",
             r"\g<what> per second",
         ),
+        (r"(?<=[a-z]) along with (?:it|him|them)(?= ?(?:$|[.!]))", " too"),
         (r"(?<=\bby )\+ ?(?=\d)", "plus "),
         (r"(?<=\bby )[-−–] ?(?=\d)", "minus "),
         (

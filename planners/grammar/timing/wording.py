@@ -70,6 +70,13 @@ _SYNONYMS = tuple(
         (rf"(?:for )?(?:all )?t ?(?:≤|<=|<) ?(?P<a>{_DIGITS}) ?(?:s\b)?", r"until \g<a> s"),
         (rf"(?P<a>{_DIGITS}(?: ?s)?) ?(?:…|→|\.\.\.?) ?(?:t ?= ?)?(?={_DIGITS})", r"\g<a> to "),
         (r"in (?:lieu|place) of", "instead of"),
+        (r"where (?P<what>the [a-z]+) (?:ends|finishes)(?= ?(?:$|[,.;!?]))", r"when it leaves \g<what>"),
+        (
+            r"the (?P<what>drawer|shelf|book|one) (?:of|in|at) the (?P<rank>middle|top|bottom)"
+            r"(?= ?(?:$|[,.;!?]| (?!of)))",
+            r"the \g<rank> \g<what>",
+        ),
+        (r"(?P<rank>first|last) of all(?= (?:the|my|our)\b)", r"\g<rank>"),
         (r"(?:all|all along|all through) the (?=film|clip|video|movie)", "for the whole "),
         (rf"(?P<lead>at|by|for|in|to|from|after|up|until|around) like (?={_NUMBER}\b)", r"\g<lead> "),
         (r"(?P<rank>first|last) second and a half", r"\g<rank> 1.5 seconds"),

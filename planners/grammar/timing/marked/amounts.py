@@ -16,11 +16,12 @@ Unit = Literal["s", "m", "m/s", "deg", "turns", "turns/s", "times", "%", ""]  # 
 _WORD = "|".join(sorted((word for word in NUMBERS if word.isalpha()), key=len, reverse=True))
 _N = (
     r"(?:\d+(?:\.\d+)?|three quarters(?: of an?)?|(?:an? )?quarter(?: of an?)?|(?:an? |one )?half(?: an?)?|"
-    rf"(?:an? |one |two )?thirds?(?: of an?)?|(?:{_WORD})(?: (?:{_WORD}))?(?: and a half)?|an?)"
+    rf"(?:an? |one |two )?thirds?(?: of an?)?|(?:an? |one )?fourth(?: of an?)?|"
+    rf"(?:{_WORD})(?: (?:{_WORD}))?(?: and a half)?|an?)"
 )
 _FULL = (
     r"(?: (?:full|whole|complete|entire|quick|slow|little|gentle|lazy|short|small|graceful|single|proper|good|solid|"
-    r"mere|more|further))*"
+    r"mere|more|further|unhurried|leisurely|stately|elegant|calm|smooth|steady|even))*"
 )
 _ROUNDS = r"(?:turns?|revolutions?|revs?|rotations?|rounds?|spins?|circles?|twirls?|pirouettes?|laps?|times|cycles?)"
 _EACH = (
@@ -53,14 +54,14 @@ _TABLE: tuple[tuple[Unit, str], ...] = (  # tried in their order
     (
         "times",
         r"(?P<factor>twice|double[ds]?|two fold|twofold|triple[ds]?|thrice|quadruple|halve[ds]?|half|"
-        r"(?:two|three) (?:thirds|quarters)|quarter|third)",
+        r"(?:two|three) (?:thirds|quarters)|quarter|fourth|third)",
     ),
     ("times", rf"factor (?:of )?(?P<n>{_N})"),
 )
 _PATTERNS = tuple((unit, re.compile(rf"(?<![\w.]){pattern}(?![\w.]*\d|\w)")) for unit, pattern in _TABLE)
 _FACTORS = {  # by how the word begins
     "twice": 2.0, "doub": 2.0, "twof": 2.0, "two fold": 2.0, "trip": 3.0, "thri": 3.0, "quad": 4.0, "hal": 0.5,
-    "quar": 0.25, "third": 1 / 3, "two thirds": 2 / 3, "three quarters": 0.75,
+    "quar": 0.25, "four": 0.25, "third": 1 / 3, "two thirds": 2 / 3, "three quarters": 0.75,
 }  # fmt: skip
 _MORE = re.compile(r"\b(?:more|extra|further|additional|good|solid|full|whole|mere) (?=(?:seconds?|secs?)\b)")
 _ANOTHER = re.compile(r"\banother (?=(?:seconds?|secs?)\b)")
@@ -174,8 +175,8 @@ def number(said: str) -> float | None:
         return None if whole is None else whole + 0.5
     if said in ("a", "an"):
         return 1.0
-    said = re.sub(r"^(?:an?|one) (?=half|quarter|third)", "", said)
-    parts = {"half": 0.5, "quarter": 0.25, "third": 1 / 3, "two thirds": 2 / 3, "three quarters": 0.75}
+    said = re.sub(r"^(?:an?|one) (?=half|quarter|fourth|third)", "", said)
+    parts = {"half": 0.5, "quarter": 0.25, "fourth": 0.25, "third": 1 / 3, "two thirds": 2 / 3, "three quarters": 0.75}
     if said in parts:
         return parts[said]
     words = said.split()

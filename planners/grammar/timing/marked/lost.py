@@ -103,11 +103,12 @@ def _missing(words: Sequence[str], ops: Sequence[Fields]) -> Iterator[int]:
     shares = [{v and 1 / v, 100 * v, 1 - v, 100 * (1 - v), 100 * (v - 1)} for v in exact]
     units = {scale * v for v in exact for scale in (360, 60, 1000)}  # degrees and minutes of turns, millimetres
     held = exact.union({0.0}, units, *shares)
-    for at, (word, then) in enumerate(zip(words, (*words[1:], ""), strict=True)):
+    for at, word in enumerate(words):
+        then, behind = (*words[at + 1 : at + 3], "", "")[:2]
         if is_known(singular(then)) or then in _NO_NUMBER or then in _PARTS_OF_IT or (at and words[at - 1] == "other"):
             continue  # "ahead of the other two"
         told = float(word) if re.fullmatch(r"\d+(?:\.\d+)?", word) else float(NUMBERS.get(word, 1))
-        seconds = re.fullmatch("full|whole|s|sec|secs|seconds?", then) is not None
+        seconds = re.fullmatch("s|secs?|seconds?", behind if then in ("full", "whole") else then) is not None
         alone = word == "one" and at > 0 and words[at - 1] in _AT and not then.isalpha()  # "starting at one"
         seconds |= alone and " ".join(words[max(0, at - 2) : at]) != "one by"
         seconds &= word != "a" or (at > 0 and words[at - 1] in ("for", "over", "within", "in"))

@@ -20,7 +20,9 @@ _UP = re.compile(
     r"off the ground|soar\w*|elevat\w+|jack|climb\w*)\b"
 )
 
-_DOWN = re.compile(r"\b(?:down|downwards?|lower\w*|sink\w*|sank|descend\w*)\b")
+_DOWN = re.compile(
+    r"\b(?:(?<!set )(?<!put )(?<!lay )(?<!touch )(?<!touches )down|downwards?|lower\w*|sink\w*|sank|descend\w*)\b"
+)
 
 _LEFT = re.compile(r"\bleft(?:wards?)?\b")
 

@@ -76,6 +76,18 @@ def begin(slots: Slots) -> Iterator[Wanted]:
         return
     if not slots.told:
         return
+    if (
+        isinstance(moment.stop, float)
+        and moment.start is None
+        and moment.lasting is None
+        and _ARRIVES.search(slots.rest)
+    ):
+        moves = None if slots.happening is not None else slots.movement(slots.queries[0])
+        if moves is not None and (begins := round(moves.start + moment.stop - moves.stop, 4)) >= 0:
+            slots.pass_goals()
+            slots.repeated |= set(moment.said)
+            yield paced(slots, "begin", Moment(start=begins))  # "delay it such that it reaches the bed at 4.9 s"
+        return
     if moment.stop is not None and moment.start is None and slots.happening is None and moment.lasting is None:
         if not slots.tell(_LATER) and not any(tag in ("from", "to") for tag, _, _ in slots.spans):
             return
@@ -110,6 +122,8 @@ def begin(slots: Slots) -> Iterator[Wanted]:
         return
     yield paced(slots, "begin", moment)
 
+
+_ARRIVES = re.compile(r"\b(?:reach\w*|arriv\w*|gets? (?:there|to|home)|is there|be there|lands?) ?(?:\||$|,|there)")
 
 _BETWEEN = re.compile(r"\b(?:between|apart|intervals?|stagger\w*|spaced?)\b")
 
@@ -204,7 +218,12 @@ def duration(slots: Slots) -> Iterator[Wanted]:
     if goes_on and (moves is None or moves.turns):
         return  # how long it goes on, or how long it takes
     if moment.lasting is None and moment.stop is None and (seconds := slots.one("s")) is not None:
-        if slots.tell(re.compile(r"\b(?:longer|shorter|more|less|another|extra|additional|sooner|earlier|later)\b")):
+        if slots.tell(_BY_MORE):
+            if (sign := 1 if slots.tell(_LONGER) else -1 if slots.tell(_SHORTER) else 0) and moves is not None:
+                slots.repeated.add(seconds.said)  # "it ought to reach the wall a whole second sooner"
+                ends = round(moves.stop + sign * seconds.value, 4)
+                if not moves.turns and ends > moves.start + _SHORTEST:
+                    yield paced(slots, "begin", Moment(start=round(moves.start, 4), stop=ends))
             return
         moment = replace(moment, lasting=seconds.value)
     if moment.lasting is not None and _ends_itself(slots):
@@ -217,6 +236,11 @@ def duration(slots: Slots) -> Iterator[Wanted]:
         value = factor.value / 100 if factor.unit == "%" else factor.value
         if value > 0:
             yield paced(slots, "speed", moment, factor=round(1 / value, 4))
+
+
+_BY_MORE = re.compile(r"\b(?:longer|shorter|more|less|another|extra|additional|sooner|earlier|later)\b")
+_LONGER, _SHORTER = re.compile(r"\b(?:longer|later)\b"), re.compile(r"\b(?:shorter|sooner|earlier)\b")
+_SHORTEST = 0.05  # seconds of a movement
 
 
 def _ends_itself(slots: Slots) -> bool:

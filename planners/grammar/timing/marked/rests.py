@@ -93,7 +93,13 @@ def halt(slots: Slots) -> Iterator[Wanted]:
         far = {own.said for own in slots.amounts if own.unit in ("times", "%", "deg", "m")}
         slots.used |= far  # "half out, from 1.5 s on"
         slots.repeated |= far
+        if slots.happening is not None and slots.happening.until is not None and _ONLY.search(slots.whole):
+            over = {"until": "from", "until_end": "after"}[slots.happening.until.part]
+            ends = slots.happening.until.model_copy(update={"part": over})  # "it does the first leg only, then parks"
+            yield Wanted(pace(whose_of(slots), "stop"), moment, Happening(ends, slots.happening.said))
+            return
         yield paced(slots, "stop", replace(moment, stop=None) if moment.stop == "end" else moment)
+        yield from _stops_later(slots, moment)
         return
     if (where := _where(slots)) is not None:  # "it jams at 40 degrees till the film ends"
         yield _stopped(slots, where, Moment())
@@ -101,6 +107,16 @@ def halt(slots: Slots) -> Iterator[Wanted]:
         yield paced(slots, "stop", replace(moment, start=moment.stop, stop=None))
 
 
+def _stops_later(slots: Slots, moment: Moment) -> Iterator[Wanted]:
+    """What is to come to rest later than it does now, on the same way: "it only comes to rest at 4.7 s"."""
+    moves = slots.movement(slots.queries[0])
+    late = isinstance(moment.start, float) and moves is not None and moment.start > moves.stop
+    if moves is not None and late and slots.happening is None:
+        same = None if moves.turns else round(moves.start, 4)
+        yield paced(slots, "go_on" if moves.turns else "begin", Moment(start=same, stop=moment.start))
+
+
+_ONLY = re.compile(r"\b(?:only|just|no (?:second|further|more|other))\b")
 _SHORT_OF = re.compile(r"\b(?:short|before|away)\b")
 
 

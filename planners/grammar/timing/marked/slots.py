@@ -26,7 +26,7 @@ from .names import MOVING, PARTS, with_colors, with_moving
 from .names import named as names_in
 from .orders import PLACES
 from .times import TIMES
-from .when import LOOKS, NEAR, PLACES_IN_TURN, is_a_time, tells_number, time_of, with_both_ends
+from .when import KEEPING, LOOKS, NEAR, PLACES_IN_TURN, is_a_time, tells_number, time_of, with_both_ends
 
 _EVENTS = (
     r"(?:falls?|falling|drops?|movements?|motions?|rolls?|rolling|walks?|walking|turns?|turning|rotations?|spins?|"
@@ -41,6 +41,7 @@ _GROUP_OF = re.compile(
     r"^(?:the |that |this )?(?:whole |entire )?(?:row|lot|trio|set|shelf|stack|group|bunch|line|gang|series|"
     r"collection) of (?:the )?(?=(?:\w+ )?\w+s$)"
 )
+_ANY_OF = re.compile(r"^any of (?:the|my|our|those|these) (?=(?:\w+ )*\w+s$)")  # which is not wanted
 _IN_A_ROOM = re.compile(r"\b(?:dining|living|sitting|drawing|guest|bath)(?: room|room) (?=\w)")  # where it hangs
 _ITS_EVENT = re.compile(rf"(?: 's?)?(?: (?:whole|entire|full|complete|outward|return|own|\w+ward))? {_EVENTS}$")
 _STATE = re.compile(r"\b(?:open|opened|closed|shut|opening|closing) (?=[a-z])")  # before the name of what opens
@@ -219,7 +220,11 @@ class Slots:
                 }
             if tag in TIMES and (self.moment.always or _THROUGHOUT.search(said)):
                 found |= set(range(start, stop))  # "for all five seconds"
-            if tag in _IDLE or (tag == "by" and sum(map(tells_number, self.words[start:stop])) > 1):
+            if (
+                tag in _IDLE
+                or (tag in TIMES and KEEPING.match(said))
+                or (tag == "by" and sum(map(tells_number, self.words[start:stop])) > 1)
+            ):
                 found |= {at for at in range(start, stop) if any(abs(self._number(at) - now) < NEAR for now in facts)}
             if tag in _IDLE:
                 found |= {at for at in range(start, stop - 1) if tag == "off" and _counts(self.words[at + 1])}
@@ -309,6 +314,7 @@ def slots(
         return " ".join(words[span[1] : span[2]]).strip(_TRIM)
 
     spans = [_joined(span, words, kind) for span in sorted(spans, key=lambda span: span[1])]
+    spans = list(_merged([_as_duration(span, words, text(span)) for span in spans], text, kind))
     if kind in ("open", "close", "together"):
         spans = [own for span in spans for own in _with_another(span, words)]
     thing = with_colors(thing, words, spans)
@@ -440,6 +446,35 @@ def _as_amount(span: Span, said: str) -> Span:
     return ("by", start, stop) if enough or (tag == "to" and _TO_A_NUMBER.match(said)) else span
 
 
+def _as_duration(span: Span, words: Sequence[str], said: str) -> Span:
+    """A mark of how long something is to take: also of how much, behind "which may take"; "in half the time" tells how
+    much."""
+    tag, start, stop = span
+    if tag == "for" and _SHARE_OF_TIME.match(said) is not None:
+        return "by", start, stop
+    takes = tag == "by" and start and words[start - 1] in _TAKE
+    return ("for", start, stop) if takes and (far := amount(said)) is not None and far.unit == "s" else span
+
+
+_SHARE_OF_TIME = re.compile(
+    r"^(?:in |within )?(?:only |just )?(?:half|twice|double|a third|a quarter)(?: of)? (?:the|its|that) time$"
+)
+_TAKE = bag("take takes taking last lasts lasting")
+
+
+def _merged(spans: Sequence[Span], text: Callable[[Span], str], kind: str) -> Iterator[Span]:
+    """The marks, turns and the time in which they are made as one: "[by one turn] [for in two seconds]"."""
+    left = list(spans)
+    while left:
+        (tag, start, stop), *left = left
+        rate = kind in ("speed", "spin") and tag == "by" and left and left[0][:2] == ("for", stop)
+        if rate and _TURNS.search(text((tag, start, stop))) and _IN_A_TIME.match(text(left[0])):
+            stop = left.pop(0)[2]
+        yield tag, start, stop
+
+
+_TURNS = re.compile(r"\b(?:turns?|rounds?|revolutions?|rotations?|circles?)$")
+_IN_A_TIME = re.compile(r"^(?:in|every|per|each) ")
 _ENOUGH = re.compile(
     r"\b(?:(?:is|are|will be|would be|ought to be|should be|'s) )?(?:quite |more than |just )?(?:plenty|enough|ample|"
     r"suffic\w+|(?:the )?(?:limit|max|maximum)|as far as (?:it|we) (?:go|goes|want)|will do|would do|does it)\b"
@@ -568,7 +603,7 @@ def _things(said: Iterator[str], thing: Thing, grouped: bool = False) -> tuple[t
         if _JUST_EVENT.match(name) or name in _CRIES:
             continue
         bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
-        bare = _GROUP_OF.sub("all the ", bare)
+        bare = _GROUP_OF.sub("all the ", _ANY_OF.sub("all the ", bare))
         bare = _IN_A_ROOM.sub("", re.sub(r" 's?$", "", bare))
         bare = _STATE.sub("", with_moving(bare)) if is_opened(bare) else with_moving(bare)
         head = _BESIDE_IT.split(bare)[0].split()

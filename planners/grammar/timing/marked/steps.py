@@ -86,7 +86,8 @@ def in_step(slots: Slots) -> Wanted | None:
         return None
     as_it_moves = slots.happening is not None and slots.happening.during.state in ("moving", "opening")
     if slots.happening is not None and as_it_moves and slots.happening.during.part == "while" and slots.moment.empty:
-        other = slots.happening.during.of
+        of = slots.happening.during.of
+        other = other if of in (None, IT) and other is not None else of
     elif not slots.told and len(slots.goals) == 1 and _AS_ONE.search(slots.rest):
         other = slots.goals[0].query
         slots.pass_goals()

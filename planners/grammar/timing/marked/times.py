@@ -65,7 +65,7 @@ _BESIDE = re.compile(  # "set off with the robot", "at the same time as the top 
 )
 _ALL = re.compile(
     r"\b(?:whole|entire|throughout|all (?:of )?(?:the|this) (?:film|clip|video|scene|movie|sequence|shot)|"
-    r"all (?:the way )?through|over the length of|all the time|always|"
+    r"all (?:the way )?through|over the length of|all the time|always|permanent(?:ly)?|"
     r"(?:beginning|start) to (?:the )?(?:end|finish))\b"
 )
 _A_PART = re.compile(r"\b(?:first|last|opening|closing|final|initial|middle|second|third)\b.*\b(?:seconds?|secs?)\b")
@@ -103,6 +103,18 @@ _GIVEN = re.compile(  # "once it is open give it a second"
     r"^(?P<clause>(?:once|when|after|as soon as) .+?) (?:give|allow|leave|wait)(?: it| him| her)? "
     rf"(?P<delay>{DURATION})(?: 's?)?(?: (?:airing|rest|break|pause|peace|hold|breather|grace))?$"
 )
+_AND_WAITS = re.compile(  # "after it has opened it waits half a second"
+    r"^(?P<clause>(?:once|when|after|as soon as) .+?)(?: ,)?(?: and)? (?:it|he|she|they) "
+    r"(?:waits?|pauses?|rests?|lingers?|holds?|"
+    r"(?:stays?|stands?|remains?|sits?|hangs?)(?: there| so| open| still| out)?)"
+    rf"(?: for)? (?P<delay>{DURATION})$"
+)
+_THEN = re.compile(r"(?: ,)?(?: and)? then$")
+_AT_ITS_WIDEST = re.compile(
+    r"^(?:at (?:its|the) (?:widest|fullest|full stretch|far end)|at full stretch|"
+    r"(?:fully|wide|all the way) (?:open|out|extended))"
+    rf" for (?P<delay>{DURATION})$"
+)
 _HAS_BEEN = re.compile(
     r"^(?P<who>(?:once|after|when|as soon as|only after|from when) .+?) (?:has|have|is|'s|was|had) been "
     rf"(?P<state>[a-z ]+?)(?: for)? (?P<delay>{DURATION})$"
@@ -116,6 +128,9 @@ _WAITS = re.compile(
 
 def delayed(phrase: str) -> tuple[str, float | None]:
     """Words with a mark of time without the seconds that pass behind what they tell, and these; None if none do."""
+    phrase = _THEN.sub("", phrase)
+    if (widest := _AT_ITS_WIDEST.match(phrase)) is not None:
+        return "once it is fully open", seconds_of(widest["delay"])
     if (waits := _WAITS.match(phrase)) is not None:
         return "after it has stopped", seconds_of(waits["delay"]) or 1.0
     delay = None
@@ -123,7 +138,7 @@ def delayed(phrase: str) -> tuple[str, float | None]:
         who = stood["who"] or "it"
         opened = re.search(r"\b(?:open|out)\b", stood["state"]) is not None
         return (f"once {who} is fully open" if opened else f"after {who} has stopped"), seconds
-    for pattern in (_DELAY, _HAS_BEEN, _GIVEN, _PLUS):
+    for pattern in (_DELAY, _HAS_BEEN, _GIVEN, _AND_WAITS, _PLUS):
         found = pattern.match(phrase)
         seconds = None if found is None else seconds_of(found["delay"]) or seconds_of(f"{found['delay']} seconds")
         if found is not None and seconds is not None:
@@ -261,7 +276,9 @@ def _at(tag: str, phrase: str, value: End) -> Moment | None:
     return None
 
 
-_PASSED = re.compile(r" (?:on the dot|(?:has|have) (?:passed|elapsed|gone(?: by)?)|(?:is|are) (?:over|up))$")
+_PASSED = re.compile(
+    r" (?:on the dot|(?<=seconds )reach(?:ed)?|(?:has|have) (?:passed|elapsed|gone(?: by)?)|(?:is|are) (?:over|up))$"
+)
 _WHOLE_SECONDS = re.compile(r"\b(?:whole|full|entire|good|solid|complete) (?=(?:seconds?|secs?)\b)")
 _UNTIL_THEN: dict[Part, Part] = {"from": "until", "while": "until", "after": "until_end"}
 _WITH_THE_FILM = re.compile(r"\b(?:with|as) the (?:film|clip|video|movie|scene|shot)$")

@@ -15,7 +15,7 @@ from ...vocabulary.nouns import is_known
 from ...vocabulary.quantities import NUMBERS
 from ..happenings import IT, Happening
 from ..manner import Thing
-from ..moments import DURATION, End, Moment
+from ..moments import DURATION, End, Moment, seconds_of
 from .amounts import amount
 from .events import is_told_by_event, told_by_event, told_by_leg
 from .names import named as names_in
@@ -24,7 +24,7 @@ from .times import LASTS, LEADING, TIMES, UNTIL, delayed, joined, told_by
 
 LOOKS = ("recolor", "hide", "remove")  # kinds that other things only tell the place of
 NEAR = 0.06  # seconds by which a number may differ from what it says of how it is now
-_KEEPING = re.compile(
+KEEPING = re.compile(
     r"^(?:while|whilst|all the while) (?:still )?(?:preserving|keeping|maintaining|retaining|leaving|holding|"
     r"conserving)\b|^(?:from|at|with|in) (?:the |its |his |her )?(?:same|usual|present|current|normal|old|original) "
     r"(?!(?:time|moment|instant|second|frame) (?:as|that|when)\b)"
@@ -44,6 +44,21 @@ _PLAINER = (  # times in plainer words
             r"(?: (?:fully|wide|right|all the way|completely|wholly))? (?=(?:open|out)\b)"
         ),
         "is fully ",
+    ),
+    (re.compile(r"^at the (?:stroke|count|mark) of "), "at "),
+    (re.compile(r"^to (?=(?:\d|one\b|two\b|half\b|a )[^,]* (?:after|once|when|behind) )"), ""),
+    (
+        re.compile(
+            r"^(?:and )?with (?P<who>(?:the|my|our) [a-z ]+?) (?P<how>(?:fully |wide |all the way |completely )?"
+            r"(?:open|out|shut|closed))(?: again)?$"
+        ),
+        r"when \g<who> is \g<how>",
+    ),
+    (
+        re.compile(
+            r"^in (?:sync|step|time|tandem) with (?P<who>(?:the|my|our) [a-z ]+?) (?P<what>opening|closing|moving)$"
+        ),
+        r"while \g<who> is \g<what>",
     ),
     (re.compile(r"\bthe rest of (?:the|this) \w+$"), "the rest of the film"),
     (
@@ -86,6 +101,14 @@ _ARRIVES = re.compile(
     r"\b(?:there|arriv\w+|position|place|last|ends?|ending|done|finish\w*|reach\w*|gets?|stops?|lands?|home|parks?|"
     r"complet\w+|back|again|return\w*|re ?\w+s)\b"
 )
+_FOR_THE_TIME = re.compile(
+    r"^(?:just |only )*(?:for|during) (?:the|that) (?:time|moments?|seconds?|bit) (?:when|that|in which)\b"
+)
+_IS_THERE = re.compile(
+    r"\b(?:be|is|are|been|stands?|sits?) (?:there|in place|home|in position)(?: just| right| exactly)?$|"
+    r"\b(?:arriv(?:e|es|ing)|gets? there|reach(?:es|ing)? it)(?: there)?(?: just| right| exactly)?$"
+)
+_ONCE = re.compile(r"^(?:and )?(?:when|once|as soon as)\b")
 _ENDED = ("hide", "recolor", "pause", "halt")  # kinds that two times begin and end: "gone at 1 s, and back at 3 s"
 _A_NUMBER = re.compile(r"^(?:at|from|in) (?:t ?= ?|second )?\d")
 _REASON = re.compile(  # "since it's leaking, take it out"
@@ -122,6 +145,7 @@ _TOGETHER = re.compile(
     r"^one (?:after|behind) (?:the )?(?:other|another)$|^one by one$|^in turn$|^out and (?:back )?in(?: again)?$|"
     r"^(?:(?:both|all|in|and|out|shuts?|opens?|close[sd]?|times|again|back) )*together\b(?! with\b)[a-z ]*$"
 )
+_WITH_IT = re.compile(r"^(?:[a-z]+ ){0,4}together with (?:it|him|her|that(?: one)?)$")
 PLACES_IN_TURN = bag("first then next last lastly finally and the one ones top middle bottom upper lower drawer , ;")
 _REVERTED = re.compile(  # ", and come back when it is closed again"
     r"\b(?:back|returns?|reappears?|again|visible|normal|usual|reverts?)\b.*?"
@@ -129,7 +153,9 @@ _REVERTED = re.compile(  # ", and come back when it is closed again"
 )
 _RESTS = re.compile(rf"^for (?P<lasting>{DURATION}) (?P<then>(?:after|once|when|from|right after|as soon as) .+)$")
 _OF_NO_TIME = ("amount", "speed", "spin")  # kinds whose amounts are no times
-_AT_A_TIME = re.compile(r"^(?:(?:forward|back|up|out|on) )?(?:to|at|from) (?:t ?= ?)?\d+(?:\.\d+)?$")  # for what begins
+_AT_A_TIME = re.compile(
+    r"^(?:(?:forward|back|up|out|on) )?(?:to|at|from) (?:t ?= ?)?\d+(?:\.\d+)?(?: (?:s|secs?|seconds))?$"
+)  # for what begins
 _CLAUSE = re.compile(r"\bsame\b|\b(?:as|with|when|while|once|until|till|after|before|during) \w+ \w+")
 _COMPLETED = re.compile(r"\b(?:completed?|finished|done|over with|arriv\w+|there)(?: already)?$")
 
@@ -151,7 +177,7 @@ def time_of(
             if lasting is None or lasting[0] is None or (both := joined(moment, lasting[0])) is None:
                 return None
             moment, phrase = both, rests["then"]
-        if tag not in TIMES or not phrase or _KEEPING.match(phrase):
+        if tag not in TIMES or not phrase or KEEPING.match(phrase):
             continue
         if (
             kind == "repeat"
@@ -161,6 +187,8 @@ def time_of(
             continue  # "right after the first", "without a break"
         if kind == "repeat":
             phrase = _SECOND_TIME.sub("", _EACH_TIME.sub("", phrase))
+        if kind == "open" and _WITH_IT.search(phrase):
+            continue  # "out and back in together with it"
         if kind in _OF_SEVERAL and (_TOGETHER.match(phrase) or set(phrase.split()) <= PLACES_IN_TURN):
             continue  # "first bottom, then middle"; "together and shuts together"
         said = phrase = _THAT.sub(lambda found: "the" if is_known(found["noun"]) else found[0].split()[0], phrase)
@@ -181,6 +209,10 @@ def time_of(
         phrase, delay = delayed(LEADING.sub("", phrase))
         if tag == "from" and kind == "pause" and (before := _JUST_BEFORE.match(phrase)) is not None:
             phrase = f"when {phrase[before.end() :]}"  # a rest before its turn begins where that did
+        idles = tag in ("from", "for") and kind in _RESTED_BEFORE and happening is not None and _begins(happening)
+        if idles and delay is None and moment.start is None and (rest := _REST.match(phrase)) is not None:
+            moment = replace(moment, start=seconds_of(_SMALL.sub("", rest["delay"])))
+            continue  # "once it is open, let it hold its breath for one second"
         told = _told(tag, phrase, said if delay is None else phrase, thing, happening)
         if told is None and times > 1 and _says_nothing(phrase, thing):
             continue
@@ -197,6 +229,8 @@ def time_of(
             if (both := joined(moment, found)) is None:
                 return None
             moment = both
+        if tag == "from" and event is not None and kind in _BEGUN and event.during.part == "while":
+            event = replace(event, during=event.during.model_copy(update={"part": "from"}))
         if event is not None and happening is not None:
             resting = kind == "pause" and moment.lasting is not None and _begins(happening)
             if resting and event.during.part == "until":
@@ -213,6 +247,15 @@ def time_of(
     return moment, happening
 
 
+_BEGUN = ("close", "move", "begin", "return", "repeat", "reverse")  # kinds of what begins "when the door is open"
+_RESTED_BEFORE = ("close", "return")  # kinds before which a thing may rest where it is
+_SMALL = re.compile(r"\b(?:little|short|brief|tiny|quick|single|bare|scant|full|whole|good) ")
+_REST = re.compile(  # how long
+    r"^(?:(?:let |have )?(?:it |he |she )?"
+    r"(?:waits?|holds?|rests?|pauses?|lingers?|stays?|stands?|remains?|sits?|hangs?)"
+    r"(?:ing)?\b(?: (?!for\b)[a-z]+){0,3}? (?:for )?)?"
+    rf"(?P<delay>(?:a |one |an? )?(?:{_SMALL.pattern})?{DURATION}|(?:a|one) {_SMALL.pattern}(?:second|sec))$"
+)
 _SAID_BEFORE = re.compile(r" [.;:?!] ")
 _RIGHT = re.compile(r" , (?:yes|right|see|ok|okay)$")
 
@@ -232,6 +275,8 @@ def _divided(spans: Sequence[Span], text: Callable[[Span], str]) -> Iterator[tup
 def _both(one: Happening, other: Happening) -> Happening | None:
     """The time that two tell: from one until the other, or from when something has happened, while something is so;
     None if they do not go together."""
+    if one.during == other.during and None in (one.until, other.until):
+        return other if one.until is None else one  # "after its turn, while it walks on to the bed"
     found = one.ended(other) or other.ended(one)
     for begins, lasts in ((one, other), (other, one)) if found is None else ():
         if begins.during.part in ("from", "after") and lasts.during.part == "while" and lasts.until is None:
@@ -315,10 +360,16 @@ def _plainer_tag(tag: str, phrase: str, before: str, kind: str, moment: Moment, 
     numbers = isinstance(moment.start, float) or _A_NUMBER.search(phrase) is None
     if tag == "from" and begun and kind != "repeat" and ((kind in _ENDED and numbers) or _ARRIVES.search(before)):
         tag = "to"
+    if tag == "from" and kind in LOOKS and _FOR_THE_TIME.match(phrase):
+        return "in"  # "just for the moment when it turns"
+    if tag == "from" and kind == "move" and _IS_THERE.search(before) and not begun:
+        return "to"  # "it has to be there just when the door starts to open"
     if kind == "close" and tag == "to" and _STAYS_OPEN.match(phrase) and re.search(r"\b(?:open|out)\b", before):
         return "from"  # "leave it open till four, then close it"
     if tag == "from" and kind not in LOOKS and _COMPLETED.search(before) and _A_NUMBER.search(phrase):
         tag = "to"
+    if tag == "in" and begun and kind in _ENDED and _ONCE.match(phrase):
+        return "to"  # "when it gets on the rug it goes yellow, and when it leaves the rug, red"
     if tag == "from" and (UNTIL.match(phrase) or _UP_TO_THEN.search(before)):
         tag = "to"
     if tag == "in" and _AT_A_SECOND.match(phrase) and kind not in LOOKS:
