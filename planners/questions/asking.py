@@ -17,6 +17,7 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.world import kinds as world
 from ...gaussians.world.words import singular
 from ..grammar.tagging.words import bag
+from ..grammar.timing.spoken import with_endings
 from ..rooms.node import NodeId
 from . import kinds
 from .answer import Answer, AnswerType
@@ -33,6 +34,7 @@ from .reading.time.happenings import thing
 from .reading.time.loosely import loosely
 from .reading.time.situated import situated
 from .reading.time.sorting import sorted_events
+from .reading.time.supposed.forms import Form, chance_of
 from .reading.time.supposed.guards import SURE
 from .reading.time.supposed.likely import goes_first
 from .reading.time.supposed.plainly import LEAST, supposed
@@ -102,7 +104,7 @@ def route(text: str, survey: Survey, timeline: Timeline | None = None) -> Readin
     Raises:
         UserError: the text is too long.
     """
-    text = _DECIMAL.sub(".", text)
+    text = with_endings(_DECIMAL.sub(".", text))
     if timeline is None:
         found = _static(text, survey)
         told = found.kind == "" or (found.kind == "undecidable" and not found.sight)
@@ -128,6 +130,9 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         first = goes_first(text)
         strictly = not first and found.answer.answer != ()
         surer = _read_as(supposed(text, names, LEAST if first else SURE, strictly), survey, timeline)
+        if surer is None and (form := _form(found)) is not None and chance_of(text, form) < _HARDLY:
+            likely = _read_as(supposed(text, names, _LIKELY), survey, timeline)
+            surer = None if likely is None or _form(likely) == form else likely
         return found if surer is None or _agree(found.answer, surer.answer) else surer
     misread = found is None or found.answer.text.startswith(_MISREAD)
     for questions in _guesses(text, words, names, misread):
@@ -137,6 +142,20 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         return found
     none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
     return Reading(none, sight=True)
+
+
+def _form(told: Reading) -> Form | None:
+    """The form of an answer."""
+    if told.answer.answer_type == "yesno":
+        return "yesno"
+    if told.answer.answer_type in ("number", "metres"):
+        seconds: Form = "moment" if told.kind == "when" else "duration"
+        return seconds if told.answer.unit == "s" else "number"
+    return "name" if told.answer.answer_type in ("label", "list") else None
+
+
+_HARDLY = 0.25  # probability of the form of an answer below which another reading is looked for
+_LIKELY = 0.3  # that of a kind that is one, then
 
 
 def _agree(one: Answer, other: Answer) -> bool:

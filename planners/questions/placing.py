@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ...gaussians.world.support import ALOFT
 from . import measuring
 from .relating import related, supporter
 from .room_places import AT_WALL, corner_of, in_corner, wall_of, zone
@@ -25,6 +26,8 @@ def _place_of(thing: Thing, survey: Survey) -> tuple[str, str]:
     if not isinstance(on, str):
         inside = thing.group.box.center[2] < on.group.box.center[2] + on.group.box.size[2] / 2
         return f"{'in' if inside else 'on'} {survey.named(on)}", _side(thing, survey)
+    if on == ALOFT:
+        return "in the air", _on_ground(thing, survey)[0]
     if on == "wall":
         below = [t for t in related("under", (thing,), survey) if t.node is not None and t.node.support == "floor"]
         more = f"above {survey.named(below[0])}" if below else _beside(thing, survey)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.relation_geometry import HOLDS
-from ...gaussians.world.support import SHELL, is_stepped_on
+from ...gaussians.world.support import ALOFT, SHELL, is_stepped_on
 from .room_places import AT_WALL, wall_of
 from .survey import Survey, Thing
 
@@ -59,9 +59,10 @@ def related(name: str, anchors: Sequence[Thing], survey: Survey) -> list[Thing]:
 
 
 def supporter(thing: Thing, survey: Survey) -> Thing | str:
-    """What a thing stands on or hangs from: a thing, or "floor", "wall" or "ceiling"."""
+    """What a thing stands on or hangs from: a thing, or "floor", "wall", "ceiling" or, of what rests on nothing,
+    `ALOFT`."""
     assert thing.node is not None
-    if thing.node.support in SHELL:
+    if thing.node.support in (*SHELL, ALOFT):
         return str(thing.node.support)
     return survey.thing(thing.node.support)
 
@@ -107,7 +108,7 @@ def _held(name: str, thing: Thing, anchor: Thing, survey: Survey) -> float:
         return relations.score("inside", thing.group, [anchor.group], survey.stand)
     if supported:
         return 1.0
-    if thing.node.support in ("wall", "ceiling"):
+    if thing.node.support in ("wall", "ceiling", ALOFT):
         return 0.0
     if thing.node.support not in SHELL and not _is_flat(anchor):
         return 0.0  # it stands on something else

@@ -6,7 +6,7 @@ question are resolved in the scene itself, with its encoder and its measured col
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -22,7 +22,7 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.language.query.terms import LOOSE, color_term
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.relation_geometry import HOLDS, Stand
-from ...gaussians.world.support import SHELL
+from ...gaussians.world.support import ALOFT, SHELL
 from ...gaussians.world.words import is_plural, plural
 from ..rooms.graph import SceneGraph
 from ..rooms.graph_scene import Id, Stage
@@ -144,6 +144,12 @@ class Survey:
         nodes = tuple(n if n.id in self.sure else n.model_copy(update={"label": ""}) for n in self.graph.nodes)
         graph = self.graph.model_copy(update={"nodes": nodes})
         return replace(self, graph=graph, stage=Stage.of(graph), places={}, _memory={}, _fronts={}, _names={})
+
+    def with_aloft(self, ids: Collection[Id]) -> Survey:
+        """The same things, of which some rest on nothing."""
+        nodes = tuple(n.model_copy(update={"support": ALOFT}) if n.id in ids else n for n in self.graph.nodes)
+        graph = self.graph.model_copy(update={"nodes": nodes})
+        return replace(self, graph=graph, stage=replace(self.stage, graph=graph)) if ids else self
 
     # -- things -----------------------------------------------------------------------------------------------------
 

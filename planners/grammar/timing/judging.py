@@ -66,7 +66,7 @@ _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IG
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _EACH = {"order": "begin", "begin": "begin", "together": "begin", "open": "open", "close": "close", "hide": "hide"}
 _PACED_KINDS = ("duration", "speed", "begin", "pause")
-_IN_TURN = {"open", "order"}
+_IN_TURN, _ITS_TIME = {"open", "order"}, {"begin", "duration"}  # kinds that one wish may be of
 _SEEN = ("delete", "opacity", "recolor")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
 MARKED = 0.5  # probability of a kind from which what the marks hold is its command
@@ -222,8 +222,8 @@ class Judge:
                     return None
                 own = [self.made_of(_EACH[kind], SURELY, words, marks) for words, marks in parts]
                 return None if None in own else tuple(op for ops in own for op in ops or ())
-            if {own for own, _ in kinds[:2]} == _IN_TURN:
-                chance = sum(chance for _, chance in kinds[:2])  # things that open one after the other
+            if {own for own, _ in kinds[:2]} in (_IN_TURN, _ITS_TIME):
+                chance = sum(chance for _, chance in kinds[:2])  # things that open in turn; a beginning and an end
             if chance < least:
                 return None
             if (found := self.made_of(kind, chance, wording, spans)) is not None:

@@ -102,8 +102,13 @@ def written(spoken: str) -> str:
         text = pattern.sub(plain, text)
     text = _FROM_ROOM.sub(r"\g<order>\g<end>", _TOO_CLUTTERED.sub(r"\g<order>", text))
     text = _SOONER.sub(" would rather", _OFF_AT.sub(_switched, _IT_IS.sub("it is ", text)))
-    text = _SOON_AS.sub("as soon as", _DROPPED.sub(_in_full, _SLANG.sub("", text)))
+    text = _SOON_AS.sub("as soon as", with_endings(_SLANG.sub("", text)))
     return _DO_NOT_BE.sub(_prohibited, text)
+
+
+def with_endings(text: str) -> str:
+    """A text with the last letter of verbs: "leavin' the rug" is leaving it."""
+    return _DROPPED.sub(_in_full, text)
 
 
 def _switched(found: re.Match[str]) -> str:

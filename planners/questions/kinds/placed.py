@@ -9,7 +9,7 @@ from dataclasses import replace
 from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds, relations
 from ....gaussians.world.relation_geometry import HOLDS
-from ....gaussians.world.support import SHELL
+from ....gaussians.world.support import ALOFT, SHELL
 from ..answer import Answer, Evidence
 from ..candidates import Case, agreed, is_plural, meant, unknown, whole
 from ..kind import Asked, Kind
@@ -503,9 +503,9 @@ def _support(asked: Asked, survey: Survey) -> Answer | None:
         found = supporter(thing, survey)
         name = found if isinstance(found, str) else found.name
         told = f"the {found}" if isinstance(found, str) else survey.named(found)
-        verb = {"wall": "hangs on", "ceiling": "hangs from"}.get(name, "stands on")
+        verb = {"wall": "hangs on", "ceiling": "hangs from", ALOFT: "is in"}.get(name, "stands on")
         ids = [thing] if isinstance(found, str) else [found, thing]
-        if wanted is not None and (name in SHELL if isinstance(found, str) else found.row not in wanted):
+        if wanted is not None and (name in (*SHELL, ALOFT) if isinstance(found, str) else found.row not in wanted):
             return unknown("label", f"None of those: {survey.named(thing)} {verb} {told}.", ids)
         if "y" in asked.slots and not isinstance(found, str) and sum(t.label == found.label for t in survey.things) > 1:
             name = survey.named(found).removeprefix("the ")

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from ....gaussians.camera import Camera
     from ....gaussians.language.encoders import Encoder
     from ....gaussians.scene import Scene
+    from ...rooms.node import Node
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,10 +234,17 @@ class Timeline:
         """The scene at a time as questions see it."""
         key = round(min(max(time, self.start), self.stop), 4)
         if key not in self._surveys:
-            self._surveys[key] = Survey.of_scene(at(self.scene, key), self.viewer, self.encoder)
+            survey = Survey.of_scene(at(self.scene, key), self.viewer, self.encoder)
+            self._surveys[key] = survey.with_aloft([n.id for n in survey.graph.nodes if self._is_aloft(n)])
         return self._surveys[key].in_scene(at(self.scene, key), self.viewer, self.encoder, self.last)
 
+    def _is_aloft(self, node: Node) -> bool:
+        """Whether something that moves at some time is well above the floor, and stands on nothing else."""
+        own = self._courses.get(int(node.id)) if node.support == "floor" else None
+        return own is not None and own.moves and node.bottom > max(_ALOFT, node.size[2])
 
+
+_ALOFT = 0.15  # metres above the floor
 _LEVELS = {"highest": "top", "lowest": "bottom", "middle": "middle"}
 
 

@@ -21,6 +21,7 @@ from ...timeline.happening import steps
 from .when import COUNTED_TURNS, moment, turns_of
 
 _ONCE = re.compile(r"\bonce\b")
+_SOON = 1e-3  # seconds: what is so soon after another thing happens with it
 _WAITS = (
     "wait",
     "waits",
@@ -104,7 +105,7 @@ def _between(told: Told) -> Answer | None:
     first, second = told.frame.what, told.frame.other
     if second is None or (first.deed is None and second.deed is None):
         return None
-    times, bodies = [], []
+    times, bodies = list[float](), list[Body]()
     for what in (first, second):
         body, found = told.nth(what) if what.nth else (told.one(what), [])
         found = found or told.spans(body, what)
@@ -112,7 +113,9 @@ def _between(told: Told) -> Answer | None:
             raise Untold(cap(f"{body.name} never {verb(told, what)}."))
         deed = what.deed or (first.deed or second.deed)
         assert deed is not None
-        times.append(moment(deed, found[-1] if deed.stops else found[0]))
+        own = [moment(deed, span) for span in found]
+        behind = [time for time in own if times and time > times[0] + _SOON]
+        times.append(behind[0] if behind and not deed.stops else own[-1] if deed.stops else own[0])
         bodies.append(body)
     if bodies[0] is bodies[1] and times[0] == times[1]:
         return None  # one happening is read twice

@@ -176,12 +176,18 @@ _LEGS = re.compile(
     rf"\b(?:{_RANK.format('early')}\b.*)?\b(?P<adj>slower|faster|quicker|longer|shorter|more slowly|more quickly)\b"
     rf"(?:.*?\b{_RANK.format('late')}\b)?.*? than\b.*?\b{_RANK.format('other')}\b"
 )
+_THAN_THE_OTHER = re.compile(
+    rf"(?P<one>\b(?P<side>before|after) the turn) than (?:on |in |during |over )?(?:the |its |his |her )?"
+    rf"(?:{_RANK.format('rank')}|other)\b.*$"
+)
 _LEG = re.compile(r"\b(?:leg|walk|stretch|part|bit|section|straight|half|stage|run|trip)s?\b")
 _ASKED_IF = re.compile(r"\b(?:is|are|was|were|does|do|did)\b|true|right|correct|confirm|agree")
 
 
 def _of_legs(said: str) -> str:
     """Words that compare the legs of a way as ones that compare what is before a turn with what is behind it."""
+    if (told := _THAN_THE_OTHER.search(said)) is not None:  # "it is faster before the turn than on its second leg"
+        return f"{said[: told.end('one')]} than {'after' if told['side'] == 'before' else 'before'} it"
     found = _LEGS.search(said)
     if found is None or not _LEG.search(said) or not _ASKED_IF.search(said):
         return said

@@ -82,6 +82,7 @@ _MEANT = re.compile(
 )
 _THEN = re.compile(r" (?:then|by then)(?=[?. ]|$)")
 _IT = re.compile(r" (?:it|he|she|they) ")
+_PRONOUN = re.compile(r" (?:it|he|she|they)(?=[ ?.!,]|$)")
 _SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z\"'(a-z])")
 
 
@@ -164,10 +165,19 @@ def question_alone(text: str) -> Iterator[str]:
             elif _WHEN_THAT.match(question) and (cue := _ASKING.search(before)) is not None:
                 yield f"{before[cue.start() :]}?"
             else:
-                yield asked[0]
+                yield _named_before(asked[0], before)
             return
     yield from _meant(text)
     yield from _behind_a_comma(text)
+
+
+def _named_before(question: str, before: str) -> str:
+    """A question with the one thing that the sentence before it names in place of its pronoun: "I have a car here. Did
+    it move?"."""
+    named, it = _one_named(re.findall(r"[\w.]+", before)), _PRONOUN.search(question)
+    if not named or it is None or any(kinds.find(singular(w)) for w in question[: it.start()].lower().split()):
+        return question
+    return _PRONOUN.sub(f" {named}", question, count=1)
 
 
 def _meant(text: str) -> Iterator[str]:

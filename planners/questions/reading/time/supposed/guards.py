@@ -21,6 +21,8 @@ _HARD = (HARD - {"one"}) | bag("after before further until while backwards backw
 def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
     """Whether words without a mark say more than the kind of question does."""
     plain = _EACH_SECOND.sub(" ", _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub(" when ", said.rest)))
+    if kind.startswith("long_"):
+        plain = _FINALLY.sub(" ", _LASTS.sub(r"\g<1>", plain))
     if kind.startswith("where_"):
         plain = _WHICH_PLACE.sub(" where ", plain)
     if _is_another(kind, said, plain):
@@ -40,7 +42,8 @@ def _is_another(kind: str, said: Said, plain: str) -> bool:
     if kind == "when_reaches" and _CROSSED.search(plain):
         return True
     several = any(word in NUMBERS and word != "one" for word in said.x.split())
-    if kind.startswith("when_") and (_UNTIL_WHEN.search(plain) or (several and ALL_OF.match(said.x) is None)):
+    until = kind != "when_stops" and _UNTIL_WHEN.search(plain) is not None  # "until what second does it turn"
+    if kind.startswith("when_") and (until or (several and ALL_OF.match(said.x) is None)):
         return True  # "when have two books fallen"
     if kind in ("what_moves", "what_still"):
         whose = said.x in _ANYTHING or is_kind(said.x) or " and " in said.x or _APART.search(said.rest) is not None
@@ -100,6 +103,8 @@ _BY_A_PLACE = re.compile(  # "comes to rest at which wall", "quits the shelf boa
     r"(?:the |its |his |her |which |what |that )?(?:[a-z]+ )?[a-z]+(?= )"
 )
 _AROUND = re.compile(r" (?:around|round) (?:the |this |that )?(?:[a-z]+ )?[a-z]+(?= )")
+_LASTS = re.compile(r"(\b(?:does|do|did|will|would|should|must|to) (?:.* )?)lasts?\b")  # "how long does it last"
+_FINALLY = re.compile(r"\b(?:final|total) (?=(?:stop|standstill|rest|halt|time|duration|transit|running)\b)")
 _WHAT_SECOND = re.compile(
     r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b|"
     r"\bthe (?:exact |precise |very )?second (?:(?:at|in|on) which|where|when|that)\b"

@@ -25,14 +25,20 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
         _give(found, "often", "how_many")
     if _RANKS_ALL.match(said):
         _give(found, "order", "first", "last")
-    if _CUTS_OUT.search(said):
+    if _CUTS_OUT.search(said) or _OFF_AT.search(said):
         _give(found, "when_stops", "when_starts")
     if _TIMECODE.search(said):
         _give(found, "when_stops", "where_ends")
         _give(found, "when_starts", "where_starts")
     if _CROSSES.search(said):
         _give(found, "long_on", "long_reach")
-    kind = max(found, key=found.__getitem__)
+    if _ON_WHICH_SIDE.search(said) and "if_turns" not in _best(found):
+        _give(found, "turn_way", "when_turns")
+    if _WILL_NOT_REST.search(said):
+        _give(found, "what_moves", "what_still")
+    if _LAST_PLACE.search(said):
+        _give(found, "where_ends", "where_starts", "where_at")
+    kind = _best(found)
     if kind in _POSES and _POSED.search(said):
         return "long_open", _sum(found, *_POSES)
     if kind == "when_turns" and _LASTS.search(said):
@@ -44,6 +50,11 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
     if kind in ("fast", "fast_most"):
         return ("fast_most" if _GREATEST.search(said) else "fast"), _sum(found, "fast", "fast_most")
     return kind, found[kind]
+
+
+def _best(found: Mapping[str, float]) -> str:
+    """The likeliest kind."""
+    return max(found, key=found.__getitem__)
 
 
 def _sum(found: Mapping[str, float], *kinds: str) -> float:
@@ -58,6 +69,9 @@ def _give(found: dict[str, float], kind: str, *others: str) -> None:
         found.pop(other, None)
 
 
+_ON_WHICH_SIDE = re.compile(r"^when .*\b(?:is|was) (?:it|that|this) to (?:the|its|his|her) (?:left|right)\b")
+_WILL_NOT_REST = re.compile(r"\b(?:refuses?|declines?|fails?) to (?:be|stay|stand|remain|keep|sit)\b")
+_LAST_PLACE = re.compile(r"\b(?:terminus|destination|final (?:place|spot|position|resting place))\b")
 _POSES = ("long_open", "long_still")
 _POSED = re.compile(  # "how long does it just sit there pulled all the way out"
     r"\b(?:all the way|fully|completely|pulled|slid|wide|hang\w*|stick\w*|sits?|stands?|stays?) (?:out|open)\b|"
@@ -68,6 +82,7 @@ _CROSSES = re.compile(r"\bcross\w*")
 _COUNTS = re.compile(r"\bhow (?:many|much)\b|\bcount\b|\b(?:number|quantity) of\b")
 _RANKS_ALL = re.compile(r"^(?:please )?(?:rank|sort|order|arrange|line up)\b")
 _CUTS_OUT = re.compile(r"\b(?:cuts?|conks?|gives?|gave|switch(?:es)?|shuts?|powers?) (?:out|off|down)\b")
+_OFF_AT = re.compile(r"\b(?<!set )(?<!sets )(?<!setting )off (?:at|by) (?:what|which)\b")
 _TIMECODE = re.compile(r"\b(?:time ?code|time ?stamp|(?:at )?(?:what|which) (?:time|second|moment|instant))\b")
 _LEG = re.compile(
     r"(?:(?:(?:during|for|on|in|over|of|along|while on) )?(?:^|(?:the|that|this|its|his|her|'s) )|"

@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import replace
 from functools import lru_cache
 
+from ......gaussians import late_re as re
 from ......gaussians.world import kinds as kinds_of_things
 from ......gaussians.world.spelling import best_slip
 from ......gaussians.world.words import is_plural, plural, singular
@@ -18,7 +19,7 @@ from .....grammar.learned.marks import Span, held_by
 from .....grammar.tagging.spelling import is_word
 from .....grammar.tagging.words import bag, clean, split
 from .....grammar.timing.spoken import in_figures
-from .guards import says_more
+from .guards import CERTAIN, says_more
 from .kinds import marked_ways, vocabulary
 from .likely import OF_A_LEG, asks_why, likeliest, without_leg, without_options
 from .phrases import ALL_OF, deed_of, one_of
@@ -38,7 +39,7 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST, strictly: b
     Args:
         names: words of the names of the things of the scene.
         least: the probability of its kind that is likely enough.
-        strictly: none, however likely, if a word beside its marks may tell more.
+        strictly: none, unless it is certain, if a word beside its marks may tell more.
     """
     if not text.strip() or len(text.split()) > _LONGEST:
         return ()
@@ -47,14 +48,17 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST, strictly: b
     if sum(word.isalpha() for word in told) < _SHORTEST:
         return ()
     told, leg = without_leg(without_options(told))
-    times = ([" ".join(told[a:b]) for tag, a, b in spans if tag == "t"] for spans in marked_ways(told))
+    times = [[" ".join(told[a:b]) for tag, a, b in spans if tag == "t"] for spans in marked_ways(told)]
+    if (before := _WHEN_BEFORE.match(" ".join(told))) is not None:
+        times.append([before["time"]])  # "once the door reaches its widest, how many seconds of film are left"
     if (left := next(filter(None, (time_left(told, own) for own in times)), None)) is not None:
         return (left,)
     kind, chance = likeliest(told)
     if chance < least or kind not in PLAIN:
         return ()
+    guarded = 0.0 if strictly and chance < CERTAIN else chance
     for spans in marked_ways(told):
-        if found := tuple(dict.fromkeys(_plainly(told, spans, leg, kind, 0.0 if strictly else chance, names))):
+        if found := tuple(dict.fromkeys(_plainly(told, spans, leg, kind, guarded, names))):
             return found
     return ()
 
@@ -91,7 +95,8 @@ def _plainly(
         times = ("",)  # how many have fallen by then
     for time in times:
         for plain in PLAIN[kind](said):
-            whole = plain.format(when=time) if "{when}" in plain else f"{plain} {time}"
+            timed = "{when}" in plain or plain.startswith("how long is it from")
+            whole = plain.format(when=time) if timed else f"{plain} {time}"
             yield " ".join(whole.split()).replace(" ,", ",")
 
 
@@ -104,6 +109,9 @@ def question_of(kind: str, x: str, y: str, rest: str = "") -> str | None:
     return next(PLAIN[kind](Said(with_article(x), y and with_article(y), "", "", rest)), None)
 
 
+_WHEN_BEFORE = re.compile(
+    r"^(?P<time>(?:once|when|after|as soon as|from when) [^,]+?)(?: 's)? , how (?:many|much|long)\b"
+)
 _OF_ALL = bag(
     "what_moves what_still how_many first last order fastest happens film_long gap if_moves if_still if_together "
     "what_open what_shut what_on what_fell what_up"

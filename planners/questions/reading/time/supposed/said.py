@@ -83,11 +83,13 @@ def said_of(words: tuple[str, ...], spans: Collection[Span], names: Collection[s
         for tag in ("x", "y")
     }
     known = tuple(name for name in things["x"] if _is_known(name, names))
+    if any(_is_elsewhere(name, names) for name in things["x"] if name not in known):
+        return None  # "the cat that is chasing the ball"
     things["x"] = known or things["x"]  # "my clockwork apprentice, the robot"
     if not found["t"] and (past := _NOW_THAT.match(" ".join(found["off"]))) is not None:
         found["t"], found["off"] = [f"once {past['time']}"], []
     if not found["t"] and len(found["off"]) == 1 and (blinked := _BLINKED.search(found["off"][0])) is not None:
-        found["t"], found["off"] = [blinked["time"]], []  # "I blinked at 1.4 s, which book was falling?"
+        found["t"], found["off"] = [blinked["time"] or blinked["t"]], []  # "I blinked at 1.4 s, which one fell?"
     asides = (words[start:stop] for tag, start, stop in spans if tag == "off" and not _is_apart(words, start, stop))
     if len(found["t"]) > 2 or any(_TIMED.search(ASKS_WHEN.sub("", " ".join(aside))) for aside in asides):
         return None
@@ -101,12 +103,18 @@ def said_of(words: tuple[str, ...], spans: Collection[Span], names: Collection[s
     )  # fmt: skip
 
 
+def _is_elsewhere(name: str, names: Collection[str]) -> bool:
+    """Whether a name is that of a kind of things of which the scene has none."""
+    noun = singular(name.split()[-1])
+    return noun not in names and name.startswith(("the ", "that ", "this ")) and kinds_of_things.find(noun) is not None
+
+
 ASKS_WHEN = re.compile(r"^when ,")  # "when, to the best of your knowledge, ..."
 _TAG = re.compile(  # "it opens, doesn't it?", "yes or no"
     r" ,? ?(?:or )?(?:is|are|was|does|do|did|has|have|will|would|could|can) "
     r"(?:not (?:it|he|she|they)|(?:it|he|she|they)"
     r"(?: not)?)(?: \?)?$|,? ?\b(?:yes ?(?:or|/) ?no|y ?/ ?n|true or (?:false|not)|right or wrong)\b|"
-    r", true \?$|,? or \?$"
+    r", true \?$|,? or (?:not|no|nothing|nah)?(?: at all)? ?\?$"
 )
 
 
@@ -127,7 +135,10 @@ _TIMED = re.compile(
     r"\b(?:when|while|until|till|once|after|before|during|now that)\b(?!.*\b(?:i|we|you|me|us)\b)|\d|\bseconds?\b"
 )
 _ONES = re.compile(r"^(?:the |that |this |which )?ones?$")
-_BLINKED = re.compile(r"^(?:i|we) [a-z ]+? (?P<time>at \d+(?:\.\d+)?(?: ?s(?:ec(?:ond)?s?)?)?)$")
+_BLINKED = re.compile(
+    r"^(?:if |when )?(?:i|we) [a-z ]+? (?P<time>at \d+(?:\.\d+)?(?: ?s(?:ec(?:ond)?s?)?)?)"
+    r"(?: (?:to|for) [a-z ]+)?(?: ,)?$|^if (?P<t>t = \d+(?:\.\d+)?)(?: ,)?$"
+)
 _NOW_THAT = re.compile(r"^(?:and )?(?:now|seeing|given) that (?P<time>.+)$")
 _ONE = re.compile(r"\bone$")
 _THAT_ONE = re.compile(r"\bthe (?:red|green|blue|yellow|white|black|brown|grey|gray|orange|purple|pink) one\b")

@@ -221,12 +221,14 @@ _AT_MOST = re.compile(r"^(?:once|when|after|at|in|by) (?!.*\d)(?!.*\bseconds?\b)
 def _plain_time(kind: str, said: str) -> str:
     """The words for a time in plain words; "" for all of the film, where that says nothing."""
     said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", re.sub(r"^(?:given|assuming) (?=t\b|\d)", "at ", said))
-    said = _ACROSS.sub("moves", _AT_ABOUT.sub("at ", said))
+    said = _ACROSS.sub("moves", _AT_ABOUT.sub("at ", _PLAINER_STILL.sub(_still_plainer, said)))
     if (clock := _CLOCK.match(said)) is not None:
         said = f"at {clock['time']} s"
     if kind in _STATES and (passing := _BY_NOW.match(said)) is not None:
         said = f"at {passing['time']}"
     if kind in ("turns", "far", "often") and _TILL_IT_STOPS.match(said):
+        return ""
+    if kind in _OF_A_MOVEMENT and (_TILL_ITS_END.match(said) or _FROM_ITS_START.match(said)):
         return ""
     if (kind == "far_turns" and _MIDWAY.match(said)) or (kind == "long_open" and _ONCE_OUT.match(said)):
         return ""
@@ -251,6 +253,36 @@ def _plain_time(kind: str, said: str) -> str:
             return "at the end"
         return said if kind in ("if_open", "if_shut", "if_on") else ""
     return said
+
+
+_OF_A_MOVEMENT = (*_OF_A_WAY, "long_opens", "long_closes", "long_reach", "far_turns", "far_opens")
+_FROM_ITS_START = re.compile(
+    r"^from (?:the |its |his |her )?(?:very )?(?:first|start|beginning|initial)(?: [a-z]+){0,2}$|"
+    r"^from (?:the )?(?:start|beginning|onset) of (?:the |its )?(?:motion|movement|roll|walk|turn)$"
+)
+_TILL_ITS_END = re.compile(  # "from start of motion till it stops"
+    r"^from (?:the |its )?(?:start|beginning|onset)(?: of (?:the |its )?[a-z]+)? (?:to|till|until) "
+    r"(?:(?:it|he|she) (?:stops|rests|halts)|"
+    r"(?:the |its )?(?:final |full |complete )?(?:stop|end|rest|halt|standstill))$|"
+    r"^(?:before|until|till) (?:it|he|she|they) (?:grows?|falls?|goes|is|are|comes?) (?:still|quiet|silent|to rest)$"
+)
+_PLAINER_STILL = re.compile(
+    r"^come (?=\d|two\b|three\b|four\b|five\b)|^(?P<clock>\d+(?:\.\d+)? ?s(?:ec(?:ond)?s?)?) on the clock$|"
+    r"^at the end of (?:everything|it all|all this)$|\b(?:when )?t (?:=|equals|is) (?P<t>\d+(?:\.\d+)?)(?! ?s)|"
+    r" 's (?P<doing>going|on|running)\b|\bfrom (?P<zero>zero)\b|(?<=[a-z]) 's (?=[a-z]+ing\b|open\b|shut\b|closed\b)"
+)
+
+
+def _still_plainer(found: re.Match[str]) -> str:
+    """A time in plainer words."""
+    if found["clock"] or found["t"]:
+        at = "" if found["t"] and found.start() and not found[0].startswith("when") else "at "
+        return f"{at}{found['clock'] or found['t'] + ' s'}"
+    if found["doing"]:
+        return " is moving"
+    if found["zero"]:
+        return "from 0 s"
+    return "by " if found[0].startswith("come") else "at the end" if found[0].startswith("at") else " is "
 
 
 _AT_ABOUT = re.compile(

@@ -22,7 +22,7 @@ from .phrases import (
     uncounted,
 )
 from .said import Said
-from .times import BEFORE_BACK, STROKES
+from .times import BEFORE_BACK, STROKES, plain_time
 
 _OFTEN = (
     (re.compile(r"\b(?:com(?:es?|ing)|slid(?:es?|ing)|pops?|pulled) (?:\w+ )?out\b"), "how often does {x} open"),
@@ -139,12 +139,12 @@ def _if_turns(said: Said) -> Iterator[str]:
 def _counted(said: Said) -> Iterator[str]:
     deed = deed_of(said.rest, "move")
     if _LEFT_UP.search(said.rest) and said.x and said.x not in PRONOUNS:
-        yield f"how many {several(said.x)} have not fallen"
+        yield f"how many {several(said.x)} " + (f"are on {said.y}" if said.y else "have not fallen")
         return
     if (
         deed == "fall"
         and re.match(r"^(?:at|by|after) \d", said.time)
-        and re.search(r"\b(?:down|fallen|dropped|landed|crashed)\b", said.rest)
+        and re.search(r"\b(?:down|fallen|dropped|landed|crashed|off)\b", said.rest)
     ):
         deed = "have fallen"
     x, *others = said.x.split(" and ")
@@ -186,7 +186,10 @@ def _turns(said: Said) -> Iterator[str]:
         yield f"how many degrees does {said.x} turn" if degrees else f"how many turns does {said.x} make"
 
 
-_HOW_LONG = re.compile(r"\b(?:how long|how many seconds|how much time|what (?:length|amount) of time|period)\b")
+_HOW_LONG = re.compile(
+    r"\b(?:how long|how many seconds|how much time|what (?:length|amount) of time|period|takes? (?:\w+ )*?what time|"
+    r"what time (?:\w+ )*?takes?)\b"
+)
 
 
 def _one_turn(said: Said) -> Iterator[str]:
@@ -304,8 +307,15 @@ def _visits(said: Said) -> Iterator[str]:
 
 def _long_open(said: Said) -> Iterator[str]:
     if said.x:
-        fully = STROKES.match(said.time) or _FULLY.search(f"{said.rest} {said.time} {said.off}")
+        pose = f"{said.rest} {said.time} {said.off}"
+        fully = STROKES.match(said.time) or _FULLY.search(pose) or _IN_POSE.search(pose)
         yield f"how long does {said.x} stay {'fully ' if fully else ''}open"
+
+
+_IN_POSE = re.compile(  # as far out as it comes: "just stands there pulled out", "lingers before it goes back"
+    r"\b(?:pose|outermost|stretch\w*|extended|pulled out|wide|flung|(?:stands?|sits?|hangs?) there|rests?|linger\w*|"
+    r"motionless|not moving)\b"
+)
 
 
 def _in_total(said: Said) -> Iterator[str]:
@@ -336,9 +346,22 @@ def _if_on(said: Said) -> Iterator[str]:
         yield from _about("is {x} on {y}")(said)
 
 
+_CLAUSE = re.compile(r"^(?:after|once|when) (?P<what>.+)$")
+_ITS_SPOT = re.compile(
+    r"\b(?:its|his|her|the) (?:spot|place|post|position|perch|starting (?:point|place))\b|\bstirs?\b"
+)
+
+
+def _leaves_its_spot(said: Said) -> Iterator[str]:
+    if said.x and _ITS_SPOT.search(said.rest):
+        yield f"when does {said.x} start to move"
+
+
 def _long_reach(said: Said) -> Iterator[str]:
     if _AFTER_TURN.match(said.time):  # "after the turn, the walk to the bed takes how long?"
-        yield f"how long does {said.x} move after it has turned"
+        yield f"how long does {said.x} move"
+    elif said.x and said.y and (clause := _CLAUSE.match(plain_time(said.time) or "")) is not None:
+        yield f"how long is it from when {clause['what']} to when {said.x} reaches {said.y}"
     elif not said.time.startswith(("after ", "once ")):
         yield from _about("how long does {x} take to reach {y}")(said)
 
@@ -355,7 +378,7 @@ PLAIN: Mapping[str, Plain] = {
     "when_lands": _either(_about("when does {x} reach {y}"), _about("when does {x} land")),
     "when_turns": _about("when does {x} turn"),
     "when_reaches": _about("when does {x} reach {y}"),
-    "when_leaves": _either(_about("when does {x} leave {y}"), _about("when does {x} start to move")),
+    "when_leaves": _either(_leaves_its_spot, _about("when does {x} leave {y}"), _about("when does {x} start to move")),
     "when_closest": _about("when is {x} closest to {y}"),
     "long_moves": _long,
     "long_opens": _about("how long does {x} take to open"),
