@@ -210,8 +210,8 @@ class Observation(Protocol):
         ...
 
     def after(self, ops: Sequence[AnyOp], query: Query) -> Movement | None:
-        """How what a query names would move after operations that change when and how fast things do; None if it would
-        not, if they cannot be carried out, or if that cannot be told."""
+        """How what a query names would move after operations that change when and how fast things do, without spells if
+        it would not; None if they cannot be carried out, or if that cannot be told."""
         ...
 
     def has(self, query: Query) -> bool:

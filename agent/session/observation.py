@@ -76,6 +76,14 @@ def movement_of(scene: Scene, selection: Selection) -> Movement | None:
     return Movement(*span, turning, scene.motion.stop, math.degrees(radians), metres, tuple(edges), tuple(times))
 
 
+def at_rest(scene: Scene) -> Movement:
+    """How something moves that stands still in a scene with motion."""
+    from ...planners.plan import Movement
+
+    assert scene.motion is not None
+    return Movement(0.0, 0.0, False, scene.motion.stop)
+
+
 def paced(scene: Scene, ops: Sequence[AnyOp], context: Context) -> Scene | None:
     """The scene after operations that change when and how fast things move, without any check; None if one of them does
     something else, or cannot be carried out."""

@@ -27,7 +27,7 @@ from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
-from .observation import any_moves, graph_of, movement_of, paced, picture_of
+from .observation import any_moves, at_rest, graph_of, movement_of, paced, picture_of
 from .own_references import own_references
 from .picture_models import infill_of, photographed, restyler_of
 from .plan_runner import PlanFailed, has_queries, run_plan
@@ -304,12 +304,13 @@ class Session:
         return None if found is None else movement_of(self.scene, found)
 
     def after(self, ops: Sequence[AnyOp], query: Query) -> Movement | None:
-        """How what a query names would move after operations that change when and how fast things do; None if it would
-        not, if they cannot be carried out, or if it names nothing there. Embeds the scene if it is not embedded yet."""
+        """How what a query names would move after operations that change when and how fast things do, without spells if
+        it would not; None if they cannot be carried out, or if it names nothing there. Embeds the scene if it is not
+        embedded yet."""
         if (found := self._in_motion(query, moves=True)) is None:
             return None
         then = paced(self.scene, ops, self._context(self.last))
-        return None if then is None else movement_of(then, found)
+        return None if then is None else movement_of(then, found) or at_rest(self.scene)
 
     def has(self, query: Query) -> bool:
         """Whether a scene with motion surely has what a query names; no of others. Embeds the scene if it is not

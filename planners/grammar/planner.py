@@ -297,8 +297,9 @@ def _in_time(
             return _guessed(supposed)
         if judge.is_of_another_kind(cleaned, outcome.ops, SURE):
             raise Refusal("this says something of time or motion that is not understood", cleaned[:200])
-    if not judge.does_as_told(outcome.ops, wording_of(cleaned)):
-        if supposed := judge.likeliest(cleaned):
+    told = judge.as_told(outcome.ops, wording_of(cleaned))
+    if outcome.ops and tuple(told) != tuple(outcome.ops):
+        if supposed := told or judge.likeliest(cleaned):
             return _guessed(supposed)
         raise Refusal("what moves would not do so at the time that this tells", cleaned[:200])
     if scene is not None and _lacks(scene, outcome.ops) and (supposed := judge.likeliest(cleaned)):

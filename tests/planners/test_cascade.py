@@ -67,6 +67,9 @@ class Blind:
     def movement(self, query: Query) -> None:
         return None
 
+    def after(self, ops: Any, query: Query) -> None:
+        raise AssertionError("nothing here is about motion")
+
     def has(self, query: Query) -> bool:
         return False
 

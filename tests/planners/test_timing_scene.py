@@ -39,6 +39,9 @@ class Film:
     def movement(self, query: Query) -> Movement | None:
         return MOVES.get(query.text.split(" ")[-1] or "ball") if self.moves(query) else None
 
+    def after(self, ops: Any, query: Query) -> None:
+        return None
+
     def has(self, query: Query) -> bool:
         return (query.text, *query.colors) in (("wardrobe", "brown"), ("vase", "blue"))
 

@@ -38,6 +38,9 @@ class Film:
             return None
         return Movement(0.0, 4.0, True) if query.text == "fan" else Movement(0.5, 3.5, False)
 
+    def after(self, ops: Any, query: Query) -> None:
+        return None
+
     def has(self, query: Query) -> bool:
         return False
 

@@ -52,6 +52,21 @@ def with_end(said: str, ops: Sequence[Fields], movement: MovementOf) -> tuple[Fi
     return (between(op, round(moves.start, 4), stop),)
 
 
+def stopping_later(ops: Sequence[Fields], movement: MovementOf) -> tuple[Fields, ...]:
+    """A stop at seconds at which something rests already as one that it only comes to then, on the same way: "it is to
+    come to rest only at 4.7 s"; none of others."""
+    op = ops[0] if len(ops) == 1 else {}
+    when = op.get("when")
+    stop = when.start if when is not None and when == When(start=when.start) else None
+    if op.get("change") != "stop" or not isinstance(stop, float) or (moves := movement(op["target"])) is None:
+        return ()
+    if stop <= moves.stop:
+        return ()
+    if moves.turns:
+        return ({"op": "pace", "target": op["target"], "change": "go_on", "when": When(stop=stop)},)
+    return (between(op, round(moves.start, 4), stop),)
+
+
 def between(op: Fields, start: float, stop: float) -> Fields:
     """An operation on a movement as one that gives it another beginning and end."""
     return {"op": "pace", "target": op["target"], "change": "begin", "when": When(start=start, stop=stop)}

@@ -24,7 +24,7 @@ from ..tagging.words import bag
 from ..vocabulary.nouns import is_known, is_opened
 from . import happenings, moments
 from .command import Command, Fields
-from .ending import MovementOf
+from .ending import MovementOf, stopping_later
 from .happenings import IT
 from .marked.commands import commands
 from .marked.guards import is_ruled_out, says_more
@@ -245,13 +245,10 @@ class Judge:
         for wanted in commands(kind, held):
             with suppress(Refusal, UserError, ValidationError):
                 found = self._ops(wanted)
-                if (
-                    found
-                    and not self._loses(found, wording, held)
-                    and not self.is_still(found)
-                    and self.does_as_told(found, wording, spans, kind)
-                ):
-                    return of_one_movement(held.meant, found, held.aside)
+                if not found or self._loses(found, wording, held) or self.is_still(found):
+                    continue
+                if done := self.as_told(found, wording, spans, kind):
+                    return of_one_movement(held.meant, done, held.aside)
         return None
 
     def _goes_without_time(self, kind: str, chance: float, wording: Sequence[str], spans: Sequence[Span]) -> bool:
@@ -464,11 +461,11 @@ class Judge:
                 return False
         return False
 
-    def does_as_told(
+    def as_told(
         self, ops: Sequence[Fields], wording: Sequence[str], spans: Sequence[Span] | None = None, kind: str = ""
-    ) -> bool:
-        """Whether a change of a motion changes it, and begins and ends something at the seconds that marks tell, as far
-        as a scene tells that.
+    ) -> tuple[Fields, ...]:
+        """Operations that change a motion, and begin and end something at the seconds that marks tell, as far as a
+        scene tells that; none if these do not, and none like them does.
 
         Args:
             spans: the marks; None: the likeliest.
@@ -476,20 +473,17 @@ class Judge:
         """
         changes = [op.get("change") for op in ops if op["op"] == "pace"]
         if changes.count("speed") > 1 and all(op.get("when") is None for op in ops):
-            return False  # "too slow for me, make it twice as fast"
-        if self._after is None or len(ops) != 1 or not changes:
-            return True
-        before = self._moves_how(ops[0]["target"])
-        if before is None:
-            return True
-        try:
-            done = tuple(map(parse_op, ops))
-        except UserError:
-            return True
+            return ()  # "too slow for me, make it twice as fast"
+        if self._after is None or len(ops) != 1 or not changes or (before := self._moves_how(ops[0]["target"])) is None:
+            return tuple(ops)
         spans = marked(wording) if spans is None else spans
         kind = kind or next(iter(likely(" ".join(wording))), ("", 0.0))[0]
         moments = moments_of(wording, spans, self._reader.thing, kind)
-        return is_borne_out(ops[0]["change"], before, self._after(done, ops[0]["target"]), moments)
+        with suppress(UserError):
+            after = self._after(tuple(map(parse_op, ops)), ops[0]["target"])
+            if is_borne_out(ops[0]["change"], before, after, moments):
+                return tuple(ops)
+        return stopping_later(ops, self._moves_how)
 
     def timed(self, cleaned: str, ops: Sequence[Fields]) -> tuple[Fields, ...] | None:
         """What an instruction most likely asks for at a time that its words tell and that operations leave out; None if

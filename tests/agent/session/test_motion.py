@@ -62,3 +62,20 @@ def test_a_plan_that_fails_in_its_scene_is_tried_as_its_kind_of_wish() -> None:
     with pytest.raises(ScenewrightError, match="piano"):
         session.do("take the piano away, and the doormat with it")  # neither way; the first error is told
     assert session.scene is scene
+
+
+def test_a_session_tells_how_something_would_move() -> None:
+    session = Session(moving_room("ball", 0.1))
+    before = session.scene
+    (stopped,) = session.plan("stop the ball at 2 s").ops
+    (reversing,) = session.plan("let the ball roll back once it is at the wall").ops
+    ball = Query(text="ball")
+    now = session.movement(ball)
+    assert now is not None and [pytest.approx(end, abs=0.02) for end in now.spells[0]] == [0.5, 3.5]
+    after = session.after([stopped], ball)
+    assert after is not None and after.spells[-1][1] == pytest.approx(2.0, abs=0.02)
+    there_and_back = session.after([reversing], ball)
+    assert there_and_back is not None and len(there_and_back.spells) == 2  # where it turns back, another spell begins
+    assert session.after([session.plan("paint the sofa red").ops[0]], ball) is None  # that is no change of a motion
+    assert session.after([stopped.model_copy(update={"when": None})], ball) == (0.0, 0.0, False, 5.0, 0.0, 0.0, (), ())
+    assert session.scene is before

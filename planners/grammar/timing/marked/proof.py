@@ -36,15 +36,14 @@ def is_borne_out(change: str, before: Movement, after: Movement | None, moments:
 
     Args:
         change: of its motion, as `Pace` has them.
-        before, after: how it moves now, and would then.
+        before, after: how it moves now, and would then; None if that cannot be told.
         moments: tags and times in numbers.
     """
-    if change in _LIKEWISE:
+    if after is None or change in _LIKEWISE:
         return True
-    spells = () if after is None else after.spells
-    if after is not None and change in _TIMED and _is_same(before, after):
+    if change in _TIMED and _is_same(before, after):
         return False
-    begins, ends = [begin for begin, _ in spells], [end for _, end in spells]
+    begins, ends = [begin for begin, _ in after.spells], [end for _, end in after.spells]
     film = max(before.end, *ends, 0.0)
     if change == "stop":  # from then on it rests
         begins, ends = [*ends, *begins], [*begins, *ends]

@@ -99,21 +99,11 @@ def halt(slots: Slots) -> Iterator[Wanted]:
             yield Wanted(pace(whose_of(slots), "stop"), moment, Happening(ends, slots.happening.said))
             return
         yield paced(slots, "stop", replace(moment, stop=None) if moment.stop == "end" else moment)
-        yield from _stops_later(slots, moment)
         return
     if (where := _where(slots)) is not None:  # "it jams at 40 degrees till the film ends"
         yield _stopped(slots, where, Moment())
     elif ended:
         yield paced(slots, "stop", replace(moment, start=moment.stop, stop=None))
-
-
-def _stops_later(slots: Slots, moment: Moment) -> Iterator[Wanted]:
-    """What is to come to rest later than it does now, on the same way: "it only comes to rest at 4.7 s"."""
-    moves = slots.movement(slots.queries[0])
-    late = isinstance(moment.start, float) and moves is not None and moment.start > moves.stop
-    if moves is not None and late and slots.happening is None:
-        same = None if moves.turns else round(moves.start, 4)
-        yield paced(slots, "go_on" if moves.turns else "begin", Moment(start=same, stop=moment.start))
 
 
 _ONLY = re.compile(r"\b(?:only|just|no (?:second|further|more|other))\b")
