@@ -130,7 +130,8 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         first = goes_first(text)
         strictly = not first and found.answer.answer != ()
         surer = _read_as(supposed(text, names, LEAST if first else SURE, strictly), survey, timeline)
-        if surer is None and (form := _form(found)) is not None and chance_of(text, form) < _HARDLY:
+        form = None if surer is not None or _offers(said, found) else _form(found)
+        if form is not None and chance_of(text, form) < _HARDLY:
             likely = _read_as(supposed(text, names, _LIKELY), survey, timeline)
             surer = None if likely is None or _form(likely) == form else likely
         return found if surer is None or _agree(found.answer, surer.answer) else surer
@@ -142,6 +143,12 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         return found
     none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
     return Reading(none, sight=True)
+
+
+def _offers(said: str, told: Reading) -> bool:
+    """Whether a question offers its answers: with "or", or for yes or no."""
+    first = said.split(" ")[0]
+    return " or " in said or (told.answer.answer_type == "yesno" and first in _YES_NO)
 
 
 def _form(told: Reading) -> Form | None:

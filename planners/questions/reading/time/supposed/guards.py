@@ -18,8 +18,13 @@ SURE = 0.8  # probability from which words without a mark are taken for those of
 _HARD = (HARD - {"one"}) | bag("after before further until while backwards backward reverse ever straight")
 
 
-def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> bool:
-    """Whether words without a mark say more than the kind of question does."""
+def says_more(kind: str, chance: float, said: Said, names: Collection[str], strictly: bool = False) -> bool:
+    """Whether words without a mark say more than the kind of question does.
+
+    Args:
+        chance: the probability of the kind.
+        strictly: whether a word that may say more counts, however likely the kind is.
+    """
     plain = _EACH_SECOND.sub(" ", _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub(" when ", said.rest)))
     if kind.startswith("long_"):
         plain = _FINALLY.sub(" ", _LASTS.sub(r"\g<1>", plain))
@@ -30,7 +35,7 @@ def says_more(kind: str, chance: float, said: Said, names: Collection[str]) -> b
     if kind.startswith("when_"):
         plain = _THE_SECOND.sub(" when ", plain)
     rest = plain.split()
-    return _wants_another(kind, said, rest) or _tells_more(kind, chance, rest, names)
+    return _wants_another(kind, said, rest) or _tells_more(kind, chance, rest, names, strictly)
 
 
 def _is_another(kind: str, said: Said, plain: str) -> bool:
@@ -69,7 +74,7 @@ def _wants_another(kind: str, said: Said, rest: list[str]) -> bool:
     return not kind.startswith("if_") and not said.unit and wants and not asks
 
 
-def _tells_more(kind: str, chance: float, rest: list[str], names: Collection[str]) -> bool:
+def _tells_more(kind: str, chance: float, rest: list[str], names: Collection[str], strictly: bool) -> bool:
     """Whether one of the words denies, ranks, counts or names."""
     told = [word for word in rest if word not in _ALLOWED.get(kind, frozenset())]
     if kind in _NEGATED or (chance < SURE and rest and rest[0] in _AUXILIARIES):  # "did it not move?"
@@ -80,7 +85,7 @@ def _tells_more(kind: str, chance: float, rest: list[str], names: Collection[str
         told = [word for word in told if word not in ("zero", "0")]  # of a speed
     if any((w in NUMBERS and w != "one" and kind not in _COUNTED) or w[0].isdigit() or is_color_word(w) for w in told):
         return True
-    if chance < SURE:
+    if chance < SURE or strictly:
         if (kind.startswith("if_") and _ASKS.intersection(rest)) or ("and" in rest and kind != "gap") or "or" in rest:
             return True  # "which way does it turn" wants no yes or no; two deeds, or things to choose from
         if any(word in _HARD for word in told):

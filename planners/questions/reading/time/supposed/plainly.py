@@ -56,15 +56,21 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST, strictly: b
     kind, chance = likeliest(told)
     if chance < least or kind not in PLAIN:
         return ()
-    guarded = 0.0 if strictly and chance < CERTAIN else chance
+    chance = 0.0 if strictly and chance < CERTAIN else chance
     for spans in marked_ways(told):
-        if found := tuple(dict.fromkeys(_plainly(told, spans, leg, kind, guarded, names))):
+        if found := tuple(dict.fromkeys(_plainly(told, spans, leg, kind, chance, names, strictly))):
             return found
     return ()
 
 
 def _plainly(
-    told: tuple[str, ...], spans: Collection[Span], leg: str, kind: str, chance: float, names: frozenset[str]
+    told: tuple[str, ...],
+    spans: Collection[Span],
+    leg: str,
+    kind: str,
+    chance: float,
+    names: frozenset[str],
+    strictly: bool,
 ) -> Iterator[str]:
     """The words of a question of a kind, with these marks, as plain questions; none if they say more."""
     aside = held_by(spans, "off")
@@ -73,7 +79,7 @@ def _plainly(
     said = said_of(told, spans, names)
     if said is not None and said.asked and kind.startswith("what_") and not is_plural(said.x):
         said = replace(said, x=plural(said.x))
-    if said is None or says_more(kind, chance, said, names):
+    if said is None or says_more(kind, chance, said, names, strictly):
         return
     if not said.x and kind not in _OF_ALL:
         if any(
