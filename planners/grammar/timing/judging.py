@@ -65,7 +65,7 @@ _PLACED = re.compile(r" (?:beside|on|near|by|in|at|under|behind|next to|above|wi
 _RIDS = re.compile(r"\b(?:delete|remove|take|hide|get rid|throw|erase)\b", re.IGNORECASE)
 _SPEEDS = re.compile(r"\b(?:slow|slower|slowly|fast|faster|quick|quicker|quickly|speed|pace)\b", re.IGNORECASE)
 _EACH = {"order": "begin", "begin": "begin", "together": "begin", "open": "open", "close": "close", "hide": "hide"}
-_PACED_KINDS = ("duration", "speed", "begin", "pause")
+_ON_ITS_WAY = ("duration", "speed", "begin", "pause", "together", "order", "reverse", "repeat")  # of what moves itself
 _IN_TURN, _ITS_TIME = {"open", "order"}, {"begin", "duration"}  # kinds that one wish may be of
 _SEEN = ("delete", "opacity", "recolor")
 _ONCE_FOR_ALL = ("delete", "restyle", "insert", "duplicate", "scale")
@@ -98,7 +98,11 @@ _NEVER_LEAVES = re.compile(  # "walks all the way to the bed without ever leavin
     r"\b(?:walks?|rolls?|drives?|goes|moves?|slides?|travels?|runs?)\b.*\bwithout (?:ever |once |even )?"
     r"(?:leaving (?:its|his|her|the) (?:spot|place|position)|moving|budging|stirring)\b"
 )
-_FIRST_AND_LAST = re.compile(r"\bbefore (?:the )?(?:\w+ ){1,3}(?:and|but|yet)\b[^.]{0,25}\bafter it\b")
+_FIRST_AND_LAST = re.compile(
+    r"\bbefore (?P<who>(?:the )?\w+) (?:does|do|sets|leaves|starts|moves|goes)\b.*"
+    r"\b(?:but|yet|and) (?:not (?:until|before)|only (?:after|once|when)) (?P=who)\b|"
+    r"\bbefore (?:the )?(?:\w+ ){1,3}(?:and|but|yet)\b[^.]{0,25}\bafter it\b"
+)
 _THROUGHOUT_OR_NOT = ("recolor", "hide", "spin", "duration", "speed")  # kinds of which "throughout" is no other time
 _LOCKED = re.compile(  # "lock the ball to its spot while it rolls to the wall"
     r"\b(?:lock(?:ed|s)?|pin(?:ned|s)?|nailed|stuck|glued|motionless|stands? still|stays? (?:still|put))\b.{0,60}"
@@ -123,6 +127,11 @@ _BOTH_AT_ONCE = re.compile(
     rf"\b{_MOVES}\b.{{0,40}}{_THE_SAME_TIME}(?: ,)? .{{0,25}}\b{_AT_REST}\b|"
     rf"\b{_AT_REST}\b.{{0,40}}{_THE_SAME_TIME}(?: ,)? .{{0,25}}\b{_MOVES}\b"
 )
+_NOT_AT_ALL = re.compile(
+    r"\b(?:do not|does not|not|never) (?:let (?:it|him|her|them) )?"
+    r"(?:move|turn|budge|stir|spin|roll|walk)\b(?: \w+)? at all\b"
+)
+_MOVES_ON = ("speed", "duration", "longer", "spin", "repeat")  # kinds of what moves all the same
 _AT_A_RATE = re.compile(
     r"\b(?:once|twice|thrice|turns?|rounds?|revolutions?) (?:in|every|per|each) (?!a circle)", re.IGNORECASE
 )
@@ -316,6 +325,8 @@ class Judge:
         said = with_nouns(in_words(cleaned))
         if any(pattern.search(said) is not None for pattern in (_BOTH_WAYS, _NEVER_LEAVES, _LOCKED, _FIRST_AND_LAST)):
             return True
+        if _NOT_AT_ALL.search(said) is not None and likely(cleaned)[:1] and likely(cleaned)[0][0] in _MOVES_ON:
+            return True  # "at triple speed, but do not let it move at all"
         if _ALWAYS.search(said) is None:
             return _BOTH_AT_ONCE.search(said) is not None
         words = said.split(" ")
@@ -388,7 +399,7 @@ class Judge:
             return chance >= least  # "it must stay on the shelf" puts nothing there
         if (
             op == "move"
-            and kind in _PACED_KINDS
+            and kind in _ON_ITS_WAY
             and self._does_move(ops[0]["target"])
             and not {"toward", "place"} & set(ops[0])
         ):
@@ -509,7 +520,8 @@ class Judge:
         if found is None or len(found) != 1 or found[0]["op"] != ops[0]["op"] or found[0].get("when") is None:
             return None
         same = found[0].get("target") == ops[0].get("target") and found[0].get("change") == ops[0].get("change")
-        return found if same and _ends_told(found[0]["when"]) > _ends_told(ops[0]["when"]) else None
+        more = _ends_told(found[0]["when"]) > _ends_told(ops[0]["when"])
+        return found if same and (more or (_lasts(found[0]["when"]) and _begins(ops[0]["when"]))) else None
 
     def contradicts(self, cleaned: str, ops: Sequence[Fields]) -> bool:
         """Whether operations leave out a number or a later colour of an instruction, or change what is there once and
@@ -536,6 +548,16 @@ class Judge:
 
 def _is_of_opened(op: Fields) -> bool:
     return isinstance(op.get("target"), Query) and is_opened(op["target"].text)
+
+
+def _lasts(when: When) -> bool:
+    """Whether it is told by what is so for a while."""
+    return when.during is not None and when.during.part == "while"
+
+
+def _begins(when: When) -> bool:
+    """Whether only its beginning is told, by what happens."""
+    return when.during is not None and when.during.part == "from" and _ends_told(when) == 1
 
 
 def _ends_told(when: When) -> int:

@@ -17,6 +17,11 @@ _SLANG = re.compile(
 )
 
 
+_VOCATIVE = re.compile(  # "pick it up, love, and lay it on the desk"
+    r", (?:my )?(?:love|dear|darling|mate|honey|sweetheart|sweetie|pal|buddy|boss|sir|madam|friends?|folks|listeners|"
+    r"baby|babe|kiddo|lads)(?=[,.!?:]|$)",
+    re.IGNORECASE,
+)
 _OFF_AT = re.compile(r"^(?:the )?(?P<thing>[a-z]+(?: fan)?) off (?=(?:at|after|once|when|until|till) )", re.IGNORECASE)
 _TOO_CLUTTERED = re.compile(  # a reason: "remove the chair, too cluttered"
     r"^(?P<order>(?:please |just )?(?:remove|delete|hide|lose|ditch|scrap|bin|take|paint|get rid) [^,.]+), "
@@ -97,7 +102,7 @@ def in_figures(text: str) -> str:
 
 def written(spoken: str) -> str:
     """A text with the words in full that people shorten when they speak or write notes."""
-    text = in_figures(_TITLE.sub("", spoken))
+    text = in_figures(_TITLE.sub("", _VOCATIVE.sub("", spoken)))
     for pattern, plain in _NOTATION:
         text = pattern.sub(plain, text)
     text = _FROM_ROOM.sub(r"\g<order>\g<end>", _TOO_CLUTTERED.sub(r"\g<order>", text))

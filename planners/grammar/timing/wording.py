@@ -72,7 +72,7 @@ _SYNONYMS = tuple(
         (r"in (?:lieu|place) of", "instead of"),
         (r"where (?P<what>the [a-z]+) (?:ends|finishes)(?= ?(?:$|[,.;!?]))", r"when it leaves \g<what>"),
         (
-            r"the (?P<what>drawer|shelf|book|one) (?:of|in|at) the (?P<rank>middle|top|bottom)"
+            r"(?:the )?\b(?P<what>drawer|shelf|book|one) (?:(?:of|in|at) the|on(?: the)?) (?P<rank>middle|top|bottom)"
             r"(?= ?(?:$|[,.;!?]| (?!of)))",
             r"the \g<rank> \g<what>",
         ),

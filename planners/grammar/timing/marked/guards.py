@@ -101,7 +101,7 @@ def is_ruled_out(kind: str, chance: float, slots: Slots) -> bool:
     cancels = kind in ("stay", "still", "halt")  # "cancel its way back"
     if (_PROHIBITED if kind in STATIC else _REMOVALS).search(asked) and not cancels:
         return True
-    if _UNWANTED.search(f"{idle} {asked}"):
+    if kind in STATIC and _UNWANTED.search(f"{idle} {asked}"):
         return True
     shades = sum(tag == "as" for tag, _, _ in slots.spans)
     if kind == "recolor" and shades > 1:

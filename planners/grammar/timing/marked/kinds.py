@@ -112,7 +112,7 @@ def is_clear(kind: str, chance: float, said: str) -> bool:
     """Whether a kind is likely enough, or one of some words says that a wish is of it; that something is not to be seen
     only words for seeing say: "keep the bed still" hides nothing."""
     words = _HIDES if kind == "hide" else _EVIDENCE[kind]
-    return chance >= CLEARLY or words.search(said) is not None
+    return chance >= (SURE if kind == "reverse" else CLEARLY) or words.search(said) is not None
 
 
 def is_done_by(kind: str, op: str) -> bool:

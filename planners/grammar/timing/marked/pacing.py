@@ -226,6 +226,10 @@ def duration(slots: Slots) -> Iterator[Wanted]:
                     yield paced(slots, "begin", Moment(start=round(moves.start, 4), stop=ends))
             return
         moment = replace(moment, lasting=seconds.value)
+    if moment.lasting is not None:
+        factors = {own.said for own in slots.amounts if own.unit in ("times", "%")}
+        slots.used |= factors  # "double the duration, so 3 s"
+        slots.repeated |= factors
     if moment.lasting is not None and _ends_itself(slots):
         yield Wanted(pace(whose_of(slots), "begin"), replace(moment, taken=True), None)
     elif moment.lasting is not None:

@@ -16,7 +16,7 @@ from .when import time_of
 
 _NEAR = 0.12  # seconds: what is told may differ so much from what is
 _SAME = 0.02  # seconds, degrees and metres: what differs less has not changed
-_TIMED = ("stop", "begin", "later", "speed")  # changes that change when something moves
+_TIMED = ("stop", "begin", "later", "speed", "turn")  # changes that are none if something moves as before
 _LIKEWISE = ("reverse", "mirror", "turn", "repeat", "back_and_forth")  # changes of what happens in the same time
 
 
@@ -39,10 +39,10 @@ def is_borne_out(change: str, before: Movement, after: Movement | None, moments:
         before, after: how it moves now, and would then; None if that cannot be told.
         moments: tags and times in numbers.
     """
-    if after is None or change in _LIKEWISE:
+    if after is None or (change in _TIMED and _is_same(before, after)):
+        return after is None
+    if change in _LIKEWISE:
         return True
-    if change in _TIMED and _is_same(before, after):
-        return False
     begins, ends = [begin for begin, _ in after.spells], [end for _, end in after.spells]
     film = max(before.end, *ends, 0.0)
     if change == "stop":  # from then on it rests

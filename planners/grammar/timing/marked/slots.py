@@ -26,7 +26,7 @@ from .names import MOVING, PARTS, with_colors, with_moving
 from .names import named as names_in
 from .orders import PLACES
 from .times import TIMES
-from .when import KEEPING, LOOKS, NEAR, PLACES_IN_TURN, is_a_time, tells_number, time_of, with_both_ends
+from .when import BY_SO_MUCH, KEEPING, LOOKS, NEAR, PLACES_IN_TURN, is_a_time, tells_number, time_of, with_both_ends
 
 _EVENTS = (
     r"(?:falls?|falling|drops?|movements?|motions?|rolls?|rolling|walks?|walking|turns?|turning|rotations?|spins?|"
@@ -450,12 +450,18 @@ def _as_duration(span: Span, words: Sequence[str], said: str) -> Span:
     """A mark of how long something is to take: also of how much, behind "which may take"; "in half the time" tells how
     much."""
     tag, start, stop = span
+    if tag == "to" and BY_SO_MUCH.match(said) is not None and not _SHIFTED.isdisjoint(words):
+        return "by", start, stop  # "it is to be brought forward by one second"
     if tag == "for" and _SHARE_OF_TIME.match(said) is not None:
         return "by", start, stop
     takes = tag == "by" and start and words[start - 1] in _TAKE
     return ("for", start, stop) if takes and (far := amount(said)) is not None and far.unit == "s" else span
 
 
+_SHIFTED = bag(
+    "earlier sooner later anticipate anticipated advance advanced bring brought forward postpone postponed delay "
+    "delayed shift shifted move moved push pushed defer deferred"
+)
 _SHARE_OF_TIME = re.compile(
     r"^(?:in |within )?(?:only |just )?(?:half|twice|double|a third|a quarter)(?: of)? (?:the|its|that) time$"
 )
@@ -508,7 +514,7 @@ _SAYS_SO = {  # numbers that say nothing but the kind of a wish: "at speed 0", "
     "still": _ZERO, "halt": _ZERO, "pause": _ZERO, "stay": _ZERO, "hide": (*_ZERO, "1"), "order": tuple(PLACES),
 }  # fmt: skip
 _JOINTS = bag("and , or nor neither plus + / & both the as well with along")
-_AGAIN = bag("lose remove delete hide take get rid of away out too also then drop bin scrap ditch to see")  # of a look
+_AGAIN = bag("lose remove delete hide take get rid of away out too also then drop bin scrap ditch to see can go may .")
 _BEHIND_NAMES = bag(
     "on in at under beside behind below above from near by to next of with and , ' 's that which who there here over "
     "along round left right up down now too as"

@@ -66,6 +66,7 @@ _BESIDE = re.compile(  # "set off with the robot", "at the same time as the top 
 _ALL = re.compile(
     r"\b(?:whole|entire|throughout|all (?:of )?(?:the|this) (?:film|clip|video|scene|movie|sequence|shot)|"
     r"all (?:the way )?through|over the length of|all the time|always|permanent(?:ly)?|"
+    r"^(?:from now on|henceforth|from here on)$|"
     r"(?:beginning|start) to (?:the )?(?:end|finish))\b"
 )
 _A_PART = re.compile(r"\b(?:first|last|opening|closing|final|initial|middle|second|third)\b.*\b(?:seconds?|secs?)\b")

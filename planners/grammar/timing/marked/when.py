@@ -46,6 +46,19 @@ _PLAINER = (  # times in plainer words
         "is fully ",
     ),
     (re.compile(r"^at the (?:stroke|count|mark) of "), "at "),
+    (
+        re.compile(
+            r"^(?:when|once|as soon as) (?:the )?(?P<at>\d+(?:\.\d+)?)(?: (?:s|secs?|seconds?))? "
+            r"(?:hits?|strikes?|comes?(?: (?:up|round|around))?|arrives?|is reached|rolls? (?:up|round|around))$"
+        ),
+        r"at \g<at>",
+    ),
+    (
+        re.compile(
+            r"^(?:until|till) (?:we|i|they|you) (?:sign off|wrap(?: up)?|are done|finish|stop|go home|cut|close)$"
+        ),
+        "until the end",
+    ),
     (re.compile(r"^to (?=(?:\d|one\b|two\b|half\b|a )[^,]* (?:after|once|when|behind) )"), ""),
     (
         re.compile(
@@ -115,7 +128,7 @@ _REASON = re.compile(  # "since it's leaking, take it out"
     r"^since (?:it|he|she|they|that|the \w+) (?:is|are|'s|looks?|seems?)\b"
     r"(?! (?:\w+ )?(?:open|shut|closed|out|up|down|gone|there|still|moving|rolling|turning|falling|at|on|in)\b)"
 )
-_BY_SO_MUCH = re.compile(rf"^by (?:another )?{DURATION}$")  # "shift it by one second" tells no time
+BY_SO_MUCH = re.compile(rf"^by (?:another )?{DURATION}$")  # "shift it by one second" tells no time
 _ONLY = re.compile(r"^(?:right|only|just|exactly|precisely|immediately|directly|shortly|already|not) ")
 _JUST_BEFORE = re.compile(r"^(?:right |just |directly |immediately )*before ")
 _LIKEWISE = re.compile(
@@ -124,7 +137,8 @@ _LIKEWISE = re.compile(
 _STAYS_OPEN = re.compile(r"^(?:until|till) (?:\d|one\b|two\b|three\b|four\b|five\b|half\b)")
 _AT_A_NUMBER = re.compile(r"^(?:at|from|on) (?:t ?= ?|second )?\d")
 _COMES_BACK = re.compile(
-    r"\b(?:back|again|returns?|reappears?|normal|usual|reverts?|visible|shows?|seen|ends?|stops?|over|done|until|till)\b"
+    r"\b(?:back|again|returns?|reappears?|normal|usual|reverts?|visible|shows?|seen|ends?|stops?|over|done|until|till|"
+    r"(?:pops?|comes?|steps?|walks?|fades?) (?:in|up|out)|enters?)\b"
 )
 _UP_TO_THEN = re.compile(r"\b(?:until|till|before)(?: ,)?$")
 _AT_A_SECOND = re.compile(r"^(?:just |right )?(?:in|at|on) (?:second|sec|t ?=) ?\d")
@@ -389,7 +403,7 @@ def _told(
         said: all of the words.
         happening: what happens at the time that is told so far.
     """
-    if tag == "from" and (_BY_SO_MUCH.match(phrase) or _REASON.match(said)):
+    if tag == "from" and (BY_SO_MUCH.match(phrase) or _REASON.match(said)):
         return None
     if (likewise := _LIKEWISE.match(phrase)) is not None and (other := thing(likewise["who"])) is not None:
         if happening is not None:

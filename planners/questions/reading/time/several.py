@@ -82,7 +82,7 @@ _MEANT = re.compile(
 )
 _THEN = re.compile(r" (?:then|by then)(?=[?. ]|$)")
 _IT = re.compile(r" (?:it|he|she|they) ")
-_PRONOUN = re.compile(r"(?<=does|.did|..is|.was|.has) (?:it|he|she|they)(?=[ ?.!,]|$)")
+_PRONOUN = re.compile(r"(?<=does|.did|..is|.was|.has) (?:it|he|she|they)(?=[ ?.!,]|$)", re.IGNORECASE)
 _SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z\"'(a-z])")
 
 

@@ -30,7 +30,9 @@ _WHEN_OPEN = re.compile(
 )
 _OR = re.compile(r", or\?$", re.IGNORECASE)
 _LENGTH = re.compile(r"^by what (?:length|distance)\b(?:, in (?P<unit>\w+),)?", re.IGNORECASE)
-_OVER = re.compile(r"^what(?:'s| is)? (?P<who>the [a-z]+) rolling over\b", re.IGNORECASE)
+_OVER = re.compile(
+    r"^(?:[a-z]+, )?what(?:'s| is)? (?P<who>(?:the|that|this|my) [a-z]+) rolling over(?: right)?\b", re.IGNORECASE
+)
 
 
 def situated(text: str) -> str:

@@ -82,7 +82,7 @@ _CROSSES = re.compile(r"\bcross\w*")
 _COUNTS = re.compile(r"\bhow (?:many|much)\b|\bcount\b|\b(?:number|quantity) of\b")
 _RANKS_ALL = re.compile(r"^(?:please )?(?:rank|sort|order|arrange|line up)\b")
 _CUTS_OUT = re.compile(r"\b(?:cuts?|conks?|gives?|gave|switch(?:es)?|shuts?|powers?) (?:out|off|down)\b")
-_OFF_AT = re.compile(r"\b(?<!set )(?<!sets )(?<!setting )off (?:at|by) (?:what|which)\b")
+_OFF_AT = re.compile(r"^(?:(?:the|that|this|our) )?(?:ceiling )?[a-z]+(?<!s) off (?:at|by) (?:what|which)\b")
 _TIMECODE = re.compile(r"\b(?:time ?code|time ?stamp|(?:at )?(?:what|which) (?:time|second|moment|instant))\b")
 _LEG = re.compile(
     r"(?:(?:(?:during|for|on|in|over|of|along|while on) )?(?:^|(?:the|that|this|its|his|her|'s) )|"
