@@ -127,6 +127,8 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     words, names = static.without_relative(tuple(said.split()), survey, timeline), _names(survey)
     found = _as_said(text, words, names, survey, timeline)
     if found is not None and found.answer.answer is not None:
+        if _OF_A_SORT.search(said) is not None and not found.restated:
+            return found  # "which wall is it at" wants a wall
         first = goes_first(text)
         strictly = not first and found.answer.answer != ()
         surer = _read_as(supposed(text, names, LEAST if first else SURE, strictly), survey, timeline)
@@ -143,6 +145,9 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
         return found
     none = Answer(answer=None, answer_type=expected_type(words), text=NOT_READ, confidence=0.0, source="none")
     return Reading(none, sight=True)
+
+
+_OF_A_SORT = re.compile(r"\b(?:which|what) (?:wall|corner|side of)\b")
 
 
 def _offers(said: str, told: Reading) -> bool:

@@ -125,6 +125,10 @@ NEAR = 0.03  # seconds
         ("turns per second of the clock?", 0.5, "turns/s"),
         ("how long is it from when the ball stops to the end of the film?", 1.0, "s"),
         ("by what second have both the books landed?", 2.4, "s"),
+        ("total transit time of the ball from departure to final standstill?", 2.0, "s"),
+        ("After leavin' the rug, how many seconds does the ball need to reach the desk?", None, ""),
+        ("come two seconds, how many whole turns has that clock put behind it?", 1.0, ""),
+        ("Does the ball roll far? I saw a chair. When does it stop?", 3.0, "s"),
     ],
 )
 def test_numbers(session: Session, text: str, value: float | None, unit: str) -> None:
@@ -198,6 +202,37 @@ def test_numbers(session: Session, text: str, value: float | None, unit: str) ->
 def test_words(session: Session, text: str, value: str | tuple[str, ...] | None) -> None:
     given = said(session, text)
     assert given.answer == value, given.text
+
+
+def test_what_falls_is_on_no_floor_until_it_lands(session: Session) -> None:
+    """The green book drops from 0.5 to 0.9 s."""
+    for time, on, yes in ((0.8, "air", "no"), (1.5, "floor", "yes")):
+        assert said(session, f"what is the green book on at {time} s?").answer == on
+        assert said(session, f"is the green book on the floor at {time} s?").answer == yes
+    assert said(session, "is the green book on the desk at 0.8 s?").answer == "no"
+    assert "in the air" in str(said(session, "where is the green book at 0.8 s?").answer)
+    assert "book" not in str(said(session, "what is on the floor at 0.8 s?").answer)
+
+
+def test_it_is_what_the_sentence_before_names(session: Session) -> None:
+    assert said(session, "I have a chair here. Did it move at all?").answer == "no"
+    assert said(session, "That ball is new. Did it move at all?").answer == "yes"
+    assert said(session, "Somebody lost the cat. When does it move?").answer is None
+    assert said(session, "I need a sound for the ball. How long should it last?").answer is None
+
+
+def test_an_event_is_that_behind_the_one_it_is_told_after(session: Session) -> None:
+    """The ball stands still from the start, and again from 3 s."""
+    told = said(session, "how much time passes from when the ball starts to move until the ball is still?")
+    assert told.answer == pytest.approx(2.0, abs=NEAR)
+
+
+def test_an_answer_of_another_form_than_is_asked_for_gives_way(session: Session) -> None:
+    """The rules read the first as a question for yes or no, and the second as one for a moment."""
+    for text, form in (("Green book. Time of its departure?", float), ("which wall's the clock on?", str)):
+        told = said(session, text).answer
+        assert told is None or (isinstance(told, form) and told not in ("yes", "no"))
+    assert said(session, "is the clock moving or still at 1 s?").answer == "moving"  # what it offers is its answer
 
 
 def test_answers_show_the_time_that_they_are_about(session: Session) -> None:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import pytest
 
 from scenewright.planners.grammar.tagging.words import bag
 from scenewright.planners.questions.reading.time.situated import situated
+from scenewright.planners.questions.reading.time.supposed.forms import Form, chance_of, form_of
 from scenewright.planners.questions.reading.time.supposed.gaps import gap
 from scenewright.planners.questions.reading.time.supposed.kinds import kinds_of, marked_ways
 from scenewright.planners.questions.reading.time.supposed.likely import without_options
 from scenewright.planners.questions.reading.time.supposed.plainly import supposed
 from scenewright.planners.questions.reading.time.supposed.said import Said
 from scenewright.planners.questions.reading.time.supposed.times import plain_time, times_of
+from scenewright.planners.questions.reading.time.supposed.wordings import PLAIN
 
 NAMES = bag("ball sofa rug lamp table wall floor door plant drawer fan book robot car bed shelf")
 
@@ -213,6 +217,61 @@ def test_names_sides_and_all_of_several(text: str, plainly: str) -> None:
 )
 def test_what_is_left_apart_or_caused_or_shared_is_not_put_plainly(text: str) -> None:
     assert supposed(text, NAMES) == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "form"),
+    [
+        ("how much time does the ball spend on the rug", "duration"),
+        ("when does the drawer pop open", "moment"),
+        ("does the ball reach the wall", "yesno"),
+        ("how many rounds does the fan do in all", "number"),
+        ("out of sofa, ball and table, which never budge?", "name"),
+    ],
+)
+def test_the_form_of_an_answer_is_that_of_its_kind(text: str, form: Form) -> None:
+    chances = {other: chance_of(text, other) for other in get_args(Form)}
+    assert max(chances, key=chances.__getitem__) == form and chances[form] > 0.5
+
+
+def test_every_kind_has_a_form() -> None:
+    assert {form_of(kind) for kind in PLAIN} == set(get_args(Form))
+    assert form_of("when_stops") == "moment" and form_of("long_open") == "duration" and form_of("near") == "name"
+
+
+@pytest.mark.parametrize(
+    ("kind", "said", "plainly"),
+    [
+        ("turns", "come three seconds", "by three seconds"),
+        ("where_at", "1.7 seconds on the clock", "at 1.7 seconds"),
+        ("near", "at the end of everything", "at the end"),
+        ("far_turns", "from zero till t = 1.5", "from 0 s till 1.5 s"),
+        ("if_moves", "when the fan 's going", "when the fan is moving"),
+        ("fast", "from start of motion till it stops", ""),
+        ("long_opens", "from the first little move", ""),
+        ("turns", "before they grow still", ""),
+    ],
+)
+def test_whole_movements_and_clocks(kind: str, said: str, plainly: str) -> None:
+    assert next(times_of(kind, (said,))) == plainly
+
+
+@pytest.mark.parametrize(
+    ("text", "plainly"),
+    [
+        ("the drawer lingers in its outermost position; over what span of time?",
+         "how long does the drawer stay fully open"),
+        ("which of them refuses to be static, this film?", "what moves"),
+        ("at one and a half seconds, how many books are still sitting up on the shelf?",
+         "how many books are on the shelf at one and a half seconds"),
+        ("how many books are off the shelf by 1.1 s", "how many books have fallen at 1.1 s"),
+        ("once the door is wide open, how many seconds of film are left?",
+         "how long is it from when the door is fully open to the end of the film"),
+        ("fan off at what time please", "when does the fan stop moving"),
+    ],
+)  # fmt: skip
+def test_poses_and_what_is_left(text: str, plainly: str) -> None:
+    assert plainly in supposed(text, NAMES)
 
 
 def test_a_word_that_may_tell_more_bars_a_question_only_strictly() -> None:

@@ -92,6 +92,9 @@ _AROUND = r"""
 \b(\d+) and a half seconds\b => \1.5 seconds
  or (?:does it |is it |do they )?(?:just |simply |only )?(?:sit|stand|stay|lie)s?(?: (?:there|still|put))+$ =>
 \b(?:drive|go|get|roll|walk|move) anywhere\b => move
+^(?:\w+ , )?(which|what) (wall|corner) 's (the \w+(?: \w+)?) => \1 \2 is \3
+^((?:the|that|this|my) \w+(?: \w+)?) (?:is|stands|sits|hangs|lies|leans) (?:(?:placed|placed right|right|set|fixed) )?\
+(?:up )?(?:against|at|on|in|along|by) (which|what) wall\b.*$ => which wall is \1 at
 ^what about (the \w+(?: \w+)?) , (does|did|is|has|will) (?:that|it|this) => \2 \1
 ^(?:(?:give|tell) me )?(?:the )?time (the \w+(?: \w+)?) (?:needs|takes|uses) for (?:one|a|each|every) (?:full |whole |\
 complete |single )?(?:turn|round|rotation|revolution)$ => how long does one turn take \1

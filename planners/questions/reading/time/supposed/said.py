@@ -83,8 +83,6 @@ def said_of(words: tuple[str, ...], spans: Collection[Span], names: Collection[s
         for tag in ("x", "y")
     }
     known = tuple(name for name in things["x"] if _is_known(name, names))
-    if any(_is_elsewhere(name, names) for name in things["x"] if name not in known):
-        return None  # "the cat that is chasing the ball"
     things["x"] = known or things["x"]  # "my clockwork apprentice, the robot"
     if not found["t"] and (past := _NOW_THAT.match(" ".join(found["off"]))) is not None:
         found["t"], found["off"] = [f"once {past['time']}"], []
@@ -101,12 +99,6 @@ def said_of(words: tuple[str, ...], spans: Collection[Span], names: Collection[s
         names=names, first=first, barred=f" {_TAG.sub(' ', barred)} ",
         asked=any(tag == "x" and before[start] in ("which", "what") for tag, start, _ in spans),
     )  # fmt: skip
-
-
-def _is_elsewhere(name: str, names: Collection[str]) -> bool:
-    """Whether a name is that of a kind of things of which the scene has none."""
-    noun = singular(name.split()[-1])
-    return noun not in names and name.startswith(("the ", "that ", "this ")) and kinds_of_things.find(noun) is not None
 
 
 ASKS_WHEN = re.compile(r"^when ,")  # "when, to the best of your knowledge, ..."
