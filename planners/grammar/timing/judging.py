@@ -231,7 +231,8 @@ class Judge:
                     return None
                 own = [self.made_of(_EACH[kind], SURELY, words, marks) for words, marks in parts]
                 return None if None in own else tuple(op for ops in own for op in ops or ())
-            if {own for own, _ in kinds[:2]} in (_IN_TURN, _ITS_TIME):
+            both = {own for own, _ in kinds[:2]}
+            if both == _IN_TURN or (both == _ITS_TIME and {"from", "to"} <= {tag for tag, _, _ in spans}):
                 chance = sum(chance for _, chance in kinds[:2])  # things that open in turn; a beginning and an end
             if chance < least:
                 return None
@@ -367,6 +368,8 @@ class Judge:
         """
         if len(ops) > 1 and ops[-1]["op"] == "spin" and ops[-1]["target"] == IT and _is_of_opened(ops[0]):
             return True  # "can the door shut again at 3.5? make it quick, half a second"
+        if len(ops) > 1 and ops[0]["op"] in ("rotate", "tip") and ops[-1].get("change") == "reverse":
+            return ops[-1]["target"] == IT and self._does_move(ops[0]["target"])  # "flip the fan, let it go backwards"
         alike = len({op["op"] for op in ops}) == 1 and (len(ops) == 1 or ops[0]["op"] in ("recolor", "move"))
         when = (ops[0].get("when") if ops else None) or When()
         if not alike or ops[0]["op"] not in _OF_A_KIND or when.gradual or when.every is not None:

@@ -27,7 +27,7 @@ _LEAST = 2  # words beside them that can ask for anything
 _NEAR = 0.05  # seconds by which times of a plan may differ from those that are to stay
 _SAME = re.compile(  # words by which something stays as it is
     r"\b(?:same|still|un(?:changed|touched|altered|affected|modified)|identical|constant|otherwise|alone|present|"
-    r"usual|"
+    r"usual|(?:is|was|stays) (?:ok|okay|good|right)|"
     r"normal|hitherto|(?:is|are|was|were|be) fine|no change|nothing (?:else|about)|as (?:is|now|it|they|he|she|"
     r"before|"
     r"specified|planned|ever|in the|at present|usual|today|fast|long|quick|slow)|like (?:now|before|it|they|always)|"
@@ -64,6 +64,9 @@ _AS_EVER = re.compile(  # "then back on duty till 4 like always"
     r"\b(?:stop\w*|end\w*|finish\w*|off)\b.*\bwhen (?:it|he|she) (?:always |usually )?"
     r"(?:stop|end|finish|did|does|used)\w*|"
     r"\bno (?:later|earlier|sooner) than (?:now|before|at present|(?:it|he|she) (?:does|did))\b"
+)
+_IS_FINE = re.compile(
+    r"^(?:the |its )?(?:stop|end|start|begin\w*)(?:ning|ping)?(?: time)? (?:is|was|stays) (?:ok|okay|fine|good|right)$"
 )
 _ARRIVES = re.compile(r"\b(?:reach\w*|arriv\w*|there|appointment|home|until|till|stops?|ends?|finish\w*|off|over)\b")
 _OTHERWISE = re.compile(r"\b(?:not|no|instead|than|never|without|rather|too)\b")
@@ -106,10 +109,11 @@ def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
     'make the door open half as fast'
     """
     words = in_words(cleaned).split(" ")
-    tagged = [(tag, a, b, " ".join(words[a:b]).strip(" ,.;:")) for tag, a, b in marked(words) if tag in (TAG, "not")]
+    marks = ((tag, a, b, " ".join(words[a:b]).strip(" ,.;:")) for tag, a, b in marked(words))
+    tagged = [own for own in marks if own[0] in (TAG, "not") or (own[0] == "off" and _IS_FINE.match(own[3]))]
     if _SAME.search(" ".join(words)) is None:
         return cleaned, tuple(_supposed(said for _, _, _, said in tagged))
-    told = ((a, b, said) for tag, a, b, said in tagged if tag == TAG or _AS_EVER.search(said))
+    told = ((a, b, said) for tag, a, b, said in tagged if tag != "not" or _AS_EVER.search(said))
     spans = [(a, b) for a, b, said in told if _SAME.search(said) and not _A_COMMAND.search(said)]
     if not spans and (found := _STILL.search(said := " ".join(words))) is not None:
         spans = [(said[: found.start()].count(" ") + 1, len(words))]
