@@ -156,14 +156,13 @@ def spells(tracks: Iterable[Track], start: float, stop: float) -> list[tuple[flo
             steps = np.diff(places, axis=0)
         own = list[tuple[float, float]]()
         for at in np.flatnonzero(far > _STILL):
-            goes_on = own and own[-1][1] == times[at] and float(steps[at - 1] @ steps[at]) >= 0
-            own[-1:] = [(own[-1][0], float(times[at + 1]))] if goes_on else [*own[-1:], _span(times, int(at))]
+            begin, end = float(times[at]), float(times[at + 1])
+            if own and own[-1][1] == begin and float(steps[at - 1] @ steps[at]) >= 0:
+                own[-1] = (own[-1][0], end)
+            else:
+                own.append((begin, end))
         found += own
     return _united(found)
-
-
-def _span(times: F64, at: int) -> tuple[float, float]:
-    return float(times[at]), float(times[at + 1])
 
 
 def _united(found: list[tuple[float, float]]) -> list[tuple[float, float]]:

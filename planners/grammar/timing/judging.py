@@ -554,12 +554,12 @@ def _is_of_opened(op: Fields) -> bool:
 
 
 def _lasts(when: When) -> bool:
-    """Whether it is told by what is so for a while."""
+    """Whether a time is told by what is so for a while."""
     return when.during is not None and when.during.part == "while"
 
 
 def _begins(when: When) -> bool:
-    """Whether only its beginning is told, by what happens."""
+    """Whether of a time only the beginning is told, by what happens."""
     return when.during is not None and when.during.part == "from" and _ends_told(when) == 1
 
 

@@ -66,7 +66,8 @@ _AS_EVER = re.compile(  # "then back on duty till 4 like always"
     r"\bno (?:later|earlier|sooner) than (?:now|before|at present|(?:it|he|she) (?:does|did))\b"
 )
 _IS_FINE = re.compile(
-    r"^(?:the |its )?(?:stop|end|start|begin\w*)(?:ning|ping)?(?: time)? (?:is|was|stays) (?:ok|okay|fine|good|right)$"
+    r"^(?:the |its )?(?:stop|stopping|end|ending|start|beginning)(?: time)? (?:is|was|stays) "
+    r"(?:ok|okay|fine|good|right)$"
 )
 _ARRIVES = re.compile(r"\b(?:reach\w*|arriv\w*|there|appointment|home|until|till|stops?|ends?|finish\w*|off|over)\b")
 _OTHERWISE = re.compile(r"\b(?:not|no|instead|than|never|without|rather|too)\b")

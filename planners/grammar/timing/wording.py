@@ -72,9 +72,9 @@ _SYNONYMS = tuple(
         (r"in (?:lieu|place) of", "instead of"),
         (r"where (?P<what>the [a-z]+) (?:ends|finishes)(?= ?(?:$|[,.;!?]))", r"when it leaves \g<what>"),
         (
-            r"(?:the )?\b(?P<what>drawer|shelf|book|one) (?:(?:of|in|at) the|on(?: the)?) (?P<rank>middle|top|bottom)"
-            r"(?= ?(?:$|[,.;!?]| (?!of)))",
-            r"the \g<rank> \g<what>",
+            r"(?:the )?\bdrawer (?:of|in|at|on)(?: the)? (?P<rank>middle|top|bottom)"
+            r"(?= ?(?:$|[,.;:!?]| (?:is|has|should|must|may|can|opens?|comes?|slides?|stays?|out|to|at|by|from)\b))",
+            r"the \g<rank> drawer",
         ),
         (r"(?P<rank>first|last) of all(?= (?:the|my|our)\b)", r"\g<rank>"),
         (r"(?:all|all along|all through) the (?=film|clip|video|movie)", "for the whole "),

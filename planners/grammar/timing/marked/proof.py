@@ -39,8 +39,10 @@ def is_borne_out(change: str, before: Movement, after: Movement | None, moments:
         before, after: how it moves now, and would then; None if that cannot be told.
         moments: tags and times in numbers.
     """
-    if after is None or (change in _TIMED and _is_same(before, after)):
-        return after is None
+    if after is None:
+        return True
+    if change in _TIMED and _is_same(before, after):
+        return False
     if change in _LIKEWISE:
         return True
     begins, ends = [begin for begin, _ in after.spells], [end for _, end in after.spells]

@@ -314,7 +314,7 @@ def slots(
         return " ".join(words[span[1] : span[2]]).strip(_TRIM)
 
     spans = [_joined(span, words, kind) for span in sorted(spans, key=lambda span: span[1])]
-    spans = list(_merged([_as_duration(span, words, text(span)) for span in spans], text, kind))
+    spans = list(_merged([_retagged(span, words, text(span)) for span in spans], text, kind))
     if kind in ("open", "close", "together"):
         spans = [own for span in spans for own in _with_another(span, words)]
     thing = with_colors(thing, words, spans)
@@ -446,9 +446,9 @@ def _as_amount(span: Span, said: str) -> Span:
     return ("by", start, stop) if enough or (tag == "to" and _TO_A_NUMBER.match(said)) else span
 
 
-def _as_duration(span: Span, words: Sequence[str], said: str) -> Span:
-    """A mark of how long something is to take: also of how much, behind "which may take"; "in half the time" tells how
-    much."""
+def _retagged(span: Span, words: Sequence[str], said: str) -> Span:
+    """A mark with the tag that its words have: "which may take [by another second]" tells for how long, "[for in half
+    the time]" by how much."""
     tag, start, stop = span
     if tag == "to" and BY_SO_MUCH.match(said) is not None and not _SHIFTED.isdisjoint(words):
         return "by", start, stop  # "it is to be brought forward by one second"

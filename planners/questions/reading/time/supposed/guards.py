@@ -108,7 +108,10 @@ _BY_A_PLACE = re.compile(  # "comes to rest at which wall", "quits the shelf boa
     r"(?:the |its |his |her |which |what |that )?(?:[a-z]+ )?[a-z]+(?= )"
 )
 _AROUND = re.compile(r" (?:around|round) (?:the |this |that )?(?:[a-z]+ )?[a-z]+(?= )")
-_LASTS = re.compile(r"(\b(?:does|do|did|will|would|should|must|to) (?:.* )?)lasts?\b")  # "how long does it last"
+_LASTS = re.compile(  # "how long does it last"
+    r"(\b(?:does|do|did|will|would|should|must|to) (?:.* )?)lasts?\b"
+    r"(?= *(?:[?,.]|$|in total|exactly|altogether|overall))"
+)
 _FINALLY = re.compile(r"\b(?:final|total) (?=(?:stop|standstill|rest|halt|time|duration|transit|running)\b)")
 _WHAT_SECOND = re.compile(
     r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b|"

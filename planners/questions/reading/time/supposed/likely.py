@@ -32,7 +32,7 @@ def likeliest(words: tuple[str, ...]) -> tuple[str, float]:
         _give(found, "when_starts", "where_starts")
     if _CROSSES.search(said):
         _give(found, "long_on", "long_reach")
-    if _ON_WHICH_SIDE.search(said) and "if_turns" not in _best(found):
+    if _ON_WHICH_SIDE.search(said) and _best(found) != "if_turns":
         _give(found, "turn_way", "when_turns")
     if _WILL_NOT_REST.search(said):
         _give(found, "what_moves", "what_still")
