@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from scenewright.agent.session.session import Session
 from scenewright.benchmarks._motion import rooms
 from scenewright.gaussians.errors import AbsentError
+from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.world.box import Box, penetration
-from scenewright.tools.ops.move import _free_way
+from scenewright.tools.ops.move import Move, _free_way
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -62,3 +64,25 @@ def test_the_wardrobe_in_the_corner_is_the_only_one(session: Session) -> None:
         session.do("paint the wardrobe in the corner of the piano teal")
     with pytest.raises(AbsentError):
         session.do("paint the wardrobe next to the piano teal")
+
+
+def middles(session: Session) -> dict[str, np.ndarray]:
+    assert session.scene.language is not None
+    return {g.label: np.array(g.box.center) for g in session.scene.language.groups if g.level == "object"}
+
+
+def test_something_moves_away_from_another_thing(session: Session) -> None:
+    before = middles(session)
+    (receipt,) = session.do("move the chair 30 cm away from the bed").receipts
+    after, way = middles(session), before["chair"] - before["bed"]
+    way[2] = 0.0
+    assert after["chair"] - before["chair"] == pytest.approx(0.3 * way / np.linalg.norm(way), abs=1e-3)
+    assert receipt.op.op == "move" and all(check.passed for check in receipt.checks)
+    assert after["bed"] == pytest.approx(before["bed"], abs=1e-6)
+    session.undo()
+
+
+def test_away_says_from_what() -> None:
+    with pytest.raises(ValidationError, match="away goes with toward"):
+        Move(target=Query(text="chair"), direction="left", away=True)
+    assert Move(target=Query(text="chair"), toward=Query(text="bed"), away=True).away

@@ -312,14 +312,16 @@ def _of_bodies(case: Case) -> Tensor:
 
 
 def _approached(case: Case, op: Move, rows: Tensor, was: Any, way: Any) -> list[Check]:
-    """It came nearer to the thing it was sent to, by the asked distance."""
+    """It came nearer to the thing it was sent to, or got away from it, by the asked distance."""
     assert op.toward is not None
     found = case.context.resolve(case.before, op.toward)
     if found.verdict != "found":
         return [report("moved as said", 0.0, "units", f"what it goes to was not found: {found.reason}")]
     goals = [b.center for b in bodies_of(case.before, found)]
-    closer = max(float(np.linalg.norm(g - was) - np.linalg.norm(g - was - way)) for g in goals)
-    checks = [at_least("moved as said", closer, 1e-3 * case.cm(1.0), "units", f"it came {closer:.3g} units nearer")]
+    closer = [float(np.linalg.norm(g - was) - np.linalg.norm(g - was - way)) for g in goals]
+    far = -min(closer) if op.away else max(closer)
+    told = f"it came {far:.3g} units {'farther away' if op.away else 'nearer'}"
+    checks = [at_least("moved as said", far, 1e-3 * case.cm(1.0), "units", told)]
     if op.distance is not None:
         length, far = op.distance.in_units(case.before.frame), float(np.linalg.norm(way))
         checks.append(_near("distance seen", abs(far - length), length, case, f"it moved {far:.3g} of {length:.3g}"))

@@ -40,22 +40,24 @@ from ..placement.walls import clear_length, require_clear_path
 from ..receipt import Check, at_most
 from ..transform import shift, turn
 
+_NO: dict[str, Any] = {"enum": [False]}
 _MOST_OF_IT = 0.8  # of the way to something: where a wall ends it after more, it is near enough
 
 
 class Move(TargetedOp):
     """Move the target: in a `direction`, `toward` something, or to a `place`; exactly one of the three.
 
-    Directions are the viewer's: forward is away from the viewer, right is to the viewer's right. `distance` goes with
-    `direction` or `toward`; without it the target moves by its own width, or until it stands next to what it goes to.
-    It does not go through walls or out of the room. What stands on it goes along.
+    Directions are the viewer's: forward is away from the viewer, right is to the viewer's right. `away`: from what
+    `toward` names, not to it. `distance` goes with `direction` or `toward`; without it the target moves by its own
+    width, or until it stands next to what it goes to. It does not go through walls or out of the room. What stands on
+    it goes along.
     """
 
     model_config = ConfigDict(
         json_schema_extra=either(
-            {"direction": given(), "toward": NOT_GIVEN, "place": NOT_GIVEN},
+            {"direction": given(), "toward": NOT_GIVEN, "place": NOT_GIVEN, "away": _NO},
             {"toward": given(), "direction": NOT_GIVEN, "place": NOT_GIVEN},
-            {"place": given(), "direction": NOT_GIVEN, "toward": NOT_GIVEN, "distance": NOT_GIVEN},
+            {"place": given(), "direction": NOT_GIVEN, "toward": NOT_GIVEN, "distance": NOT_GIVEN, "away": _NO},
         )
     )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
@@ -71,6 +73,7 @@ class Move(TargetedOp):
     place: Placement | None = None
     """Where to put it down: supported and free of collision."""
     toward: Query | None = None
+    away: bool = False
     infill: bool = True  # whether the surfaces that it hid are filled, see `completing`
 
     @model_validator(mode="after")
@@ -80,6 +83,8 @@ class Move(TargetedOp):
             raise ValueError(f"move needs exactly one of direction, toward and place, got {said or 'none'}")
         if self.place is not None and self.distance is not None:
             raise ValueError("a distance goes with a direction or toward, not with a place")
+        if self.away and self.toward is None:
+            raise ValueError("away goes with toward, which says from what")
         return self
 
     def stronger(self, times: float) -> Self | None:
@@ -114,6 +119,9 @@ class Move(TargetedOp):
             return self._placed(scene, bodies, context, self.place)
         if self.toward is not None:
             goals = bodies_of(scene, context.resolve(scene, self.toward).require())
+            if self.away:
+                said += () if self.distance is not None else ("no distance was given: moved by its own extent",)
+                return [self._asked(b, self._retreat(scene, b, goals)) for b in bodies], said
             ways = [self._approach(scene, b, goals) for b in bodies]
             short = tuple(f"a wall ends its way {off:.2g} units before it" for _, off in ways if off > 0)
             return [self._asked(b, way) for b, (way, _) in zip(bodies, ways, strict=True)], (*said, *short)
@@ -126,17 +134,17 @@ class Move(TargetedOp):
             said = (f"no distance was given: moved by its own extent, {step:.3g} units",)
         return [self._asked(b, way * step) for b in bodies], said
 
+    def _retreat(self, scene: Scene, body: Body, goals: list[Body]) -> Array:
+        """Horizontal offset away from the nearest of the goals, by the given distance or its own extent."""
+        way, _ = _level_way(scene, body, goals)
+        step = body.box.extent(way) if self.distance is None else self.distance.in_units(scene.frame)
+        return np.asarray(-way * step)
+
     def _approach(self, scene: Scene, body: Body, goals: list[Body]) -> tuple[Array, float]:
         """Horizontal offset toward the nearest of the goals, by the given distance or until 3 cm before it; and by how
         much less a wall lets it go, scene units."""
         up = scene.frame.up_vector
-        ways = [g.center - body.center for g in goals]
-        ways = [w - up * (w @ up) for w in ways]
-        nearest = int(np.argmin([np.linalg.norm(w) for w in ways]))
-        length = float(np.linalg.norm(ways[nearest]))
-        if length < 1e-9:
-            raise InstructionError("it is already there: name a direction instead")
-        way = ways[nearest] / length
+        way, nearest = _level_way(scene, body, goals)
         if self.distance is not None:
             return np.asarray(way * self.distance.in_units(scene.frame)), 0.0
         gap = 3 * centimetre(scene.frame, max(body.box.size))
@@ -190,6 +198,22 @@ class Move(TargetedOp):
         bound = 1e-5 * max(1.0, asked, float(was.abs().max()))
         said = f"it moved {measured:.4g} of {asked:.4g} units"
         return at_most("distance", abs(measured - asked), bound, "units", said)
+
+
+def _level_way(scene: Scene, body: Body, goals: list[Body]) -> tuple[Array, int]:
+    """The horizontal way to the nearest of the goals, of length 1, and which one that is.
+
+    Raises:
+        InstructionError: it is where the goal is.
+    """
+    up = scene.frame.up_vector
+    ways = [g.center - body.center for g in goals]
+    ways = [w - up * (w @ up) for w in ways]
+    nearest = int(np.argmin([np.linalg.norm(w) for w in ways]))
+    length = float(np.linalg.norm(ways[nearest]))
+    if length < 1e-9:
+        raise InstructionError("it is already there: name a direction instead")
+    return np.asarray(ways[nearest] / length), nearest
 
 
 def _free_way(box: Box, goal: Box, way: Array, up: Array, gap: float) -> float:

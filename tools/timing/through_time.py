@@ -269,7 +269,7 @@ def _arrested(motion: Motion, ids: np.ndarray, time: float) -> Motion:
 def _own_way(scene: Scene, op: EditOp, chosen: Selection, context: Context) -> EditOp | None:
     """The change of pace that is meant where something is sent to where it goes by itself; None if it is not."""
     when = op.time()
-    if not isinstance(op, Move) or op.distance is not None or scene.motion is None or when is None:
+    if not isinstance(op, Move) or op.distance is not None or op.away or scene.motion is None or when is None:
         return None
     goal = op.toward or (op.place.anchors[0] if op.place is not None and len(op.place.anchors) == 1 else None)
     ids = np.intersect1d(chosen.ids.cpu().numpy(), moving_ids(scene.motion))

@@ -25,7 +25,8 @@ from .phrases import Phrases
 Fields = dict[str, Any]
 LITTLE: Fields = {"value": 20, "unit": "cm"}
 MUCH: Fields = {"value": 1, "unit": "m"}
-MOTIONS = ("direction", "distance", "nudge", "toward", "to", "spot", "times")  # the rules that `read_motion` takes
+# The rules that `read_motion` takes.
+MOTIONS = ("direction", "distance", "nudge", "toward", "away", "to", "spot", "times")
 _BESIDE = ("next_to", *(kind.name for kind in relations.KINDS if kind.aim and not kind.own_frame))
 
 
@@ -37,11 +38,12 @@ class Motion:
     distance: Fields | None = None
     place: Fields | None = None
     toward: Any = None
+    away: bool | None = None
     times: int | None = None
 
     def fields(self) -> Fields:
         """The given parts as fields of an operation."""
-        said = {k: getattr(self, k) for k in ("direction", "distance", "place", "toward")}
+        said = {k: getattr(self, k) for k in ("direction", "distance", "place", "toward", "away")}
         return {k: v for k, v in said.items() if v is not None}
 
     @property
@@ -80,8 +82,9 @@ def _read_one(kind: str, node: Node, motion: Motion, phrases: Phrases, said: str
         motion.set("times", whole(tokens(node, "TIMES", "NUMBER")[0].value, said), said)
     elif kind == "spot":
         motion.set("place", spot(tokens(node, "SPOT")[0].value), said)
-    elif kind == "toward":
+    elif kind in ("toward", "away"):
         motion.set("toward", goal_of(phrases, trees(node, "np")[0]).full(), said)
+        motion.away = True if kind == "away" else None
     elif kind == "to":
         motion.set("place", _place_of_goal(goal_of(phrases, trees(node, "np")[0]), moved), said)
 

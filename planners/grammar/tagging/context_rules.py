@@ -105,6 +105,8 @@ def tag_by_context(state: TaggerState, i: int, length: int) -> int | None:
         return state.emit("UPSIDE", None, i, 1)
     if text in ("away", "out") and length == 1 and verb not in ("TAKE", "") and not rest:
         return state.emit("DIR", "forward", i, 1) if verb == "MOVE" else None  # "put it away" says no place
+    if text == "away" and after == "from" and length == 2 and verb == "TAKE":  # "take it away from the table"
+        return state.emit("AWAY", None, i, 1)
     if text in ("closer", "nearer") and after == "to" and length == 2 and verb not in ("", "MOVE", "PUT", "TAKE"):
         return state.emit("NEAR", "nearest_to", i, 2)
     if text in ("higher", "lower") and verb in ("MOVE", "PUT", "") and not state.ahead.noun_at(i + 1):

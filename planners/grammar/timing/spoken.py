@@ -50,6 +50,9 @@ _NOTATION = tuple(  # of times and rates
             r"\b(?P<what>turns?|rotations?|rev(?:olution)?s?|spins?|rounds?) ?/ ?s(?:ec(?:onds?)?)?\b",
             r"\g<what> per second",
         ),
+        (r"(?<=[a-z]) lets go(?= ?(?:$|[,.;!?]|and\b|of (?:the|its)\b))", " falls"),
+        (r"(?<=\bby )point (?=(?:one|two|three|four|five|six|seven|eight|nine)\b)", "zero point "),
+        (r"(?<![\w.])(?P<n>0?\.\d+) of a sec(?:ond)?\b", r"\g<n> seconds"),
         (r"(?<=[a-z]) along with (?:it|him|them)(?= ?(?:$|[.!]))", " too"),
         (r"(?<=\bby )\+ ?(?=\d)", "plus "),
         (r"(?<=\bby )[-−–] ?(?=\d)", "minus "),
@@ -102,9 +105,10 @@ def in_figures(text: str) -> str:
 
 def written(spoken: str) -> str:
     """A text with the words in full that people shorten when they speak or write notes."""
-    text = in_figures(_TITLE.sub("", _VOCATIVE.sub("", spoken)))
+    text = _TITLE.sub("", _VOCATIVE.sub("", spoken))
     for pattern, plain in _NOTATION:
         text = pattern.sub(plain, text)
+    text = in_figures(text)
     text = _FROM_ROOM.sub(r"\g<order>\g<end>", _TOO_CLUTTERED.sub(r"\g<order>", text))
     text = _SOONER.sub(" would rather", _OFF_AT.sub(_switched, _IT_IS.sub("it is ", text)))
     text = _SOON_AS.sub("as soon as", with_endings(_SLANG.sub("", text)))

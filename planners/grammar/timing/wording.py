@@ -76,6 +76,7 @@ _SYNONYMS = tuple(
             r"(?= ?(?:$|[,.;:!?]| (?:is|has|should|must|may|can|opens?|comes?|slides?|stays?|out|to|at|by|from)\b))",
             r"the \g<rank> drawer",
         ),
+        (r"takes? five(?= ?(?:[,;]|at|from|right|until|between)\b)", "pauses"),
         (r"(?P<rank>first|last) of all(?= (?:the|my|our)\b)", r"\g<rank>"),
         (r"(?:all|all along|all through) the (?=film|clip|video|movie)", "for the whole "),
         (rf"(?P<lead>at|by|for|in|to|from|after|up|until|around) like (?={_NUMBER}\b)", r"\g<lead> "),

@@ -195,6 +195,7 @@ CLOSED: dict[str, Entry] = {
     **same(("OF", None), "of"),
     **same(("TO", None), "to, over to, up to"),
     **same(("TOWARD", None), "toward, towards, closer to, nearer to, nearer, in the direction of"),
+    **same(("AWAYFROM", None), "away from, farther away from, further away from, farther from, further from"),
     **same(("WITH", None), "with"),
     **same(("FOR", None), "for"),
     **same(("AS", None), "as"),

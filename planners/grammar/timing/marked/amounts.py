@@ -23,7 +23,10 @@ _FULL = (
     r"(?: (?:full|whole|complete|entire|quick|slow|little|gentle|lazy|short|small|graceful|single|proper|good|solid|"
     r"mere|more|further|unhurried|leisurely|stately|elegant|calm|smooth|steady|even))*"
 )
-_ROUNDS = r"(?:turns?|revolutions?|revs?|rotations?|rounds?|spins?|circles?|twirls?|pirouettes?|laps?|times|cycles?)"
+_ROUNDS = (
+    r"(?:turns?|revolutions?|revs?|rotations?|rounds?|spins?|circles?|twirls?|pirouettes?|laps?|times?|cycles?|"
+    r"donuts?|doughnuts?|somersaults?|flips?|loops?)"
+)
 _EACH = (
     r"(?: (?:around|round|about|over))?(?: ?/ ?| (?:per|a|an|each|every|by|in (?:a|one|each|every)|once every|to the) )"
 )
@@ -90,7 +93,7 @@ _SPINS: tuple[tuple[Unit, re.Pattern[str]], ...] = (
 )
 _ALONE = re.compile(
     rf"^(?:(?:by|to|at|of|[a-z] =|=|just|only|barely|through|about|around|like|say|some|exactly|not|more|than|a|mere|"
-    rf"maybe|max|maximum|up|down|no|further|wider|farther) )*"
+    rf"maybe|max|maximum|up|down|out|no|further|wider|farther) )*"
     rf"(?P<n>\d+(?:\.\d+)?|(?:{_WORD}) tenths|(?:{_WORD})(?:[ -](?:{_WORD}))?)"
     rf"(?: (?:max|only|or so|tops|at (?:the )?most|instead|and no more|"
     rf"of (?:now|its|the present|what it is)(?: \w+)*))?$"

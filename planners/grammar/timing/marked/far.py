@@ -93,6 +93,12 @@ def _turns(slots: Slots) -> Iterator[Wanted]:
     """Another turn of what turns on its way."""
     moves = slots.movement(slots.queries[0])
     on_its_turn = slots.happening is not None and slots.happening.during.state == "turning"
+    if moves is not None and moves.turns and moves.rate > 0 and (turns := slots.one("turns")) is not None:
+        stop = round(moves.start + turns.value / moves.rate, 4)  # "three turns are all I want of it"
+        slots.repeated.add(turns.said)
+        later = stop > moves.stop
+        yield paced(slots, "go_on" if later else "stop", Moment(stop=stop) if later else Moment(start=stop))
+        return
     if moves is None or moves.turns or (slots.told and not on_its_turn):
         return
     own = next((own for own in slots.amounts if own.unit in ("deg", "", "turns", "times")), None)

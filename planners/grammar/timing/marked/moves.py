@@ -38,7 +38,7 @@ _ROUND = re.compile(r"\b(?:circl\w+|orbit\w*|round|around|laps?|loops?)\b")
 _HOPS = re.compile(r"\b(?:hop|hops|hopping|jump\w*|leap\w*)\b")
 
 _OTHERWISE = re.compile(  # moves that marks do not tell apart
-    r"\b(?:bounc\w+|bob\w*|wobbl\w+|sway\w*|shak\w+|swing\w*|tip\w*|toppl\w+|fall\w*|knock\w*|"
+    r"\b(?:bounc\w+|bob\w*|wobbl\w+|sway\w*|shak\w+|swing\w*|tip(?!toe)\w*|toppl\w+|fall\w*|knock\w*|"
     r"nod\w*|"
     r"rock\w*|danc\w+|drop\w*|swap\w*|exchang\w+|trad\w+|places|throw\w*|kick\w*(?! off)|sits?|tumbl\w+|crash\w*)\b"
 )
@@ -60,7 +60,8 @@ _GONE = re.compile(
     r"\b(?:hid\w*|invisible|vanish\w*|disappear\w*|gone|gon|out|lose|lost|remov\w+|away|off|blank\w*|conceal\w*|poof|"
     r"cut|drop|delet\w+|eras\w+|without|absent|unseen|unrender\w*|mask\w*|take|despawn\w*|bye|missing|suppress\w*|"
     r"visib\w+ ?(?:=|:|to|is)? ?(?:false|0|off|no|none)|"
-    r"make \w+self scarce|blink\w*|transparent|ghost|rid|exit\w*|leave\w*|kill|cloak\w*)\b"
+    r"make \w+self scarce|dissolv\w*|evaporat\w*|melts?|"
+    r"blink\w*|transparent|ghost|rid|exit\w*|leave\w*|kill|cloak\w*)\b"
 )
 
 NOT = re.compile(r"\b(?:not|no|never|without|nobody|nothing|neither|nor|stop|hardly)\b")
@@ -119,6 +120,11 @@ def move(slots: Slots) -> Iterator[Wanted]:
     if goal is not None and goal.way not in ("on", "to") and _ROUND.search(slots.rest):
         yield now(slots, f"let {slots.whom} drive around {goal.name}")
         return
+    source = [own for own in slots.goals if own.way == "from"]
+    away = _UP.search(slots.said) is None and _DOWN.search(slots.said) is None
+    if goal is None and length is not None and len(source) == 1 and away:  # "30 cm away from the wall"
+        yield now(slots, f"move {slots.whom} {length.value:g} m away from {source[0].name}")
+        return
     ways = [way for way, words in _WAYS.items() if words.search(slots.said)]
     if _HOPS.search(slots.rest) and goal is None and set(ways) <= {"up"}:
         yield now(slots, f"let {slots.whom} hop{'' if length is None else f' {length.value:g} m'}")
@@ -176,6 +182,6 @@ _WAYS = {
     "forward": re.compile(r"\b(?:forwards?|ahead)\b"), "backwards": re.compile(r"\bbackwards?\b"),
     "back": re.compile(r"\bback\b(?! (?:to|in|into|at|by|on)\b)"),
     "towards the viewer": re.compile(
-        r"\b(?:to|towards?|nearer|closer)\b (?:to )?(?:the )?(?:viewer|camera|screen|audience)\b"
+        r"\b(?:to|towards?|nearer|closer)\b (?:to )?(?:the )?(?:viewer|camera|screen|audience|front)\b"
     ),
 }  # fmt: skip

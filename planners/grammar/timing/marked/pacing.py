@@ -44,7 +44,9 @@ _MORE = re.compile(r"\b(?:faster|quicker|increas\w+|rais\w+|more|up)\b")
 _LATER = re.compile(
     r"\b(?:plus|later|delay\w*|late|postpon\w+|hold\w*|held|waits?|waiting|longer|behind|lag\w*|defer\w*|push\w*|"
     r"hang\w*|hung|extra|additional|lead in|heels|tarr\w+|dawdl\w+|idl\w+|sit\w* tight|rest\w*|stillness|"
-    r"back|pause\w*|linger\w*|stay\w*|put\b(?:.{1,40})? off|to the right|down the (?:time ?)?line)\b|\+ ?\d"
+    r"back|pause\w*|linger\w*|stay\w*|"
+    r"another|extension|grant\w*|sleep\w*|"
+    r"put\b(?:.{1,40})? off|to the right|down the (?:(?:time ?)?line|track))\b|\+ ?\d"
 )
 
 EARLIER = re.compile(
@@ -234,6 +236,8 @@ def duration(slots: Slots) -> Iterator[Wanted]:
         yield Wanted(pace(whose_of(slots), "begin"), replace(moment, taken=True), None)
     elif moment.lasting is not None:
         yield paced(slots, "begin", replace(moment, taken=True))
+    elif moment.always and moment.start is None and any(tag == "to" for tag, _, _ in slots.spans):
+        yield paced(slots, "begin", replace(moment, stop="end", always=False))  # "it is there just as the film closes"
     elif moment.stop not in (None, "end") or (moment.stop == "end" and moment.start is not None):
         yield paced(slots, "begin", moment)
     elif (factor := slots.one("times", "%")) is not None:
@@ -257,6 +261,8 @@ def longer(slots: Slots) -> Iterator[Wanted]:
     """What goes on for longer."""
     slots.pass_goals()
     if slots.happening is not None:
+        if slots.happening.during.part in _ENDED_BY and slots.moment.empty:  # "until the door clicks"
+            yield paced(slots, "go_on", Moment())
         return
     stop = slots.moment.stop if isinstance(slots.moment.stop, float) else None
     if slots.moment.lasting is None and all(own.said in slots.used for own in slots.amounts):

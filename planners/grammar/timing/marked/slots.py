@@ -41,6 +41,7 @@ _GROUP_OF = re.compile(
     r"^(?:the |that |this )?(?:whole |entire )?(?:row|lot|trio|set|shelf|stack|group|bunch|line|gang|series|"
     r"collection) of (?:the )?(?=(?:\w+ )?\w+s$)"
 )
+_ALL_IT_DOES = re.compile(r"^(?:everything|all|whatever)(?: that)? (?P<who>the (?:[a-z]+ )?[a-z]+) does$")
 _ANY_OF = re.compile(r"^any of (?:the|my|our|those|these) (?=(?:\w+ )*\w+s$)")  # which is not wanted
 _IN_A_ROOM = re.compile(r"\b(?:dining|living|sitting|drawing|guest|bath)(?: room|room) (?=\w)")  # where it hangs
 _ITS_EVENT = re.compile(rf"(?: 's?)?(?: (?:whole|entire|full|complete|outward|return|own|\w+ward))? {_EVENTS}$")
@@ -262,7 +263,7 @@ _UNLESS = re.compile(
     r"(?! (?:is|are|was|would be|be|makes?|'s)? ?(?:no|not|all|any|okay|ok|fine|possible|too|animation|suits)\b)"
 )
 _ASKED_OF = re.compile(
-    r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b|"
+    r"\b(?:the|a|an) \w+ (?:should|must|shall|has to|have to|needs? to|ought to|is to|are to)\b(?! not\b)|"
     r"\b(?:i|we) (?:want|would like|need) (?:it|him|her|them) to\b"
 )
 _AS_FAST = re.compile(r"\b(?:twice|double|half|times) (?:as|the) (?:fast|quick|slow|speed)\b")
@@ -473,7 +474,7 @@ def _merged(spans: Sequence[Span], text: Callable[[Span], str], kind: str) -> It
     left = list(spans)
     while left:
         (tag, start, stop), *left = left
-        rate = kind in ("speed", "spin") and tag == "by" and left and left[0][:2] == ("for", stop)
+        rate = kind == "speed" and tag == "by" and left and left[0][:2] == ("for", stop)
         if rate and _TURNS.search(text((tag, start, stop))) and _IN_A_TIME.match(text(left[0])):
             stop = left.pop(0)[2]
         yield tag, start, stop
@@ -609,6 +610,7 @@ def _things(said: Iterator[str], thing: Thing, grouped: bool = False) -> tuple[t
         if _JUST_EVENT.match(name) or name in _CRIES:
             continue
         bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
+        bare = _ALL_IT_DOES.sub(r"\g<who>", bare)
         bare = _GROUP_OF.sub("all the ", _ANY_OF.sub("all the ", bare))
         bare = _IN_A_ROOM.sub("", re.sub(r" 's?$", "", bare))
         bare = _STATE.sub("", with_moving(bare)) if is_opened(bare) else with_moving(bare)

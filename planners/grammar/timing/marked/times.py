@@ -66,6 +66,7 @@ _BESIDE = re.compile(  # "set off with the robot", "at the same time as the top 
 _ALL = re.compile(
     r"\b(?:whole|entire|throughout|all (?:of )?(?:the|this) (?:film|clip|video|scene|movie|sequence|shot)|"
     r"all (?:the way )?through|over the length of|all the time|always|permanent(?:ly)?|"
+    r"^all day(?: long)?$|^for good(?: and all)?$|"
     r"^(?:from now on|henceforth|from here on)$|"
     r"(?:beginning|start) to (?:the )?(?:end|finish))\b"
 )

@@ -59,6 +59,43 @@ _PLAINER = (  # times in plainer words
         ),
         "until the end",
     ),
+    (re.compile(r"^first (?=(?:at|from|in|after|when|once)\b)|(?<=\d) first$"), ""),
+    (
+        re.compile(
+            rf"^(?:only )?after (?P<d>{DURATION}) of (?:quiet|silence|stillness|rest|peace|calm|nothing|waiting)$"
+        ),
+        r"at \g<d>",
+    ),
+    (
+        re.compile(
+            r"^(?:when|once|as soon as) (?:the |my |our )?(?:clock|timer|watch|counter|second) ?"
+            r"(?:(?:has |is )?(?:touch(?:es)?|says?|strikes?|reads?|shows?|hits?|reaches|gets to|at) )?"
+            rf"(?P<at>\d+(?:\.\d+)?|{'|'.join(word for word in NUMBERS if word.isalpha())})(?: strikes?| comes?)?$"
+        ),
+        r"at \g<at>",
+    ),
+    (re.compile(r"^(?:one|a) (?:beat|heartbeat|breath|moment|blink) , (?:say|call it|that is|about) "), ""),
+    (re.compile(r"(?:(?<= s)|(?<=seconds)) , (?=after )"), " "),
+    (re.compile(r"(?:(?<=second)|(?<=seconds)|(?<=s)) and not (?:one|a second|any) (?:less|more)$"), ""),
+    (re.compile(r"^no later than "), "by "),
+    (re.compile(r"\bfirst (?=(?:moves|stirs|budges|opens|starts|goes)\b)"), ""),
+    (re.compile(r"\b(?:budge|stir)(?=s?$|s? )"), "move"),
+    (
+        re.compile(r"^(?:in )?between (?:the (?P<x>[a-z]+) 's|its) two (?:moves|movements|strokes|trips)$"),
+        lambda found: f"while {'the ' + found['x'] if found['x'] else 'it'} is fully open",
+    ),
+    (re.compile(r"^as far as (?=the )"), "until "),
+    (re.compile(r"^(?:coming )?out of (?=(?:the|its|his|her) (?:turn|corner|bend)\b)"), "after "),
+    (re.compile(r"\bis standing$"), "has stopped"),
+    (re.compile(r"^once (?=(?:opened|closed|landed|fallen|out|open|shut|stopped|turned)$)"), "once it is "),
+    (
+        re.compile(
+            r"^(?:through|until|till|to) (?:the )?(?:very )?(?:end of )?(?:the )?(?:end|shift|day|show|reel|take|match|"
+            r"song|number|last)$"
+        ),
+        "until the end",
+    ),
+    (re.compile(r"\bits first (?=(?:landing|fall|run|roll|turn)$)"), "its "),
     (re.compile(r"^to (?=(?:\d|one\b|two\b|half\b|a )[^,]* (?:after|once|when|behind) )"), ""),
     (
         re.compile(
@@ -83,7 +120,12 @@ _PLAINER = (  # times in plainer words
     ),
     (re.compile(r"^all over(?: and| ,)? ?"), ""),
     (re.compile(r"\bthe second number (?=\w)"), "second "),
-    (re.compile(r"\bhas (?:taken|made|done) (?:its|his|her) (?:very )?last step$"), "has stopped"),
+    (
+        re.compile(
+            r"\bhas (?:taken|made|done|spent|finished) (?:its|his|her) (?:very )?last (?:step|turn|round|spin)$"
+        ),
+        "has stopped",
+    ),
     (re.compile(rf"^(?:until|till|not (?:until|till|before)) (?={DURATION} (?:after|once|past|from) )"), ""),
     (re.compile(r"\b(?:couple(?: of)?) (?=seconds?\b)"), "two "),
     (re.compile(r"^(?P<lead>(?:for|in|of|over|within|taking|lasting) )?second and a half\b"), r"\g<lead>1.5 seconds"),
@@ -159,6 +201,16 @@ _TOGETHER = re.compile(
     r"^one (?:after|behind) (?:the )?(?:other|another)$|^one by one$|^in turn$|^out and (?:back )?in(?: again)?$|"
     r"^(?:(?:both|all|in|and|out|shuts?|opens?|close[sd]?|times|again|back) )*together\b(?! with\b)[a-z ]*$"
 )
+_AT_NO_TIME = re.compile(
+    r"^(?:not once|never|(?:from )?(?:the )?(?:very )?(?:beginning|first [a-z]+|first|slate|start|kick ?off) "
+    r"(?:to|till) (?:the )?(?:very )?(?:last(?: [a-z]+)?|end|out|finish|whistle)|"
+    r"every (?:single )?(?:second|frame|moment)\b.*)$"
+)
+_RUN_OVER = re.compile(
+    r"^(?:the (?:instant|moment)|as soon as|once|when) (?:the|its) (?:first |one )?(?:run|time|go|pass|roll|trip) "
+    r"(?:is|has) (?:over|done|finished|ended)$"
+)
+_BEHIND_IT = re.compile(rf"^(?P<d>{DURATION}) (?:later|(?:after|behind) (?:it|him|her|that))$")
 _WITH_IT = re.compile(r"^(?:[a-z]+ ){0,4}together with (?:it|him|her|that(?: one)?)$")
 PLACES_IN_TURN = bag("first then next last lastly finally and the one ones top middle bottom upper lower drawer , ;")
 _REVERTED = re.compile(  # ", and come back when it is closed again"
@@ -201,6 +253,12 @@ def time_of(
             continue  # "right after the first", "without a break"
         if kind == "repeat":
             phrase = _SECOND_TIME.sub("", _EACH_TIME.sub("", phrase))
+        if kind == "still" and tag == "in" and _AT_NO_TIME.match(phrase):
+            continue
+        if kind == "repeat" and _RUN_OVER.match(phrase):
+            continue  # "the instant the first run is over"
+        if (behind := _BEHIND_IT.match(phrase)) is not None and (others := [text(o) for o in spans if o[0] == "y"]):
+            said = phrase = f"{behind['d']} behind {others[0]}"  # "trails the van, one second after it"
         if kind == "open" and _WITH_IT.search(phrase):
             continue  # "out and back in together with it"
         if kind in _OF_SEVERAL and (_TOGETHER.match(phrase) or set(phrase.split()) <= PLACES_IN_TURN):
@@ -218,7 +276,9 @@ def time_of(
             if moment.start is not None or happening is not None:
                 continue  # "at 2.5 s: from that instant ..."
             said = phrase = _spoken_of(words, spans, span)
-        if tag == "to" and kind in LOOKS and _AT_A_NUMBER.match(phrase) and not _COMES_BACK.search(" ".join(words)):
+        gone = kind == "hide" and moment.start is not None  # and is back then
+        number = tag == "to" and kind in LOOKS and not gone and _AT_A_NUMBER.match(phrase) is not None
+        if number and not _COMES_BACK.search(" ".join(words)):
             return None  # "gold once the cat has sat down at 3 s" does not end then
         phrase, delay = delayed(LEADING.sub("", phrase))
         if tag == "from" and kind == "pause" and (before := _JUST_BEFORE.match(phrase)) is not None:

@@ -24,7 +24,9 @@ _WISHES = re.compile(
     r"\b(?:should|must|ought to|needs? to|has to|have to|wants to|is to|are to) "
     r"(?:be|go|become|turn|disappear|vanish)\b|\b(?:can|could) (?:\w+ )?(?:be|go|become|turn)\b|"
     r"\bwould (?:\w+ )?(?:look|read|suit|do|work|go|show|be|stand|sit) (?:\w+ )?(?:better|nicer|nice|great|good|"
-    r"lovely|well|prettier|best)\b|^please\b"
+    r"lovely|well|prettier|best|[a-z]+er)\b|^please\b|\bhad better be\b|\bsuits? (?:it|him|her|them) better\b|"
+    r"\b(?:coat|lick|touch) of\b|\b(?:you )?may (?:carry|take|throw|cart)\b|\bgo away\b|\bnever see\b|"
+    r"\bhave (?:it|him|her|them) (?:torn|taken|ripped|carried)\b"
 )
 _RID_OF_IT = re.compile(
     r"(?:[,.;:!] |\b(?:please|and|so|just|you|we|i|to|rather) )"
