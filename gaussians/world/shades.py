@@ -63,6 +63,13 @@ def shade_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
     return None
 
 
+# Names of `PAINTS` that name nothing else in a room, so that they need no other word beside them.
+DYES = frozenset((
+    "saffron", "umber", "sepia", "auburn", "anthracite", "graphite", "gunmetal", "vermilion", "cinnabar", "carmine",
+    "claret", "oxblood", "mulberry", "pistachio", "cerulean", "cobalt", "ultramarine", "periwinkle", "amethyst",
+    "wisteria", "mocha", "platinum",
+))  # fmt: skip
+
 # Typical values of what the names say: woods, stones, foods, plants, metals and dyes.
 PAINTS: dict[str, str] = {
     "lemon": "#f5e64c", "canary": "#ffe94d", "honey": "#e0a43a", "saffron": "#f4c430", "banana": "#ffe135",

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians import color
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.world.shades import PAINTS, SHADES
+from scenewright.gaussians.world.shades import DYES, PAINTS, SHADES
+from scenewright.planners.grammar.planner import GrammarPlanner
 
 channel = st.floats(0, 1)
 
@@ -160,3 +161,10 @@ def test_a_mixture_lies_between_its_parts() -> None:
 def test_things_are_no_colours(text: str) -> None:
     with pytest.raises(UserError):
         color.parse(text)
+
+
+def test_dyes_are_paints_that_need_no_other_word() -> None:
+    assert set(PAINTS) > DYES
+    for dye in DYES:
+        (op,) = GrammarPlanner().plan(f"paint the chair {dye}").ops
+        assert (op.op, op.color) == ("recolor", dye)  # type: ignore[union-attr]

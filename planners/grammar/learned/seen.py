@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from ....gaussians import color
+from ....gaussians.world.shades import DYES
 from ..timing.verbs import SENSES, has_form
 from ..vocabulary.nouns import is_known
 from ..vocabulary.quantities import NUMBERS
@@ -16,7 +17,7 @@ _SECONDS = frozenset(("s", "sec", "secs", "second", "seconds"))
 @cache
 def hues() -> frozenset[str]:
     """Colours of one word."""
-    return frozenset(name for name in color.names() if " " not in name)
+    return frozenset(name for name in color.names() if " " not in name) | DYES
 
 
 def amount_or_color(word: str) -> str:

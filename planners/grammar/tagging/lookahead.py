@@ -11,7 +11,7 @@ from functools import cache
 from typing import Any
 
 from ....gaussians import color as colors
-from ....gaussians.world.shades import shade_at
+from ....gaussians.world.shades import DYES, shade_at
 from ....gaussians.world.words import plural
 from ..vocabulary import lexicon, nouns, quantities
 from ..vocabulary.verbs import Entry
@@ -29,7 +29,7 @@ _PARTICLES = frozenset({"up", "down", "out", "away", "off", "over"})
 
 @cache
 def _color_names() -> frozenset[str]:
-    return frozenset(n.replace(" ", "") for n in colors.names()) - {"transparent"}
+    return (frozenset(n.replace(" ", "") for n in colors.names()) | DYES) - {"transparent"}
 
 
 def color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
