@@ -17,7 +17,7 @@ from ..reading.noun_phrase import is_anything, is_unnamed
 from ..reading.phrase_templates import templates
 from ..reading.room_phrases import named_in
 from ..relating import overlaps, related, strength, supporter
-from ..room_places import wall_of
+from ..room_places import AT_WALL, wall_of
 from ..survey import NotResolved, Survey, Thing, be, listed
 from ..telling import absent
 
@@ -539,6 +539,10 @@ def _next(asked: Asked, survey: Survey) -> Answer | None:
             found.sort(key=lambda t: survey.gap(t, thing))
         found = [t for t in found if wanted is None or t.row in wanted]
         where = {"next_to": "next to", "under": "under", "above": "above", "inside": "in"}[name]
+        if not found and name == "next_to" and wanted is None and wall_of(thing, survey.room)[1] <= AT_WALL:
+            at = f"{wall_of(thing, survey.room)[0].name} wall"
+            return Answer(answer=at, answer_type="label", confidence=0.8, evidence=Evidence(ids=_ids([thing])),
+                          frame="viewer", text=f"{_cap(survey.named(thing))} is at the {at}.")  # fmt: skip
         if not found:
             return Answer(answer=None, answer_type="label", confidence=0.8, evidence=Evidence(ids=_ids([thing])),
                           text=f"{_cap(survey.named(thing))} is {where} nothing.")  # fmt: skip

@@ -10,6 +10,7 @@ from ......gaussians.world.words import singular
 from ...noun_phrase import is_color_word
 from .phrases import deed_of
 from .said import Said
+from .times import from_one_to_another
 
 _OUTWARD = re.compile(r"\b(?:out|outward|outwards|opening|extension)\b")
 _INWARD = re.compile(r"\b(?:back|return|inward|inwards|closing|retraction|in)\b")
@@ -37,6 +38,11 @@ def _is_there(word: str, names: Collection[str]) -> bool:
     """Whether a noun is that of a thing of the scene, or another word for it: "volume"."""
     kind = kinds_of_things.find(singular(word))
     return singular(word) in names or (kind is not None and any(own in names for own in kind.name.split()))
+
+
+def _names_one(said: str, names: Collection[str]) -> bool:
+    """Whether words name a thing of the scene."""
+    return said != "" and (_is_there(said.split()[-1], names) or said.endswith(" one"))
 
 
 def _event_in(said: str, names: Collection[str], noun: str) -> tuple[str, str] | None:
@@ -80,6 +86,8 @@ def gap(said: Said) -> Iterator[str]:
         yield f"how long is the pause between {said.times[0]} and {said.times[1]}"
     elif len(said.times) == 2:
         yield f"how much time is there between {said.times[0]} and {said.times[1]}"
+    if (between := from_one_to_another(said.times, said.x, lambda name: _names_one(name, said.names))) is not None:
+        yield between
     deed = {"fall": "falling", "land": "landing", "stop": "stopping", "open": "opening", "close": "closing"}.get(
         deed_of(said.rest, ""), "starting"
     )

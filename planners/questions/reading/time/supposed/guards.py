@@ -25,7 +25,9 @@ def says_more(kind: str, chance: float, said: Said, names: Collection[str], stri
         chance: the probability of the kind.
         strictly: whether a word that may say more counts, however likely the kind is.
     """
-    plain = _EACH_SECOND.sub(" ", _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub(" when ", said.rest)))
+    held = _HELD_UNTIL if kind in _ENDS_A_REST else _SINCE if kind in ("when_open", "when_shut") else None
+    told = said.rest if held is None else held.sub(" when ", said.rest)
+    plain = _EACH_SECOND.sub(" ", _IN_A_ROOM.sub(" ", _WHAT_SECOND.sub(" when ", told)))
     if kind.startswith("long_"):
         plain = _FINALLY.sub(" ", _LASTS.sub(r"\g<1>", plain))
     if kind.startswith("where_"):
@@ -51,6 +53,8 @@ def _is_another(kind: str, said: Said, plain: str) -> bool:
     if kind.startswith("when_") and (until or (several and ALL_OF.match(said.x) is None)):
         return True  # "when have two books fallen"
     if kind in ("what_moves", "what_still"):
+        if kind == "what_still" and not said.x and said.y and _APART.search(said.rest):
+            return False  # of all but what moves
         whose = said.x in _ANYTHING or is_kind(said.x) or " and " in said.x or _APART.search(said.rest) is not None
         if not whose or said.y:
             return True  # "who moves the ball", "what never moves near the desk"
@@ -101,10 +105,12 @@ def _tells_more(kind: str, chance: float, rest: list[str], names: Collection[str
 CERTAIN = 0.95  # probability of a kind from which the place of what happens needs no mark
 _PLACED = bag(
     "when_closes when_shut when_falls when_opens when_turns when_stops first last order if_returns if_stops if_closes "
-    "if_turns where_ends far_opens how_many turn_way what_fell what_up does long_closes long_opens"
+    "if_turns where_ends far_opens how_many turn_way what_fell what_up does long_closes long_opens on_way long_reach "
+    "if_before if_after"
 )
 _BY_A_PLACE = re.compile(  # "comes to rest at which wall", "quits the shelf board"
-    r" (?:(?:in|into|to|from|at|off|on|onto|of|out of|back to|around|round|by|face|quits?|leaves?|against|towards?) )"
+    r" (?:(?:(?:in|into|to|from|at|off|on|onto|of|out of|back to|around|round|by|beside|with|face|quits?|leaves?|"
+    r"against|towards?) )+|[a-z]+ to )"
     r"(?:the |its |his |her |which |what |that )?(?:[a-z]+ )?[a-z]+(?= )"
 )
 _AROUND = re.compile(r" (?:around|round) (?:the |this |that )?(?:[a-z]+ )?[a-z]+(?= )")
@@ -113,8 +119,12 @@ _LASTS = re.compile(  # "how long does it last"
     r"(?= *(?:[?,.]|$|in total|exactly|altogether|overall))"
 )
 _FINALLY = re.compile(r"\b(?:final|total) (?=(?:stop|standstill|rest|halt|time|duration|transit|running)\b)")
+_ENDS_A_REST = bag("when_starts when_stops when_opens when_falls when_leaves when_closes")
+_WHEN = r"(?:when(?= (?:do|does|did|is|was|can|has)\b| \?)|(?:what|which) (?:second|moment|point|time)\b)"
+_HELD_UNTIL = re.compile(rf"\b(?:until|till|til|up to|since|from) {_WHEN}")  # "until when does it rest?"
+_SINCE = re.compile(rf"\b(?:since|from) {_WHEN}")
 _WHAT_SECOND = re.compile(
-    r"\b(?:at|in|on|by|after)? ?(?:what|which) second\b|"
+    r"\b(?:at|in|on|by|after)? ?(?:what|which) (?:second|stroke of the clock)\b|\b(?:exact|precise|very) second\b|"
     r"\bthe (?:exact |precise |very )?second (?:(?:at|in|on) which|where|when|that)\b"
 )
 _THE_SECOND = re.compile(r" the (?:exact |precise |very )?second ")  # that something happens
@@ -128,7 +138,8 @@ _UNTIL_WHEN = re.compile(r"\b(?:until|till|up to) (?:what|which|when)\b")
 _WHICH_PLACE = re.compile(
     r"\b(?:(?:up)?on|in|at|against|by|to|onto|over) (?:the )?(?:what|which) (?:(?:piece|bit|item|kind|sort) of )?"
     r"(?:furniture|wall|surface|thing|object|place|spot)\b|"
-    r"\b(?:what|which) (?:(?:piece|bit|item) of )?(?:furniture|wall|surface)\b"
+    r"\b(?:what|which) (?:(?:piece|bit|item) of )?(?:furniture|wall|surface)\b|"
+    r"\b(?:against|at|by|on|in|over) which (?:of the (?:walls|corners)|floor covering)\b"
 )
 _IN_A_ROOM = re.compile(r"\b(?:in|of|inside) (?:the|this|that|our) (?:[a-z]+ )?room\b")
 _BESIDES = re.compile(r"\b(?:besides|apart from|except|excepting|other than|aside from)\b")

@@ -23,7 +23,7 @@ _DEEDS = tuple(
     for words, deed in (
         (r"land(?:s|ed|ing)?|hits? (?:the )?(?:floor|ground)|touch(?:es|ed)? down", "land"),
         (r"f[ae]ll(?:s|en|ing)?|drop(?:s|ped|ping)?|tumbl\w+|c[oa]mes? (?:down|off)|"
-            r"plung\w+|plummet\w*|crash\w*|down|off(?= the (?:\w+ )?(?:shelf|board|high))", "fall"),
+            r"plung\w+|plummet\w*|crash\w*|down|lost|off(?= the (?:\w+ )?(?:shelf|board|high))", "fall"),
         (r"stop(?:s|ped|ping)?|finish\w*|halt\w*|rest|standstill|end(?:s|ed)?|done|still", "stop"),
         (r"clos(?:e|es|ed|ing)|shut(?:s|ting)?", "close"),
         (r"open(?:s|ed|ing)?", "open"),

@@ -106,7 +106,10 @@ _TAG = re.compile(  # "it opens, doesn't it?", "yes or no"
     r" ,? ?(?:or )?(?:is|are|was|does|do|did|has|have|will|would|could|can) "
     r"(?:not (?:it|he|she|they)|(?:it|he|she|they)"
     r"(?: not)?)(?: \?)?$|,? ?\b(?:yes ?(?:or|/) ?no|y ?/ ?n|true or (?:false|not)|right or wrong)\b|"
-    r", true \?$|,? or (?:not|no|nothing|nah)?(?: at all)? ?\?$"
+    r", true \?$|,? or (?:not|no|nothing|nah)?(?: at all)? ?\?$|"
+    r", (?:is (?:not )?(?:it|that)(?: not)? so|(?:or )?not so) \?$|"
+    r",? or (?:it|he|she) (?:did|does|do) not(?: [a-z]+){0,3} \?$|, or (?:has|is|does|was) (?:it|he|she) "
+    r"(?:[a-z]+ ){1,3}\?$"
 )
 
 
@@ -148,7 +151,10 @@ def _named(said: str, names: Collection[str]) -> str:
         said = f"the {two['one']} {singular(two['noun'])} and the {two['other']} {singular(two['noun'])}"
     if (whose := _WHOSE.match(said)) is not None and singular(whose["noun"]) in names:
         said = f"the {whose['noun']}"
+    said = _PART_OF.sub("the ", said)
     words = said.split()
+    if words and is_color_word(words[-1]) and words[-1] not in names:
+        return f"the {words[-1]} one"  # "red, green, blue: which order?"
     if not _is_known(said, names) and (color := next(filter(is_color_word, words), None)) is not None:
         return f"the {color} one"  # "our small green wanderer"
     if words and singular(words[-1]) in names:
@@ -158,6 +164,8 @@ def _named(said: str, names: Collection[str]) -> str:
     )
     return said if _DETERMINED.match(said) or said in PRONOUNS else f"the {said}"
 
+
+_PART_OF = re.compile(r"^(?:the )?(?:[a-z]+ )?(?:edge|rim|border|fringe) of (?:the )?(?=[a-z])")
 
 _TWO_OF_A_KIND = re.compile(r"^(?:both |the )*(?P<one>[a-z]+) and (?:the )?(?P<other>[a-z]+) (?P<noun>[a-z]+s)$")
 _WHOSE = re.compile(r"^(?:the |this )?[a-z]+ 's (?P<noun>[a-z]+s)$")  # "the dresser 's drawers"

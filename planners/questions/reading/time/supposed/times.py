@@ -3,13 +3,13 @@ turned"."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from ......gaussians import late_re as re
 from .....grammar.learned.events import Event, event_of
 from .....grammar.tagging.words import bag
 from ..everyday import everyday
-from ..moments import NUMBER
+from ..moments import NUMBER, seconds
 
 _LEADS = (  # how a phrase begins, and the conjunction that says the same
     (re.compile(r"^(?:right |just |only )*(?:until|till|til|up to)\b"), "until"),
@@ -93,12 +93,50 @@ def time_left(words: Sequence[str], times: Sequence[str]) -> str | None:
     event = event_of(_TO_THE_END.sub("", times[0]))
     if event is None or not event.x or (event.kind not in _MOMENTS and event.kind not in _BEGUN_BY):
         return None
-    who = event.x if event.x in _OF_ONE else with_article(event.x)
-    happens = _MOMENTS[_BEGUN_BY.get(event.kind, event.kind)].format(y=with_article(event.y))
-    return f"how long is it from when {who} {happens} to the end of the film"
+    return f"how long is it from when {_happens(event, event.x)} to the end of the film"
 
 
-_BEGUN_BY = {"is_open": "open", "still": "stops", "is_shut": "shut"}  # what lasts, and what it begins with
+def _happens(event: Event, who: str) -> str:
+    """Who does what, of an event that is a moment or begins with one."""
+    done = _MOMENTS[_BEGUN_BY.get(event.kind, event.kind)].format(y=with_article(event.y))
+    return f"{who if who in _OF_ONE else with_article(who)} {done}"
+
+
+_BEGUN_BY = {  # what lasts, and what it begins with
+    "is_open": "open", "still": "stops", "is_shut": "shut", "moves": "starts", "opening": "opens", "closing": "closes",
+    "falling": "falls", "turning": "turns",
+}  # fmt: skip
+
+
+def from_one_to_another(times: Sequence[str], x: str, named: Callable[[str], bool]) -> str | None:
+    """The plain question of how long it is from one event to another: "the door 's first twitch to its standstill";
+    None if one of them is none.
+
+    Args:
+        x: who does what is told without a name, "" for the one that the other event names.
+        named: whether words name a thing of the scene.
+    """
+    events = [event_of(_CONJUNCTION.sub("", time)) for time in times]
+    one, other = events if len(events) == 2 else (None, None)
+    if one is None or other is None or re.search(r"\d", " ".join(times)):
+        return None
+    who = next((event.x for event in (one, other) if event.x not in ("", *_OF_ONE) and named(event.x)), x or "it")
+    told = []
+    for event in (one, other):
+        if min(one.chance, other.chance) < _TOLD:
+            return None
+        if event.kind in _ENDS_OF_FILM:
+            told.append(_ENDS_OF_FILM[event.kind])
+        elif event.kind in _MOMENTS or event.kind in _BEGUN_BY:
+            told.append(f"when {_happens(event, event.x if named(event.x) else who)}")
+        else:
+            return None
+    return f"how long is it from {told[0]} to {told[1]}" if told[0] != told[1] else None
+
+
+_ENDS_OF_FILM = {"film_start": "the start of the film", "film_end": "the end of the film"}
+_CONJUNCTION = re.compile(r"^(?:from|until|till|til|to|when|once|and) ")
+_TOLD = 0.54  # probability of an event from which another one is counted
 
 
 def times_of(kind: str, said: tuple[str, ...]) -> Iterator[str]:
@@ -133,7 +171,8 @@ _WHOLE_FILM = re.compile(  # a time that is all of the film
     r"in total|altogether|in all|"
     r"at any (?:point|time|moment)|at all|all told|at some (?:point|time|moment)|from (?:start|beginning|"
     r"first) to (?:finish|end|last)|the (?:whole|entire|full) (?:while|time)|"
-    r"(?:during|in|over|from) 0(?: ?s)? (?:to |- ?)?5 ?s(?:ec\w*)?|(?:when|once) its (?:all )?(?:over|done)|"
+    r"(?:during|in|over|from) 0(?: ?s)? (?:to |- ?)?5 ?s(?:ec\w*)?|from curtain up to curtain down|"
+    r"(?:in|during) all (?:of )?(?:these|the|those) (?:five|5) seconds|(?:when|once) its (?:all )?(?:over|done)|"
     r"(?:during|in|over|throughout|within|for|across|through) (?:[a-z]+ ){0,4}(?:film|clip|video|movie|footage|"
     r"proceedings|recording|recorded|filmed|take)|"
     r"(?:by|in|at|before) the (?:very )?end(?: of (?:the|my|our|this|its|all|it)(?: \w+)?)?|"
@@ -166,8 +205,9 @@ _QUIET = re.compile(
     r"calm|settled|stopped|done|finished)(?: again)?$"
 )
 _OUT = re.compile(
-    r"^(?:on|during) (?:the|its|his|her) (?:way|trip|journey|run|stroke|travel) (?P<way>out|open|back|in|home|"
-    r"shut|closed)$|^(?:while |when )?(?:going|coming|sliding|moving|heading) (?P<doing>out|back|in)$"
+    r"^(?:on|during) (?:the|its|his|her) (?:(?:way|trip|journey|run|stroke|travel) (?P<way>out|open|back|in|home|"
+    r"shut|closed)|(?P<leg>out|in|home|return)(?:bound|ward)? (?:leg|trip|journey|stroke|run|way))$|"
+    r"^(?:while |when )?(?:going|coming|sliding|moving|heading) (?P<doing>out|back|in)$"
 )
 _FURTHEST = re.compile(
     r"^at (?:full \w+|"
@@ -175,7 +215,8 @@ _FURTHEST = re.compile(
 )
 STROKES = re.compile(  # "between the outward slide and the return"
     r"^between (?:the |its )?(?:[a-z]+ )?(?:out\w*|opening|extension)\b.* and (?:the |its )?(?:[a-z]+ )?"
-    r"(?:return\w*|back\w*|in\w*|clos\w*|retract\w*)\b"
+    r"(?:return\w*|back\w*|in\w*|clos\w*|retract\w*)\b|"
+    r"^between (?:coming|going|sliding)(?: out)? and (?:going|coming)\b"
 )
 _WHILE_ON = re.compile(r"^(?:(?:before|until|till|til) (?:it |he |she |leav|roll)|once (?:it|he|she) (?:is|has|gets) )")
 BEFORE_BACK = re.compile(
@@ -220,7 +261,9 @@ _AT_MOST = re.compile(r"^(?:once|when|after|at|in|by) (?!.*\d)(?!.*\bseconds?\b)
 
 def _plain_time(kind: str, said: str) -> str:
     """The words for a time in plain words; "" for all of the film, where that says nothing."""
-    said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", re.sub(r"^(?:given|assuming) (?=t\b|\d)", "at ", said))
+    said = re.sub(r"\bt ?= ?(?=\d[\d.]* ?s\b)| there$", "", re.sub(r"^(?:given|assuming|if) (?=t\b|\d)", "at ", said))
+    if (passed := _PASSED.match(said)) is not None and any(passed[part] for part in _HOW_PASSED):
+        said = f"{'at' if kind in _STATES or kind in ('does', 'what_fell') else 'by'} {_number(passed)} s"
     said = _ACROSS.sub("moves", _AT_ABOUT.sub("at ", _PLAINER_STILL.sub(_still_plainer, said)))
     if (clock := _CLOCK.match(said)) is not None:
         said = f"at {clock['time']} s"
@@ -243,7 +286,8 @@ def _plain_time(kind: str, said: str) -> str:
     if _FURTHEST.match(said) and kind.startswith("far"):
         return ""
     if (way := _OUT.match(said)) is not None:
-        return "while it is opening" if (way["way"] or way["doing"]) in ("out", "open") else "while it is closing"
+        out = (way["way"] or way["leg"] or way["doing"]) in ("out", "open")
+        return "while it is opening" if out else "while it is closing"
     if _QUIET.match(said):
         said = "at the end"
     if _WHOLE_FILM.match(said):
@@ -296,6 +340,29 @@ _CLOCK = re.compile(  # "once the clock 's hit 4.8"
     r"(?:'s |is |has |shows? |reads? |says? |hits? |reaches |reached |hit |at |on |gets to |past )+"
     rf"(?P<time>{NUMBER})(?: ?s(?:ec(?:ond)?s?)?)?$"
 )
+_PASSED = re.compile(  # "with two on the clock", "one and a half seconds gone", "as the clock strikes three"
+    r"^(?:(?:come|some|around|about|exactly|just|with|at|on|when|once|as) ){0,2}"
+    r"(?P<struck>(?:the )?(?:clock (?:strikes|shows|says|hits|reads)|count of|end of the|stroke of|mark of) )?"
+    rf"(?:(?P<time>{NUMBER})(?P<half> and (?:a )?half)?(?: decimal (?P<tenths>{NUMBER}))?|"
+    r"(?P<rank>first|second|third|fourth|fifth)(?= second))"
+    r"(?P<unit> ?s(?:ec(?:ond)?s?)?)?"
+    r"(?P<gone>(?: (?:exactly|gone|along|in|elapsed|having passed|having gone|passed|over|up|flat|sharp|mark|"
+    r"on the clock|(?:is|are|have|has) (?:gone|up|over|passed|elapsed)|into (?:the|it)(?: \w+)?))*)$"
+)
+
+
+_HOW_PASSED = ("struck", "half", "tenths", "rank", "gone")
+
+
+def _number(passed: re.Match[str]) -> str:
+    """The number of seconds in a match of `_PASSED`."""
+    if passed["rank"]:
+        return str(1 + _RANKED.index(passed["rank"]))
+    tenths = seconds(passed["tenths"]) / 10 if passed["tenths"] else 0.5 if passed["half"] else 0.0
+    return f"{seconds(passed['time']) + tenths:g}"
+
+
+_RANKED = ("first", "second", "third", "fourth", "fifth")
 _BY_NOW = re.compile(  # "by 3 s", "by the time 3 seconds have passed"
     r"^(?:by|once|when|after|on)(?: the time)? (?P<time>\d+(?:\.\d+)? ?s(?:ec(?:ond)?s?)?)"
     r"(?: (?:have|has|are|is) (?:passed|gone(?: by)?|up|elapsed|over))?$"

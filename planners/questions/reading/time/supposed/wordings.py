@@ -143,8 +143,8 @@ def _counted(said: Said) -> Iterator[str]:
         return
     if (
         deed == "fall"
-        and re.match(r"^(?:at|by|after) \d", said.time)
-        and re.search(r"\b(?:down|fallen|dropped|landed|crashed|off)\b", said.rest)
+        and _BY_THEN.match(said.time)
+        and re.search(r"\b(?:down|fallen|dropped|landed|crashed|off|lost)\b", said.rest)
     ):
         deed = "have fallen"
     x, *others = said.x.split(" and ")
@@ -165,6 +165,12 @@ def _counted(said: Said) -> Iterator[str]:
         yield f"how many {noun} are there"
         return
     yield f"how many {noun} {deed}"
+
+
+_BY_THEN = re.compile(
+    r"^(?:(?:at|by|after|with|when|once|as|come|some) )?(?:\d|(?:the )?(?:clock|count|end of the)\b|half ?way|mid ?way|"
+    r"(?:one|two|three|four|five)\b)"
+)
 
 
 def _compared(said: Said, word: str) -> Iterator[str]:
@@ -290,7 +296,9 @@ _OUT = re.compile(r"\b(?:pulled|slid|hang\w*|extended|wide|all the way|fully|com
 def _long_still(said: Said) -> Iterator[str]:
     back = not said.time or BEFORE_BACK.search(said.time) is not None
     pose = f"{said.rest} {said.off} {said.time}"
-    if said.x and back and _OUT.search(pose):  # "how long does it sit there pulled all the way out"
+    if said.x and (
+        (back and _OUT.search(pose)) or STROKES.match(said.time)
+    ):  # "how long does it sit there pulled all the way out"
         yield f"how long does {said.x} stay fully open"
     elif said.x:
         yield f"how long does {said.x} stand still"
@@ -303,6 +311,8 @@ def _visits(said: Said) -> Iterator[str]:
     places = [place for place in said.places if place != said.x]
     if said.x and len(places) > 1 and len(_EVENTS.findall(said.rest)) < 2:
         yield f"in what order does {said.x} pass {' and '.join(places)}"
+    elif said.x and not places:
+        yield f"what does {said.x} touch"
 
 
 def _long_open(said: Said) -> Iterator[str]:
