@@ -185,3 +185,49 @@ def test_half_the_time_is_no_half_second() -> None:
 def test_what_moves_is_not_hidden_where_it_waits() -> None:
     (op,) = planned("Robot idles at spawn until 1.0, then runs its full route at normal speed.")
     assert (op["op"], op["change"], op["when"]) == ("pace", "begin", {"start": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("text", "color", "when"),
+    [
+        ("Wardrobe = black, permanently, no be brown again.", "black", None),
+        ("Make the bed pale blue to begin with, and return it to normal when the robot starts.", "pale blue",
+         {"during": {"state": "moving", "of": {"text": "robot"}, "part": "until"}}),
+        ("yo make the ball go purple the whole time its rolling lol", "purple", {"during": {"state": "moving"}}),
+        ("paint that door green n keep it that way", "green", None),
+    ],
+)  # fmt: skip
+def test_the_colour_that_is_wanted_is_painted_when_it_is_wanted(
+    text: str, color: str, when: dict[str, Any] | None
+) -> None:
+    (op,) = planned(text)
+    assert (op["op"], op["color"], op.get("when")) == ("recolor", color, when)
+
+
+@pytest.mark.parametrize(
+    ("text", "when"),
+    [
+        ("Now then, might the ball wait a full two seconds before it sets off on its tour?", {"start": 2.0}),
+        ("Hold that door shut till three, then swing it open, normal speed.", {"start": 3.0}),
+        ("The robot may set out as late as one second, yet it must keep its appointment at the bed at four.",
+         {"start": 1.0, "stop": 4.0}),
+        ("When the ball has stopped, wait a full second before the robot starts.",
+         {"start": 1.0, "during": {"state": "moving", "of": {"text": "ball"}, "part": "after"}}),
+    ],
+)  # fmt: skip
+def test_what_waits_begins_when_it_has_waited(text: str, when: dict[str, Any]) -> None:
+    (op,) = planned(text)
+    assert (op["op"], op["change"], op.get("when")) == ("pace", "begin", when)
+
+
+def test_an_event_may_be_told_as_a_cue() -> None:
+    (op,) = planned("Move the bench 0.6 m towards the desk over 2 s, triggered by the door coming to rest.")
+    assert op["when"] == {"lasting": 2.0, "during": {"state": "moving", "of": {"text": "door"}, "part": "after"}}
+
+
+def test_a_colour_that_is_had_is_not_painted() -> None:
+    assert planned("Silver would look so much classier on that robot than green.") == []
+
+
+def test_all_four_things_are_no_time() -> None:
+    assert planned("chairs gone, all four, we're doing standing tables now") == []

@@ -148,6 +148,11 @@ def _apart(start: float, stop: float) -> float:
     return stop - start
 
 
+def _colors(words: Sequence[str], spans: Sequence[Span]) -> set[str]:
+    """The colours that marks tell."""
+    return {" ".join(words[start:stop]) for tag, start, stop in spans if tag == "as"}
+
+
 def _times(spans: Sequence[Span]) -> int:
     """How many marks tell a time."""
     return sum(tag in TIMES for tag, _, _ in spans)
@@ -204,6 +209,8 @@ class Judge:
                 continue  # a thing that is named stays
             if kind in STATIC and _times(first) and not _times(spans):
                 continue  # and a time
+            if _colors(wording, first) and _colors(wording, first) != _colors(wording, spans):
+                continue  # and a colour
             found = self._marked_so(cleaned, wording, spans, max(least, SURE))
             if found is not None and not leaves_out(wording, found, spans=first, timed=False):
                 return found

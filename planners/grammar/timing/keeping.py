@@ -123,7 +123,8 @@ def without_kept(cleaned: str) -> tuple[str, tuple[Kept, ...]]:
     supposed = tuple(_supposed(said for _, a, b, said in tagged if (a, b) not in spans))
     if not spans or len(re.findall(r"[a-z]+", rest)) < _LEAST:
         return cleaned, supposed
-    return rest, (*(kept_by(" ".join(words[a:b]).strip(" ,.;:")) for a, b in spans), *supposed)
+    kept = (kept_by(" ".join(words[a:b]).strip(" ,.;:")) for a, b in spans)
+    return rest, (*(own if own.facts else next(_supposed((own.said,)), own) for own in kept), *supposed)
 
 
 def _supposed(said: Iterable[str]) -> Iterator[Kept]:

@@ -8,6 +8,17 @@ from ..vocabulary.nouns import is_known
 from .verbs import SENSES, has_form
 
 _DROPPED = re.compile(r"\b(?P<stem>[A-Za-z]{2,}in)(?:'(?![A-Za-z]))?(?![\w'])")
+_CUED = re.compile(r"\b(?:triggered|prompted|cued) by (?=(?:the|a|my|our) [a-z ]+?ing\b)", re.IGNORECASE)
+_SINGLE = re.compile(r"\ba single (?=second|turn|minute)", re.IGNORECASE)
+_SO_IT_STAYS = re.compile(  # which goes without saying
+    r",? (?:and|n|&|then) (?:then )?(?:keep|leave) (?:it|him|her|them) (?:that way|like that|so|thus)(?=[.!]*$)",
+    re.IGNORECASE,
+)
+_ALL_THE_TIME = re.compile(  # that something is so
+    r"\b(?:for |during )?(?:the (?:whole|entire) time|all the time) (?:that |when )?"
+    r"(?=(?:it|he|she|the [a-z]+) (?:is|rolls|moves|turns|spins|walks|opens|falls|stands)\b)",
+    re.IGNORECASE,
+)
 _SOON_AS = re.compile(r"(?<!\bas )\bsoon as\b", re.IGNORECASE)
 _DO_NOT_BE = re.compile(r"\b(?P<not>do not|don't|dont) be (?P<doing>[a-z]+ing)\b", re.IGNORECASE)
 
@@ -30,7 +41,8 @@ _TOO_CLUTTERED = re.compile(  # a reason: "remove the chair, too cluttered"
 )
 _SOONER = re.compile(r"\bwould sooner\b|(?<=\bi)'d sooner\b|(?<=\bwe)'d sooner\b", re.IGNORECASE)
 _IT_IS = re.compile(  # "its so slow"
-    r"\b(?P<it>its) (?=(?:so|too|really|way too|not|just|still|all the way|a bit|going to|supposed to) )",
+    r"\b(?P<it>its) (?=(?:so|too|really|way too|not|just|still|all the way|a bit|going to|supposed to) )|"
+    r"(?<=time )its (?=(?:on|in|at|off|up|out|[a-z]+ing)\b)",
     re.IGNORECASE,
 )
 
@@ -111,6 +123,8 @@ def written(spoken: str) -> str:
     text = in_figures(text)
     text = _FROM_ROOM.sub(r"\g<order>\g<end>", _TOO_CLUTTERED.sub(r"\g<order>", text))
     text = _SOONER.sub(" would rather", _OFF_AT.sub(_switched, _IT_IS.sub("it is ", text)))
+    text = _SO_IT_STAYS.sub("", _SINGLE.sub("one ", text))
+    text = _ALL_THE_TIME.sub("while ", _CUED.sub("upon ", text))
     text = _SOON_AS.sub("as soon as", with_endings(_SLANG.sub("", text)))
     return _DO_NOT_BE.sub(_prohibited, text)
 

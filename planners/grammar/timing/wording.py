@@ -70,6 +70,10 @@ _SYNONYMS = tuple(
         (rf"(?:for )?(?:all )?t ?(?:≤|<=|<) ?(?P<a>{_DIGITS}) ?(?:s\b)?", r"until \g<a> s"),
         (rf"(?P<a>{_DIGITS}(?: ?s)?) ?(?:…|→|\.\.\.?) ?(?:t ?= ?)?(?={_DIGITS})", r"\g<a> to "),
         (r"in (?:lieu|place) of", "instead of"),
+        (
+            r"\b(?:on|at) (?:the )?(?:very |far )?end of (?:the )?(?P<what>rug|carpet|mat)\b",
+            r"when it leaves the \g<what>",
+        ),
         (r"where (?P<what>the [a-z]+) (?:ends|finishes)(?= ?(?:$|[,.;!?]))", r"when it leaves \g<what>"),
         (
             r"(?:the )?\bdrawer (?:of|in|at|on)(?: the)? (?P<rank>middle|top|bottom)"

@@ -14,7 +14,7 @@ from scenewright.planners.questions.reading.time.supposed.kinds import kinds_of,
 from scenewright.planners.questions.reading.time.supposed.likely import without_options
 from scenewright.planners.questions.reading.time.supposed.plainly import supposed
 from scenewright.planners.questions.reading.time.supposed.said import Said
-from scenewright.planners.questions.reading.time.supposed.times import plain_time, times_of
+from scenewright.planners.questions.reading.time.supposed.times import from_one_to_another, plain_time, times_of
 from scenewright.planners.questions.reading.time.supposed.wordings import PLAIN
 
 NAMES = bag("ball sofa rug lamp table wall floor door plant drawer fan book robot car bed shelf")
@@ -148,7 +148,7 @@ def test_ranks_to_choose_from_ask_which_one(text: str, plainly: str) -> None:
     ("kind", "said", "plainly"),
     [
         ("if_open", "once the clock 's hit 4.8", "at 4.8 s"),
-        ("if_moves", "when clock shows three seconds", "at three s"),
+        ("if_moves", "when clock shows three seconds", "at 3 s"),
         ("what_on", "by 3 s", "at 3 s"),
         ("what_on", "by the time 3 seconds have passed", "at 3 seconds"),
         ("where_at", "right about 1.8 seconds", "at 1.8 seconds"),
@@ -243,7 +243,11 @@ def test_every_kind_has_a_form() -> None:
     ("kind", "said", "plainly"),
     [
         ("turns", "come three seconds", "by three seconds"),
-        ("where_at", "1.7 seconds on the clock", "at 1.7 seconds"),
+        ("where_at", "1.7 seconds on the clock", "at 1.7 s"),
+        ("where_at", "one and a half seconds gone", "at 1.5 s"),
+        ("if_open", "with two on the clock", "at 2 s"),
+        ("far", "as the clock strikes three", "by 3 s"),
+        ("fast", "on the outbound leg", "while it is opening"),
         ("near", "at the end of everything", "at the end"),
         ("far_turns", "from zero till t = 1.5", "from 0 s till 1.5 s"),
         ("if_moves", "when the fan 's going", "when the fan is moving"),
@@ -268,10 +272,22 @@ def test_whole_movements_and_clocks(kind: str, said: str, plainly: str) -> None:
         ("once the door is wide open, how many seconds of film are left?",
          "how long is it from when the door is fully open to the end of the film"),
         ("fan off at what time please", "when does the fan stop moving"),
+        ("The ventilator up on the ceiling, until what second it turns?", "when does the ventilator stop moving"),
+        ("From which second begins the door to open, per favore?", "when does the door start to open"),
+        ("ball comes off the far edge of the rug when, roughly", "when does the ball leave the rug"),
     ],
 )  # fmt: skip
 def test_poses_and_what_is_left(text: str, plainly: str) -> None:
     assert plainly in supposed(text, NAMES)
+
+
+def test_a_gap_is_told_by_what_happens_at_its_ends() -> None:
+    named = NAMES.__contains__
+    between = from_one_to_another(("the door 's first twitch", "its standstill"), "", lambda said: named(said[4:]))
+    assert between == "how long is it from when the door starts to move to when the door stops"
+    left = from_one_to_another(("the fan 's last quiver", "the final frame"), "", lambda said: named(said[4:]))
+    assert left == "how long is it from when the fan stops to the end of the film"
+    assert from_one_to_another(("at 1 s", "at 2 s"), "", lambda said: False) is None
 
 
 def test_a_word_that_may_tell_more_bars_a_question_only_strictly() -> None:

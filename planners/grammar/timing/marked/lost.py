@@ -55,6 +55,9 @@ def leaves_out(
 def _loses_colors(words: Sequence[str], ops: Sequence[Fields], shades: Set[int], spans: Sequence[Span]) -> bool:
     """Whether a look is for a time, or things are put in order, and another colour that is told stands nowhere: "red
     while it rolls, else blue"."""
+    unwanted, wanted = ({words[at] for at in held_by(spans, tag)} for tag in ("not", "as"))
+    if any(op["op"] == "recolor" and set(str(op.get("color")).split()) & (unwanted - wanted) for op in ops):
+        return True  # "black, not brown again"
     held = set(re.findall(r"[a-z]+", str(ops)))
     if any(op["op"] == "order" and op.get("first") for op in ops):  # of things that are named by their colours
         idle = {

@@ -66,9 +66,14 @@ _GONE = re.compile(
 
 NOT = re.compile(r"\b(?:not|no|never|without|nobody|nothing|neither|nor|stop|hardly)\b")
 
+_DELETE = re.compile(r"\b(?:delete|erase|remove)\b")
+_THAN = re.compile(r"\bthan\b")
+
 
 def recolor(slots: Slots) -> Iterator[Wanted]:
     """Another look for a time, or for good."""
+    if _THAN.search(slots.rest):
+        return  # "silver would look better than green"
     hue = [word for word in slots.color.split() if word in hues()]
     for color in dict.fromkeys((slots.color, " ".join(hue))) if hue else ():  # "neon green" is green
         slots.pass_goals()
@@ -80,6 +85,8 @@ def hide(slots: Slots) -> Iterator[Wanted]:
     if not slots.told:
         yield from remove(slots)
         return
+    if _DELETE.search(slots.rest) and slots.happening is not None and slots.happening.during.part == "until":
+        return  # "delete the vase before it falls" tells a reason
     seen = _SEEN.search(slots.rest) is not None and _GONE.search(slots.rest) is None
     enters = slots.moment.start is not None and slots.moment.stop is None and _ENTERS.search(slots.rest) is not None
     seen = seen and (enters or NOT.search(slots.rest) is None)

@@ -60,6 +60,8 @@ TOO = re.compile(r"\btoo (?:\w+ )?(?P<what>late|early|soon)\b")
 
 _SHUTS = re.compile(r"\b(?:clos\w+|shut\w*|(?:go|going|goes|slid\w+|mov\w+|com\w+) back|return\w*|back in)\b")
 
+_OPENS = re.compile(r"\bopen\w*\b")  # "hold it shut till three, then swing it open"
+
 
 def begin(slots: Slots) -> Iterator[Wanted]:
     """What begins, and ends, at another time."""
@@ -78,6 +80,8 @@ def begin(slots: Slots) -> Iterator[Wanted]:
         return
     if not slots.told:
         return
+    if isinstance(moment.start, float) and moment.stop is None and _SUCH_THAT.search(slots.rest):
+        moment = replace(moment, start=None, stop=moment.start)
     if (
         isinstance(moment.stop, float)
         and moment.start is None
@@ -94,16 +98,25 @@ def begin(slots: Slots) -> Iterator[Wanted]:
         if not slots.tell(_LATER) and not any(tag in ("from", "to") for tag, _, _ in slots.spans):
             return
         moment = replace(moment, start=moment.stop, stop=None)  # "it waits until 2 s"
-    if is_opened(slots.noun) and _SHUTS.search(slots.rest) and isinstance(slots.moment.start, float):
+    shuts = _SHUTS.search(slots.rest) is not None and _OPENS.search(slots.rest) is None
+    if is_opened(slots.noun) and shuts and isinstance(slots.moment.start, float):
         yield Wanted(f"close {slots.whom}", moment, slots.happening)
         return
     if isinstance(moment.start, float) and isinstance(moment.stop, float) and moment.stop <= moment.start:
         slots.repeated |= set(moment.said)
         moment = replace(moment, stop=None)  # "at rest for the first second, it starts at 1 s"
-    if moment.lasting is not None and _BEFORE.search(slots.rest) and moment.start is None and slots.happening is None:
+    if (
+        moment.lasting is not None
+        and _BEFORE.search(slots.rest)
+        and moment.start is None
+        and slots.happening is not None
+    ):
+        moment = replace(moment, start=moment.lasting, lasting=None)  # "once it has landed, let a second pass before"
+    elif moment.lasting is not None and _BEFORE.search(slots.rest) and moment.start is None and slots.happening is None:
         if (moves := slots.movement(slots.queries[0])) is not None:  # "a second of stillness before the fan begins"
             slots.repeated |= set(moment.said)
-            yield paced(slots, "begin", Moment(start=round(moves.start + moment.lasting, 4)))
+            now = moves.start if moment.lasting <= moves.start or _BY_MORE.search(" ".join(slots.words)) else 0.0
+            yield paced(slots, "begin", Moment(start=round(now + moment.lasting, 4)))
         return
     if moment.lasting is not None:
         moment = replace(moment, taken=True)
@@ -125,6 +138,7 @@ def begin(slots: Slots) -> Iterator[Wanted]:
     yield paced(slots, "begin", moment)
 
 
+_SUCH_THAT = re.compile(r"\b(?:such|so) that (?:it|he|she|\||the \w+)? ?(?:reach|arriv|gets? (?:there|to|home)|lands?)")
 _ARRIVES = re.compile(r"\b(?:reach\w*|arriv\w*|gets? (?:there|to|home)|is there|be there|lands?) ?(?:\||$|,|there)")
 
 _BETWEEN = re.compile(r"\b(?:between|apart|intervals?|stagger\w*|spaced?)\b")

@@ -550,7 +550,10 @@ def _painted(shades: Iterator[str], thing: Thing) -> tuple[str, Query] | None:
 
 def _is_former(before: Sequence[str]) -> bool:
     """Whether words before a colour tell that something has it now: "swap its brown for", "and reverts to"."""
-    return before[-1] in _FORMER or re.search(r"\b(?:back|reverts?|returns?) (?:in)?to$", " ".join(before)) is not None
+    return (
+        not _FORMER.isdisjoint(before[-1:])
+        or re.search(r"\b(?:back|reverts?|returns?) (?:in)?to$", " ".join(before)) is not None
+    )
 
 
 def _counts(then: str) -> bool:

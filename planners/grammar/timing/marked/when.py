@@ -78,6 +78,20 @@ _PLAINER = (  # times in plainer words
     (re.compile(r"(?:(?<= s)|(?<=seconds)) , (?=after )"), " "),
     (re.compile(r"(?:(?<=second)|(?<=seconds)|(?<=s)) and not (?:one|a second|any) (?:less|more)$"), ""),
     (re.compile(r"^no later than "), "by "),
+    (
+        re.compile(
+            r"^up to (?:the )?(?:moment|point|instant|second|time) (?:when |that |(?:at|in) which )?"
+            r"(?=(?:the|it|he|she)\b)"
+        ),
+        "until ",
+    ),
+    (
+        re.compile(
+            r"\bhas (?:settled|come to rest|stopped|parked|halted|come to a stop)(?: (?:by|at|against|beside|near|on) "
+            r"the [a-z]+)$"
+        ),
+        "has stopped",
+    ),
     (re.compile(r"\bfirst (?=(?:moves|stirs|budges|opens|starts|goes)\b)"), ""),
     (re.compile(r"\b(?:budge|stir)(?=s?$|s? )"), "move"),
     (
@@ -87,6 +101,7 @@ _PLAINER = (  # times in plainer words
     (re.compile(r"^as far as (?=the )"), "until "),
     (re.compile(r"^(?:coming )?out of (?=(?:the|its|his|her) (?:turn|corner|bend)\b)"), "after "),
     (re.compile(r"\bis standing$"), "has stopped"),
+    (re.compile(r"\b(?:comes? to a (?:halt|stop|standstill)|stops|halts|rests) (?:outside|out)$"), "is fully open"),
     (re.compile(r"^once (?=(?:opened|closed|landed|fallen|out|open|shut|stopped|turned)$)"), "once it is "),
     (
         re.compile(
@@ -243,7 +258,7 @@ def time_of(
             if lasting is None or lasting[0] is None or (both := joined(moment, lasting[0])) is None:
                 return None
             moment, phrase = both, rests["then"]
-        if tag not in TIMES or not phrase or KEEPING.match(phrase):
+        if tag not in TIMES or not phrase or KEEPING.match(phrase) or _HOW_MANY.match(phrase):
             continue
         if (
             kind == "repeat"
@@ -251,6 +266,8 @@ def time_of(
             and not any(map(tells_number, _SECOND_TIME.sub("", phrase).split()))
         ):
             continue  # "right after the first", "without a break"
+        if kind in LOOKS and _EVERY_TIME.match(phrase):
+            return None
         if kind == "repeat":
             phrase = _SECOND_TIME.sub("", _EACH_TIME.sub("", phrase))
         if kind == "still" and tag == "in" and _AT_NO_TIME.match(phrase):
@@ -295,7 +312,13 @@ def time_of(
         found, event = told
         if delay is not None:
             found = replace(found or Moment(), start=delay)
-        elif found is not None and isinstance(found.start, float) and happening is not None and _begins(happening):
+        elif (
+            found is not None
+            and isinstance(found.start, float)
+            and happening is not None
+            and _begins(happening)
+            and _AT_SOME_TIME.match(phrase)  # else that is how long after it: "a full second of silence"
+        ):
             happening = None  # "once the fan has stopped, at 4.5 s": the number tells it
         if found is not None:
             if kind == "pause" and tag == "to" and moment.start is not None and _is_later(found.stop, moment.stop):
@@ -316,13 +339,17 @@ def time_of(
     numbers = isinstance(moment.start, float) and isinstance(moment.stop, float) and moment.start >= 0
     if numbers and happening is not None and happening.during.part == "while" and happening.until is None:
         happening = None  # "together with the top one, 1 to 2 s": the numbers tell it
-    if kind in LOOKS and moment.start == 0.0 and moment.stop is not None:
+    until = happening is not None and happening.during.part == "until"
+    if kind in LOOKS and moment.start == 0.0 and (moment.stop is not None or until):
         moment = replace(moment, start=None)
     return moment, happening
 
 
+_AT_SOME_TIME = re.compile(r"^(?:at|from|on|in|by|with|when|t|second) ")
 _BEGUN = ("close", "move", "begin", "return", "repeat", "reverse")  # kinds of what begins "when the door is open"
 _RESTED_BEFORE = ("close", "return")  # kinds before which a thing may rest where it is
+_EVERY_TIME = re.compile(r"^(?:for )?(?:each|every) (?:single )?time\b")
+_HOW_MANY = re.compile(r"^(?:all|both)(?: of them)?(?: (?:two|three|four|five|2|3|4|5))?$")  # "all four", of things
 _SMALL = re.compile(r"\b(?:little|short|brief|tiny|quick|single|bare|scant|full|whole|good) ")
 _REST = re.compile(  # how long
     r"^(?:(?:let |have )?(?:it |he |she )?"

@@ -67,7 +67,7 @@ _FOR_GOOD = re.compile(
     r"(?:for|over|in|during) (?:all of )?the (?:whole|entire|full) (?:film|clip|video|movie|time|scene)|"
     r"from (?:the )?(?:first|start|beginning)(?: \w+)? to (?:the )?(?:last|end|finish)|"
     r"for ?ever|permanent(?:ly)?|for good|once and for all|from now on|for keeps|remain so|stay(?:s|ing)? "
-    r"(?:so|that way|like that))\b"
+    r"(?:so|that way|like that)|(?:keep|leave) (?:it|them) (?:that way|like that|so))\b"
 )
 _CHOICE = re.compile(rf"\b(?:{HUES}) or (?:\w+ )?(?:{HUES})\b")
 _THAT_I_WANT = re.compile(

@@ -81,11 +81,10 @@ def _plainly(
         said = replace(said, x=plural(said.x))
     if said is None or says_more(kind, chance, said, names, strictly):
         return
+    if kind in _OF_EVENTS and any(_is_missing(word, names) for word in said.rest.split()):
+        return  # "its events by time: stops, cat jumps"
     if not said.x and kind not in _OF_ALL:
-        if any(
-            kinds_of_things.find(singular(word)) is not None and singular(word) not in names and word not in names
-            for word in told
-        ):
+        if any(_is_missing(word, names) for word in told):
             return  # "any window I could open"
         if kind in _OF_ONE and _PRONOUN.isdisjoint(said.rest.split()):
             return
@@ -106,6 +105,11 @@ def _plainly(
             yield " ".join(whole.split()).replace(" ,", ",")
 
 
+def _is_missing(word: str, names: Collection[str]) -> bool:
+    """Whether a word names a thing that the scene has not."""
+    return kinds_of_things.find(singular(word)) is not None and singular(word) not in names and word not in names
+
+
 def question_of(kind: str, x: str, y: str, rest: str = "") -> str | None:
     """The plain question of a kind about things; None if it needs another one.
 
@@ -118,6 +122,7 @@ def question_of(kind: str, x: str, y: str, rest: str = "") -> str | None:
 _WHEN_BEFORE = re.compile(
     r"^(?P<time>(?:once|when|after|as soon as|from when) [^,]+?)(?: 's)? , how (?:many|much|long)\b"
 )
+_OF_EVENTS = bag("does order happens")
 _OF_ALL = bag(
     "what_moves what_still how_many first last order fastest happens film_long gap if_moves if_still if_together "
     "what_open what_shut what_on what_fell what_up"

@@ -130,6 +130,14 @@ def _to_a_side(said: Said) -> Iterator[str]:
         yield f"does {said.x} turn to the {side['side']}"
 
 
+def _if_still(said: Said) -> Iterator[str]:
+    if said.x:  # "the ball comes to rest at 3 s, does it not?"
+        yield f"does {said.x} {'stop' if _COMES_TO_REST.search(said.rest) else 'stand still'}"
+
+
+_COMES_TO_REST = re.compile(r"\b(?:comes? to rest|stops|settles)\b")
+
+
 def _if_turns(said: Said) -> Iterator[str]:
     side = _SIDE.search(said.rest)
     if said.x and (side is None or " not " in side[0] or " not " not in said.rest):
@@ -413,7 +421,7 @@ PLAIN: Mapping[str, Plain] = {
     "way": _about("which way does {x} move"),
     "turn_way": _either(_to_a_side, _about("which way does {x} turn")),
     "if_moves": _moves,
-    "if_still": _about("does {x} stand still"),
+    "if_still": _if_still,
     "if_opens": _about("does {x} open"),
     "if_closes": _about("does {x} close"),
     "if_open": _if_open,
