@@ -21,6 +21,7 @@ from .times import TIMES
 CONTRAST = re.compile(r"\b(?:not|no|instead|rather|than|never|without|then|back|again|too|now|currently|presently)\b")
 
 
+_NO_COLOR = re.compile(r"\b(?:no|not|never) (?:be |is |more |longer |any )?([a-z]+)\b")  # "no be brown again"
 _DENIED = re.compile(r"\b(?:not|no|instead|than|never|without)\b")
 
 
@@ -55,8 +56,9 @@ def leaves_out(
 def _loses_colors(words: Sequence[str], ops: Sequence[Fields], shades: Set[int], spans: Sequence[Span]) -> bool:
     """Whether a look is for a time, or things are put in order, and another colour that is told stands nowhere: "red
     while it rolls, else blue"."""
-    unwanted, wanted = ({words[at] for at in held_by(spans, tag)} for tag in ("not", "as"))
-    if any(op["op"] == "recolor" and set(str(op.get("color")).split()) & (unwanted - wanted) for op in ops):
+    denied = (_NO_COLOR.findall(" ".join(words[start:stop])) for tag, start, stop in spans if tag == "not")
+    unwanted = {word for found in denied for word in found} - {words[at] for at in held_by(spans, "as")}
+    if any(op["op"] == "recolor" and not unwanted.isdisjoint(str(op.get("color")).split()) for op in ops):
         return True  # "black, not brown again"
     held = set(re.findall(r"[a-z]+", str(ops)))
     if any(op["op"] == "order" and op.get("first") for op in ops):  # of things that are named by their colours
