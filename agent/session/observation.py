@@ -59,16 +59,15 @@ def movement_of(scene: Scene, selection: Selection) -> Movement | None:
     """How the Gaussians of a selection move; None if they stand still, or if nothing was found."""
     from ...planners.plan import Movement
     from ...tools.ops.pace import is_turning
-    from ...tools.timing.retiming import divided, extent, spells
+    from ...tools.timing.retiming import divided, extent, spells, whole
 
     if scene.motion is None or not selection.chosen:
         return None
     tracks, inside = divided(scene.motion, selection.ids.cpu().numpy())
     own = [track for track, belongs in zip(tracks, inside, strict=True) if belongs]
     times = spells(own, scene.motion.start, scene.motion.stop)
-    if not times:
+    if (span := whole(times)) is None:
         return None
-    span = times[0][0], max(end for _, end in times)
     radians, units = extent(own, span, scene.frame.up_vector)
     metres = units * (scene.frame.metres_per_unit or 1.0)
     turning = all(is_turning(track) for track in own)

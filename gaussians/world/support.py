@@ -23,6 +23,7 @@ from .relations import score
 
 SHELL = ("floor", "wall", "ceiling")
 ALOFT = "air"  # of what falls or floats at a moment of a film, and rests on nothing
+NO_THINGS = (*SHELL, ALOFT)  # supports that are no things
 CONTACT = 0.12  # of the smaller height: error of measured boxes where a thing's underside meets another's top
 _THIN = 0.05  # metres: least height for `CONTACT`, so that things can stand on a thin rug
 FIXED = 0.1  # largest metres between a wall or the ceiling and a thing fixed to it: brackets and frames

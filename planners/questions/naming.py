@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...gaussians.world.relation_geometry import Stand
-from ...gaussians.world.support import ALOFT, SHELL
+from ...gaussians.world.support import NO_THINGS
 from .things import Thing, gap
 
 _BY = 1.0  # metres: largest gap to what a thing is said to be by
@@ -73,7 +73,7 @@ def _level(thing: Thing, others: Sequence[Thing]) -> str | None:
 
 def _support(thing: Thing) -> str | int | None:
     on = thing.node.support if thing.node else None
-    return None if on in (*SHELL, ALOFT) else on
+    return None if on in NO_THINGS else on
 
 
 def _once(id: int | str, things: Sequence[Thing]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.relation_geometry import HOLDS
-from ...gaussians.world.support import ALOFT, SHELL, is_stepped_on
+from ...gaussians.world.support import ALOFT, NO_THINGS, SHELL, is_stepped_on
 from .room_places import AT_WALL, wall_of
 from .survey import Survey, Thing
 
@@ -62,7 +62,7 @@ def supporter(thing: Thing, survey: Survey) -> Thing | str:
     """What a thing stands on or hangs from: a thing, or "floor", "wall", "ceiling" or, of what rests on nothing,
     `ALOFT`."""
     assert thing.node is not None
-    if thing.node.support in (*SHELL, ALOFT):
+    if thing.node.support in NO_THINGS:
         return str(thing.node.support)
     return survey.thing(thing.node.support)
 

@@ -6,16 +6,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import pytest
+from told_film import ToldFilm
 
 from scenewright.gaussians.language.query.query import Query
-from scenewright.planners.grammar.planner import GrammarPlanner
 from scenewright.planners.grammar.timing.marked.proof import is_borne_out
 from scenewright.planners.grammar.timing.moments import Moment
 from scenewright.planners.plan import Movement
 from scenewright.tools.ops.pace import Pace
 from scenewright.tools.registry import AnyOp
-
-PLANNER = GrammarPlanner()
 
 
 def moves(*spells: tuple[float, float], turns: bool = False) -> Movement:
@@ -27,15 +25,9 @@ BALL, ROBOT, FAN, DOOR = moves((0.5, 3.5)), moves((0.2, 4.0)), moves((0.0, 4.0),
 MOVES = {"ball": BALL, "robot": ROBOT, "fan": FAN, "door": DOOR}
 
 
-class Film:
+class Film(ToldFilm):
     """A scene of five seconds as planners see it, in which a ball, a robot, a fan and a door move; it tells how they
     would move after another stop, beginning or speed."""
-
-    def graph(self) -> Any:
-        raise AssertionError("no graph is needed")
-
-    def picture(self) -> bytes | None:
-        return None
 
     def moves(self, query: Query) -> bool | None:
         return query.moving is True or not query.text or query.text.split(" ")[-1] in MOVES
@@ -58,16 +50,8 @@ class Film:
             return moves((now.start, now.start + (now.stop - now.start) / (op.factor or 1.0)))
         return None
 
-    def has(self, query: Query) -> bool:
-        return False
 
-    def lacks(self, query: Query) -> bool:
-        return False
-
-
-def planned(text: str) -> list[dict[str, Any]]:
-    plan = PLANNER.plan(text, observation=Film())
-    return [op.model_dump(exclude_defaults=True, mode="json") | {"op": op.op} for op in plan.ops]
+planned = Film().planned
 
 
 @pytest.mark.parametrize(

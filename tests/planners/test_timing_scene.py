@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from told_film import ToldFilm
 
 from scenewright.gaussians.language.query.query import Query
-from scenewright.planners.grammar.planner import GrammarPlanner
 from scenewright.planners.plan import Movement
 
-PLANNER = GrammarPlanner()
 MOVES = {
     "door": Movement(1.0, 2.5, False, 5.0, 80.0, 0.0, (1.0, 2.5)),
     "drawer": Movement(1.0, 4.5, False, 5.0, 0.0, 0.3, (1.0, 2.0, 3.5, 4.5)),
@@ -21,15 +20,9 @@ MOVES = {
 }
 
 
-class Film:
+class Film(ToldFilm):
     """A scene of five seconds as planners see it, in which a door, the top drawer, a robot, a ball, a fan and books
     move; the wardrobe is brown, the vase blue."""
-
-    def graph(self) -> Any:
-        raise AssertionError("no graph is needed")
-
-    def picture(self) -> bytes | None:
-        return None
 
     def moves(self, query: Query) -> bool | None:
         if query.text.endswith("drawer"):
@@ -39,19 +32,11 @@ class Film:
     def movement(self, query: Query) -> Movement | None:
         return MOVES.get(query.text.split(" ")[-1] or "ball") if self.moves(query) else None
 
-    def after(self, ops: Any, query: Query) -> None:
-        return None
-
     def has(self, query: Query) -> bool:
         return (query.text, *query.colors) in (("wardrobe", "brown"), ("vase", "blue"))
 
-    def lacks(self, query: Query) -> bool:
-        return False
 
-
-def planned(text: str) -> list[dict[str, Any]]:
-    plan = PLANNER.plan(text, observation=Film())
-    return [op.model_dump(exclude_defaults=True, mode="json") | {"op": op.op} for op in plan.ops]
+planned = Film().planned
 
 
 @pytest.mark.parametrize(

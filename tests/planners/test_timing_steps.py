@@ -6,27 +6,19 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from told_film import ToldFilm
 
 from scenewright.gaussians.language.query.query import Query
-from scenewright.planners.grammar.planner import GrammarPlanner
 from scenewright.planners.grammar.timing.marked.kinds import marked_ways
 from scenewright.planners.grammar.timing.marked.names import with_nouns
 from scenewright.planners.plan import Movement
 
-PLANNER = GrammarPlanner()
 
-
-class Film:
+class Film(ToldFilm):
     """A scene with motion as planners see it: three drawers of which the top one moves, a robot, a car that stands, a
     ball, a fan; all that is blue, green or red moves, too."""
 
     _MOVING = ("robot", "ball", "fan", "book")
-
-    def graph(self) -> Any:
-        raise AssertionError("no graph is needed")
-
-    def picture(self) -> bytes | None:
-        return None
 
     def moves(self, query: Query) -> bool | None:
         if query.text == "drawer":
@@ -38,19 +30,8 @@ class Film:
             return None
         return Movement(0.0, 4.0, True) if query.text == "fan" else Movement(0.5, 3.5, False)
 
-    def after(self, ops: Any, query: Query) -> None:
-        return None
 
-    def has(self, query: Query) -> bool:
-        return False
-
-    def lacks(self, query: Query) -> bool:
-        return False
-
-
-def planned(text: str) -> list[dict[str, Any]]:
-    plan = PLANNER.plan(text, observation=Film())
-    return [op.model_dump(exclude_defaults=True, mode="json") | {"op": op.op} for op in plan.ops]
+planned = Film().planned
 
 
 HALFWAY = {"state": "halfway", "part": "from"}

@@ -178,7 +178,11 @@ def _united(found: list[tuple[float, float]]) -> list[tuple[float, float]]:
 
 def movement(tracks: Iterable[Track], start: float, stop: float) -> tuple[float, float] | None:
     """When what the tracks move begins and ends to move, seconds; None if it never does."""
-    found = spells(tracks, start, stop)
+    return whole(spells(tracks, start, stop))
+
+
+def whole(found: list[tuple[float, float]]) -> tuple[float, float] | None:
+    """From the beginning of the first to the last end of spells, seconds; None if there are none."""
     return (found[0][0], max(end for _, end in found)) if found else None
 
 

@@ -203,13 +203,13 @@ class Judge:
         kind = next(iter(likely(cleaned)), ("", 0.0))[0]
         if kind in STATIC and not any(tag in TIMES for tag, _, _ in first):
             return None  # what is done once and for all needs the likeliest marks
-        named = self._named_by(wording, first)
+        named, colors = self._named_by(wording, first), _colors(wording, first)
         for spans in others:
             if not named <= self._named_by(wording, spans):
                 continue  # a thing that is named stays
             if kind in STATIC and _times(first) and not _times(spans):
                 continue  # and a time
-            if _colors(wording, first) and _colors(wording, first) != _colors(wording, spans):
+            if colors and colors != _colors(wording, spans):
                 continue  # and a colour
             found = self._marked_so(cleaned, wording, spans, max(least, SURE))
             if found is not None and not leaves_out(wording, found, spans=first, timed=False):
@@ -227,9 +227,8 @@ class Judge:
         """As `_marked`, with these marks."""
         if any(asks_more(wording[start:stop], tag) for tag, start, stop in spans):
             return None
-        named = self._named_by(wording, spans)
         for still in (False, True):
-            if still and any(map(self._does_move, named)):
+            if still and any(map(self._does_move, self._named_by(wording, spans))):
                 return None  # it then asks for a course of that
             kinds = likely(cleaned, still)
             kind, chance = next(iter(kinds), ("", 0.0))

@@ -8,24 +8,8 @@ from ..vocabulary.nouns import is_known
 from .verbs import SENSES, has_form
 
 _DROPPED = re.compile(r"\b(?P<stem>[A-Za-z]{2,}in)(?:'(?![A-Za-z]))?(?![\w'])")
-_CUED = re.compile(r"\b(?:triggered|prompted|cued) by (?=(?:the|a|my|our) [a-z ]+?ing\b)", re.IGNORECASE)
-_SINGLE = re.compile(r"\ba single (?=second|turn|minute)", re.IGNORECASE)
-_SO_IT_STAYS = re.compile(  # which goes without saying
-    r",? (?:and|n|&|then) (?:then )?(?:keep|leave) (?:it|him|her|them) (?:that way|like that|so|thus)(?=[.!]*$)",
-    re.IGNORECASE,
-)
-_ALL_THE_TIME = re.compile(  # that something is so
-    r"\b(?:for |during )?(?:the (?:whole|entire) time|all the time) (?:that |when )?"
-    r"(?=(?:it|he|she|the [a-z]+) (?:is|rolls|moves|turns|spins|walks|opens|falls|stands)\b)",
-    re.IGNORECASE,
-)
 _SOON_AS = re.compile(r"(?<!\bas )\bsoon as\b", re.IGNORECASE)
 _DO_NOT_BE = re.compile(r"\b(?P<not>do not|don't|dont) be (?P<doing>[a-z]+ing)\b", re.IGNORECASE)
-
-
-_SLANG = re.compile(
-    r"(?:(?:,? (?:no cap|lol|lmao|haha+|innit|tbh|imo))|, (?:bro|bruh|fam|dude|lads))+[.!]*$", re.IGNORECASE
-)
 
 
 _VOCATIVE = re.compile(  # "pick it up, love, and lay it on the desk"
@@ -39,7 +23,6 @@ _TOO_CLUTTERED = re.compile(  # a reason: "remove the chair, too cluttered"
     r"(?:it's |it is )?(?:way |far |a bit |just )?too [a-z]+[.!]?$",
     re.IGNORECASE,
 )
-_SOONER = re.compile(r"\bwould sooner\b|(?<=\bi)'d sooner\b|(?<=\bwe)'d sooner\b", re.IGNORECASE)
 _IT_IS = re.compile(  # "its so slow"
     r"\b(?P<it>its) (?=(?:so|too|really|way too|not|just|still|all the way|a bit|going to|supposed to) )|"
     r"(?<=time )its (?=(?:on|in|at|off|up|out|[a-z]+ing)\b)",
@@ -47,6 +30,28 @@ _IT_IS = re.compile(  # "its so slow"
 )
 
 
+_PLAINER = tuple(  # turns of phrase and their plain words, one after the other
+    (re.compile(pattern, re.IGNORECASE), plain)
+    for pattern, plain in (
+        (r"\bwould sooner\b|(?<=\bi)'d sooner\b|(?<=\bwe)'d sooner\b", " would rather"),
+        (r"\ba single (?=second|turn|minute)", "one "),
+        (  # which goes without saying
+            r",? (?:and|n|&|then) (?:then )?(?:keep|leave) (?:it|him|her|them) "
+            r"(?:that way|like that|so|thus)(?=[.!]*$)",
+            "",
+        ),
+        (r"\b(?:triggered|prompted|cued) by (?=(?:the|a|my|our) [a-z ]+?ing\b)", "upon "),
+        (  # that something is so
+            r"\b(?:for |during )?(?:the (?:whole|entire) time|all the time) (?:that |when )?"
+            r"(?=(?:it|he|she|the [a-z]+) (?:is|rolls|moves|turns|spins|walks|opens|falls|stands)\b)",
+            "while ",
+        ),
+        (  # slang
+            r"(?:(?:,? (?:no cap|lol|lmao|haha+|innit|tbh|imo))|, (?:bro|bruh|fam|dude|lads))+[.!]*$",
+            "",
+        ),
+    )
+)
 _TITLE = re.compile(  # "TC-01: ...", "Requirement 4.1: ..."
     r"^(?:(?:test ?case|tc|req|requirement|test|case|step|task|shot|cue|note|item|ticket|bug|spec)\b[ #]?[\w.-]*|"
     r"[a-z]{1,4}-?\d[\w.-]*) ?: +(?=\w)",
@@ -122,10 +127,10 @@ def written(spoken: str) -> str:
         text = pattern.sub(plain, text)
     text = in_figures(text)
     text = _FROM_ROOM.sub(r"\g<order>\g<end>", _TOO_CLUTTERED.sub(r"\g<order>", text))
-    text = _SOONER.sub(" would rather", _OFF_AT.sub(_switched, _IT_IS.sub("it is ", text)))
-    text = _SO_IT_STAYS.sub("", _SINGLE.sub("one ", text))
-    text = _ALL_THE_TIME.sub("while ", _CUED.sub("upon ", text))
-    text = _SOON_AS.sub("as soon as", with_endings(_SLANG.sub("", text)))
+    text = _OFF_AT.sub(_switched, _IT_IS.sub("it is ", text))
+    for pattern, plain in _PLAINER:
+        text = pattern.sub(plain, text)
+    text = _SOON_AS.sub("as soon as", with_endings(text))
     return _DO_NOT_BE.sub(_prohibited, text)
 
 

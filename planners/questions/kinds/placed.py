@@ -9,7 +9,7 @@ from dataclasses import replace
 from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds, relations
 from ....gaussians.world.relation_geometry import HOLDS
-from ....gaussians.world.support import ALOFT, SHELL
+from ....gaussians.world.support import ALOFT, NO_THINGS, SHELL
 from ..answer import Answer, Evidence
 from ..candidates import Case, agreed, is_plural, meant, unknown, whole
 from ..kind import Asked, Kind
@@ -505,7 +505,7 @@ def _support(asked: Asked, survey: Survey) -> Answer | None:
         told = f"the {found}" if isinstance(found, str) else survey.named(found)
         verb = {"wall": "hangs on", "ceiling": "hangs from", ALOFT: "is in"}.get(name, "stands on")
         ids = [thing] if isinstance(found, str) else [found, thing]
-        if wanted is not None and (name in (*SHELL, ALOFT) if isinstance(found, str) else found.row not in wanted):
+        if wanted is not None and (name in NO_THINGS if isinstance(found, str) else found.row not in wanted):
             return unknown("label", f"None of those: {survey.named(thing)} {verb} {told}.", ids)
         if "y" in asked.slots and not isinstance(found, str) and sum(t.label == found.label for t in survey.things) > 1:
             name = survey.named(found).removeprefix("the ")
@@ -539,10 +539,12 @@ def _next(asked: Asked, survey: Survey) -> Answer | None:
             found.sort(key=lambda t: survey.gap(t, thing))
         found = [t for t in found if wanted is None or t.row in wanted]
         where = {"next_to": "next to", "under": "under", "above": "above", "inside": "in"}[name]
-        if not found and name == "next_to" and wanted is None and wall_of(thing, survey.room)[1] <= AT_WALL:
-            at = f"{wall_of(thing, survey.room)[0].name} wall"
-            return Answer(answer=at, answer_type="label", confidence=0.8, evidence=Evidence(ids=_ids([thing])),
-                          frame="viewer", text=f"{_cap(survey.named(thing))} is at the {at}.")  # fmt: skip
+        if not found and name == "next_to" and wanted is None:
+            wall, gap = wall_of(thing, survey.room)
+            at = f"{wall.name} wall"
+            if gap <= AT_WALL:
+                return Answer(answer=at, answer_type="label", confidence=0.8, evidence=Evidence(ids=_ids([thing])),
+                              frame="viewer", text=f"{_cap(survey.named(thing))} is at the {at}.")  # fmt: skip
         if not found:
             return Answer(answer=None, answer_type="label", confidence=0.8, evidence=Evidence(ids=_ids([thing])),
                           text=f"{_cap(survey.named(thing))} is {where} nothing.")  # fmt: skip

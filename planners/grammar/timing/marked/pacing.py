@@ -105,18 +105,14 @@ def begin(slots: Slots) -> Iterator[Wanted]:
     if isinstance(moment.start, float) and isinstance(moment.stop, float) and moment.stop <= moment.start:
         slots.repeated |= set(moment.said)
         moment = replace(moment, stop=None)  # "at rest for the first second, it starts at 1 s"
-    if (
-        moment.lasting is not None
-        and _BEFORE.search(slots.rest)
-        and moment.start is None
-        and slots.happening is not None
-    ):
-        moment = replace(moment, start=moment.lasting, lasting=None)  # "once it has landed, let a second pass before"
-    elif moment.lasting is not None and _BEFORE.search(slots.rest) and moment.start is None and slots.happening is None:
+    waits = moment.lasting if moment.start is None and _BEFORE.search(slots.rest) else None
+    if waits is not None and slots.happening is not None:
+        moment = replace(moment, start=waits, lasting=None)  # "once it has landed, let a second pass before"
+    elif waits is not None:
         if (moves := slots.movement(slots.queries[0])) is not None:  # "a second of stillness before the fan begins"
             slots.repeated |= set(moment.said)
-            now = moves.start if moment.lasting <= moves.start or _BY_MORE.search(" ".join(slots.words)) else 0.0
-            yield paced(slots, "begin", Moment(start=round(now + moment.lasting, 4)))
+            now = moves.start if waits <= moves.start or _BY_MORE.search(" ".join(slots.words)) else 0.0
+            yield paced(slots, "begin", Moment(start=round(now + waits, 4)))
         return
     if moment.lasting is not None:
         moment = replace(moment, taken=True)

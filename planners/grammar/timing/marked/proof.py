@@ -11,7 +11,7 @@ from ....plan import Movement
 from ...learned.marks import Span
 from ..manner import Thing
 from ..moments import Moment
-from .times import TIMES
+from .times import TIMES, TRIM
 from .when import time_of
 
 _NEAR = 0.12  # seconds: what is told may differ so much from what is
@@ -24,7 +24,7 @@ def moments_of(words: Sequence[str], spans: Sequence[Span], thing: Thing, kind: 
     """The tags of marks with the times that they tell in numbers."""
 
     def text(span: Span) -> str:
-        return " ".join(words[span[1] : span[2]]).strip(" ,.;:!?'\"")
+        return " ".join(words[span[1] : span[2]]).strip(TRIM)
 
     for span in spans:
         if span[0] in TIMES and (told := time_of(words, (span,), text, thing, kind)) is not None and told[1] is None:

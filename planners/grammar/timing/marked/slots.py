@@ -25,7 +25,7 @@ from .kinds import COURSES
 from .names import MOVING, PARTS, with_colors, with_moving
 from .names import named as names_in
 from .orders import PLACES
-from .times import TIMES
+from .times import TIMES, TRIM
 from .when import BY_SO_MUCH, KEEPING, LOOKS, NEAR, PLACES_IN_TURN, is_a_time, tells_number, time_of, with_both_ends
 
 _EVENTS = (
@@ -47,7 +47,6 @@ _IN_A_ROOM = re.compile(r"\b(?:dining|living|sitting|drawing|guest|bath)(?: room
 _ITS_EVENT = re.compile(rf"(?: 's?)?(?: (?:whole|entire|full|complete|outward|return|own|\w+ward))? {_EVENTS}$")
 _STATE = re.compile(r"\b(?:open|opened|closed|shut|opening|closing) (?=[a-z])")  # before the name of what opens
 _JUST_EVENT = re.compile(rf"^(?:the |its |his |her |their |this |that |whole |entire |\w+ing )*{_EVENTS}$")
-_TRIM = " ,.;:!?'\""
 _PLACES = re.compile(
     r"(?P<source>(?:off|from|out of|away from)(?: of)?)$|(?P<on>(?:on ?to|on top of|on|upon))$|"
     r"(?P<to>(?:to|towards?|next to|beside|by|near|close to|alongside|against|at|until|up to|into|in|under|behind|"
@@ -165,7 +164,7 @@ class Slots:
     @cached_property
     def asked(self) -> str:
         """The words that are about no time, and not about what is not wanted, what stays, or nothing."""
-        return self._without(*TIMES, *_IDLE).strip(_TRIM)
+        return self._without(*TIMES, *_IDLE).strip(TRIM)
 
     @cached_property
     def meant(self) -> str:
@@ -312,7 +311,7 @@ def slots(
     """
 
     def text(span: Span) -> str:
-        return " ".join(words[span[1] : span[2]]).strip(_TRIM)
+        return " ".join(words[span[1] : span[2]]).strip(TRIM)
 
     spans = [_joined(span, words, kind) for span in sorted(spans, key=lambda span: span[1])]
     spans = list(_merged([_retagged(span, words, text(span)) for span in spans], text, kind))
@@ -493,7 +492,7 @@ def _is_divided(words: Sequence[str], named: Sequence[Span], thing: Thing, kind:
     """Whether other words stand between the names of several things: "stop the fan, and the lamp should sing"."""
     if kind in ("order", "together"):
         return False
-    names = [(" ".join(words[start:stop]).strip(_TRIM), start, stop) for _, start, stop in named]
+    names = [(" ".join(words[start:stop]).strip(TRIM), start, stop) for _, start, stop in named]
     meant = [(thing(name), start, stop) for name, start, stop in names]
     ranks = {stop for name, _, stop in names if set(name.split()) <= PLACES_IN_TURN}  # "first bottom, then top"
     told = [
@@ -612,7 +611,7 @@ def _things(said: Iterator[str], thing: Thing, grouped: bool = False) -> tuple[t
     for name in chain.from_iterable(map(_divided, said)):
         if _JUST_EVENT.match(name) or name in _CRIES:
             continue
-        bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(_TRIM)
+        bare = _ITS_EVENT.sub("", _OF_EVENT.sub("", re.sub(r" 's?$", "", name))).strip(TRIM)
         bare = _ALL_IT_DOES.sub(r"\g<who>", bare)
         bare = _GROUP_OF.sub("all the ", _ANY_OF.sub("all the ", bare))
         bare = _IN_A_ROOM.sub("", re.sub(r" 's?$", "", bare))

@@ -19,6 +19,7 @@ from .names import named as names_in
 from .plain import loosely, plain
 
 TIMES = {"from": "when", "to": "until", "in": "while", "for": "for"}  # tags of times, and how such a time is begun
+TRIM = " ,.;:!?'\""  # at the ends of marks
 LEADING = re.compile(
     r"^(?:(?:,|and|then|but|just|only|right|exactly|about|around|starting|beginning|starts?|begins?|leaves?|leaving|"
     r"departs?|departing|departure|"

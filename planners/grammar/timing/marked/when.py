@@ -29,132 +29,107 @@ KEEPING = re.compile(
     r"conserving)\b|^(?:from|at|with|in) (?:the |its |his |her )?(?:same|usual|present|current|normal|old|original) "
     r"(?!(?:time|moment|instant|second|frame) (?:as|that|when)\b)"
 )
-_PLAINER = (  # times in plainer words
-    (
-        re.compile(
+_PLAINER = tuple(
+    (re.compile(pattern), plain)
+    for pattern, plain in (  # times in plainer words
+        (
             r"^(?:for |during |in )?(?:just |exactly |precisely |only )*(?=(?:as|so) long as\b(?! (?:the |this )?"
-            r"(?:film|clip|video|movie|scene|shot|picture)\b))"
+            r"(?:film|clip|video|movie|scene|shot|picture)\b))",
+            "",
         ),
-        "",
-    ),
-    (re.compile(r"\b(?:a|one) second (?=has|is|have)"), "1 seconds "),
-    (
-        re.compile(
+        (r"\b(?:a|one) second (?=has|is|have)", "1 seconds "),
+        (
             r"\b(?:has|have|is|are|'s) (?:\w+ly )?(?:swung|slid|come|gone|been pulled|opened|pulled|rolled)"
-            r"(?: (?:fully|wide|right|all the way|completely|wholly))? (?=(?:open|out)\b)"
+            r"(?: (?:fully|wide|right|all the way|completely|wholly))? (?=(?:open|out)\b)",
+            "is fully ",
         ),
-        "is fully ",
-    ),
-    (re.compile(r"^at the (?:stroke|count|mark) of "), "at "),
-    (
-        re.compile(
+        (r"^at the (?:stroke|count|mark) of ", "at "),
+        (
             r"^(?:when|once|as soon as) (?:the )?(?P<at>\d+(?:\.\d+)?)(?: (?:s|secs?|seconds?))? "
-            r"(?:hits?|strikes?|comes?(?: (?:up|round|around))?|arrives?|is reached|rolls? (?:up|round|around))$"
+            r"(?:hits?|strikes?|comes?(?: (?:up|round|around))?|arrives?|is reached|rolls? (?:up|round|around))$",
+            r"at \g<at>",
         ),
-        r"at \g<at>",
-    ),
-    (
-        re.compile(
-            r"^(?:until|till) (?:we|i|they|you) (?:sign off|wrap(?: up)?|are done|finish|stop|go home|cut|close)$"
+        (
+            r"^(?:until|till) (?:we|i|they|you) (?:sign off|wrap(?: up)?|are done|finish|stop|go home|cut|close)$",
+            "until the end",
         ),
-        "until the end",
-    ),
-    (re.compile(r"^first (?=(?:at|from|in|after|when|once)\b)|(?<=\d) first$"), ""),
-    (
-        re.compile(
-            rf"^(?:only )?after (?P<d>{DURATION}) of (?:quiet|silence|stillness|rest|peace|calm|nothing|waiting)$"
+        (r"^first (?=(?:at|from|in|after|when|once)\b)|(?<=\d) first$", ""),
+        (
+            rf"^(?:only )?after (?P<d>{DURATION}) of (?:quiet|silence|stillness|rest|peace|calm|nothing|waiting)$",
+            r"at \g<d>",
         ),
-        r"at \g<d>",
-    ),
-    (
-        re.compile(
+        (
             r"^(?:when|once|as soon as) (?:the |my |our )?(?:clock|timer|watch|counter|second) ?"
             r"(?:(?:has |is )?(?:touch(?:es)?|says?|strikes?|reads?|shows?|hits?|reaches|gets to|at) )?"
-            rf"(?P<at>\d+(?:\.\d+)?|{'|'.join(word for word in NUMBERS if word.isalpha())})(?: strikes?| comes?)?$"
+            rf"(?P<at>\d+(?:\.\d+)?|{'|'.join(word for word in NUMBERS if word.isalpha())})(?: strikes?| comes?)?$",
+            r"at \g<at>",
         ),
-        r"at \g<at>",
-    ),
-    (re.compile(r"^(?:one|a) (?:beat|heartbeat|breath|moment|blink) , (?:say|call it|that is|about) "), ""),
-    (re.compile(r"(?:(?<= s)|(?<=seconds)) , (?=after )"), " "),
-    (re.compile(r"(?:(?<=second)|(?<=seconds)|(?<=s)) and not (?:one|a second|any) (?:less|more)$"), ""),
-    (re.compile(r"^no later than "), "by "),
-    (
-        re.compile(
+        (r"^(?:one|a) (?:beat|heartbeat|breath|moment|blink) , (?:say|call it|that is|about) ", ""),
+        (r"(?:(?<= s)|(?<=seconds)) , (?=after )", " "),
+        (r"(?:(?<=second)|(?<=seconds)|(?<=s)) and not (?:one|a second|any) (?:less|more)$", ""),
+        (r"^no later than ", "by "),
+        (
             r"^up to (?:the )?(?:moment|point|instant|second|time) (?:when |that |(?:at|in) which )?"
-            r"(?=(?:the|it|he|she)\b)"
+            r"(?=(?:the|it|he|she)\b)",
+            "until ",
         ),
-        "until ",
-    ),
-    (
-        re.compile(
+        (
             r"\bhas (?:settled|come to rest|stopped|parked|halted|come to a stop)(?: (?:by|at|against|beside|near|on) "
-            r"the [a-z]+)$"
+            r"the [a-z]+)$",
+            "has stopped",
         ),
-        "has stopped",
-    ),
-    (re.compile(r"\bfirst (?=(?:moves|stirs|budges|opens|starts|goes)\b)"), ""),
-    (re.compile(r"\b(?:budge|stir)(?=s?$|s? )"), "move"),
-    (
-        re.compile(r"^(?:in )?between (?:the (?P<x>[a-z]+) 's|its) two (?:moves|movements|strokes|trips)$"),
-        lambda found: f"while {'the ' + found['x'] if found['x'] else 'it'} is fully open",
-    ),
-    (re.compile(r"^as far as (?=the )"), "until "),
-    (re.compile(r"^(?:coming )?out of (?=(?:the|its|his|her) (?:turn|corner|bend)\b)"), "after "),
-    (re.compile(r"\bis standing$"), "has stopped"),
-    (re.compile(r"\b(?:comes? to a (?:halt|stop|standstill)|stops|halts|rests) (?:outside|out)$"), "is fully open"),
-    (re.compile(r"^once (?=(?:opened|closed|landed|fallen|out|open|shut|stopped|turned)$)"), "once it is "),
-    (
-        re.compile(
+        (r"\bfirst (?=(?:moves|stirs|budges|opens|starts|goes)\b)", ""),
+        (r"\b(?:budge|stir)(?=s?$|s? )", "move"),
+        (
+            r"^(?:in )?between (?:the (?P<x>[a-z]+) 's|its) two (?:moves|movements|strokes|trips)$",
+            lambda found: f"while {'the ' + found['x'] if found['x'] else 'it'} is fully open",
+        ),
+        (r"^as far as (?=the )", "until "),
+        (r"^(?:coming )?out of (?=(?:the|its|his|her) (?:turn|corner|bend)\b)", "after "),
+        (r"\bis standing$", "has stopped"),
+        (r"\b(?:comes? to a (?:halt|stop|standstill)|stops|halts|rests) (?:outside|out)$", "is fully open"),
+        (r"^once (?=(?:opened|closed|landed|fallen|out|open|shut|stopped|turned)$)", "once it is "),
+        (
             r"^(?:through|until|till|to) (?:the )?(?:very )?(?:end of )?(?:the )?(?:end|shift|day|show|reel|take|match|"
-            r"song|number|last)$"
+            r"song|number|last)$",
+            "until the end",
         ),
-        "until the end",
-    ),
-    (re.compile(r"\bits first (?=(?:landing|fall|run|roll|turn)$)"), "its "),
-    (re.compile(r"^to (?=(?:\d|one\b|two\b|half\b|a )[^,]* (?:after|once|when|behind) )"), ""),
-    (
-        re.compile(
+        (r"\bits first (?=(?:landing|fall|run|roll|turn)$)", "its "),
+        (r"^to (?=(?:\d|one\b|two\b|half\b|a )[^,]* (?:after|once|when|behind) )", ""),
+        (
             r"^(?:and )?with (?P<who>(?:the|my|our) [a-z ]+?) (?P<how>(?:fully |wide |all the way |completely )?"
-            r"(?:open|out|shut|closed))(?: again)?$"
+            r"(?:open|out|shut|closed))(?: again)?$",
+            r"when \g<who> is \g<how>",
         ),
-        r"when \g<who> is \g<how>",
-    ),
-    (
-        re.compile(
-            r"^in (?:sync|step|time|tandem) with (?P<who>(?:the|my|our) [a-z ]+?) (?P<what>opening|closing|moving)$"
+        (
+            r"^in (?:sync|step|time|tandem) with (?P<who>(?:the|my|our) [a-z ]+?) (?P<what>opening|closing|moving)$",
+            r"while \g<who> is \g<what>",
         ),
-        r"while \g<who> is \g<what>",
-    ),
-    (re.compile(r"\bthe rest of (?:the|this) \w+$"), "the rest of the film"),
-    (
-        re.compile(
+        (r"\bthe rest of (?:the|this) \w+$", "the rest of the film"),
+        (
             r"\b(?:has |is |had )?(?:finished|finishes|done|completes|completed) (?:coming out|sliding out|opening|"
-            r"going out|moving out)$"
+            r"going out|moving out)$",
+            "is fully open",
         ),
-        "is fully open",
-    ),
-    (re.compile(r"^all over(?: and| ,)? ?"), ""),
-    (re.compile(r"\bthe second number (?=\w)"), "second "),
-    (
-        re.compile(
-            r"\bhas (?:taken|made|done|spent|finished) (?:its|his|her) (?:very )?last (?:step|turn|round|spin)$"
+        (r"^all over(?: and| ,)? ?", ""),
+        (r"\bthe second number (?=\w)", "second "),
+        (
+            r"\bhas (?:taken|made|done|spent|finished) (?:its|his|her) (?:very )?last (?:step|turn|round|spin)$",
+            "has stopped",
         ),
-        "has stopped",
-    ),
-    (re.compile(rf"^(?:until|till|not (?:until|till|before)) (?={DURATION} (?:after|once|past|from) )"), ""),
-    (re.compile(r"\b(?:couple(?: of)?) (?=seconds?\b)"), "two "),
-    (re.compile(r"^(?P<lead>(?:for|in|of|over|within|taking|lasting) )?second and a half\b"), r"\g<lead>1.5 seconds"),
-    (
-        re.compile(r"^(?P<lead>(?:by|until|till|before|at) the )(?P<rank>first|second|third|fourth|fifth)$"),
-        r"\g<lead>\g<rank> second",
-    ),
-    (
-        re.compile(
+        (rf"^(?:until|till|not (?:until|till|before)) (?={DURATION} (?:after|once|past|from) )", ""),
+        (r"\b(?:couple(?: of)?) (?=seconds?\b)", "two "),
+        (r"^(?P<lead>(?:for|in|of|over|within|taking|lasting) )?second and a half\b", r"\g<lead>1.5 seconds"),
+        (
+            r"^(?P<lead>(?:by|until|till|before|at) the )(?P<rank>first|second|third|fourth|fifth)$",
+            r"\g<lead>\g<rank> second",
+        ),
+        (
             r"^(?P<lead>(?:for|in|of|over|within|taking|lasting) )?(?:an?|the|just|only|like|about) (?=(?:\d|one|"
-            r"two|three|four|five|half a|third of|quarter of)\b)"
+            r"two|three|four|five|half a|third of|quarter of)\b)",
+            r"\g<lead>",
         ),
-        r"\g<lead>",
-    ),
+    )
 )
 _UNTIL_THEN = re.compile(r"^(?:until|till) ")
 _DEICTIC = re.compile(

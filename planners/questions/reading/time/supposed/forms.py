@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
-from .....grammar.tagging.words import bag, clean, split
-from .....grammar.timing.spoken import in_figures
-from .kinds import kinds_of
+from .....grammar.tagging.words import bag
+from .kinds import kinds_of, words_of
 from .likely import likeliest
 
 Form = Literal["yesno", "moment", "duration", "number", "name"]
@@ -19,7 +18,7 @@ _EITHER = bag("turn_way none far fast fast_most first last")  # kinds that are a
 def chance_of(text: str, form: Form) -> float:
     """The probability that a question asks for an answer of a form; kinds that may ask for several forms are none of
     another one."""
-    words = tuple(word.text for word in split(in_figures(clean(text))))
+    words = words_of(text)
     kind, chance = likeliest(words)
     told = sum(own for other, own in kinds_of(words) if other in _EITHER or form_of(other) == form)
     return told if kind in _EITHER or form_of(kind) == form else min(told, 1.0 - chance)

@@ -9,8 +9,15 @@ from collections.abc import Collection, Sequence
 
 from .....grammar.learned.marks import Span
 from .....grammar.learned.network import networks, told
+from .....grammar.tagging.words import clean, split
+from .....grammar.timing.spoken import in_figures
 
 TASK = "questions"
+
+
+def words_of(text: str) -> tuple[str, ...]:
+    """The words of a question, with decimals in figures."""
+    return tuple(word.text for word in split(in_figures(clean(text))))
 
 
 def kinds_of(words: Sequence[str]) -> Sequence[tuple[str, float]]:

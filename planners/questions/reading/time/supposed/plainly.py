@@ -17,10 +17,9 @@ from ......gaussians.world.spelling import best_slip
 from ......gaussians.world.words import is_plural, plural, singular
 from .....grammar.learned.marks import Span, held_by
 from .....grammar.tagging.spelling import is_word
-from .....grammar.tagging.words import bag, clean, split
-from .....grammar.timing.spoken import in_figures
+from .....grammar.tagging.words import bag
 from .guards import CERTAIN, says_more
-from .kinds import marked_ways, vocabulary
+from .kinds import marked_ways, vocabulary, words_of
 from .likely import OF_A_LEG, asks_why, likeliest, without_leg, without_options
 from .phrases import ALL_OF, deed_of, one_of
 from .said import Said, said_of
@@ -43,8 +42,7 @@ def supposed(text: str, names: frozenset[str], least: float = LEAST, strictly: b
     """
     if not text.strip() or len(text.split()) > _LONGEST:
         return ()
-    told = tuple(word.text for word in split(in_figures(clean(text))))
-    told = tuple(_spelled(word, names) for word in told)
+    told = tuple(_spelled(word, names) for word in words_of(text))
     if sum(word.isalpha() for word in told) < _SHORTEST:
         return ()
     told, leg = without_leg(without_options(told))

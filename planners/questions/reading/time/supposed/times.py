@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from ......gaussians import late_re as re
 from .....grammar.learned.events import Event, event_of
 from .....grammar.tagging.words import bag
+from .....grammar.vocabulary.quantities import ORDINALS
 from ..everyday import everyday
 from ..moments import NUMBER, seconds
 
@@ -91,9 +92,14 @@ def time_left(words: Sequence[str], times: Sequence[str]) -> str | None:
     if not times or _LEFT.search(said) is None or _SHOWN.search(said) is None:
         return None
     event = event_of(_TO_THE_END.sub("", times[0]))
-    if event is None or not event.x or (event.kind not in _MOMENTS and event.kind not in _BEGUN_BY):
+    if event is None or not event.x or not _is_moment(event):
         return None
     return f"how long is it from when {_happens(event, event.x)} to the end of the film"
+
+
+def _is_moment(event: Event) -> bool:
+    """Whether an event is a moment, or begins with one."""
+    return event.kind in _MOMENTS or event.kind in _BEGUN_BY
 
 
 def _happens(event: Event, who: str) -> str:
@@ -116,22 +122,18 @@ def from_one_to_another(times: Sequence[str], x: str, named: Callable[[str], boo
         x: who does what is told without a name, "" for the one that the other event names.
         named: whether words name a thing of the scene.
     """
-    events = [event_of(_CONJUNCTION.sub("", time)) for time in times]
-    one, other = events if len(events) == 2 else (None, None)
-    if one is None or other is None or re.search(r"\d", " ".join(times)):
+    if len(times) != 2 or re.search(r"\d", " ".join(times)):
         return None
-    who = next((event.x for event in (one, other) if event.x not in ("", *_OF_ONE) and named(event.x)), x or "it")
-    told = []
-    for event in (one, other):
-        if min(one.chance, other.chance) < _TOLD:
-            return None
-        if event.kind in _ENDS_OF_FILM:
-            told.append(_ENDS_OF_FILM[event.kind])
-        elif event.kind in _MOMENTS or event.kind in _BEGUN_BY:
-            told.append(f"when {_happens(event, event.x if named(event.x) else who)}")
-        else:
-            return None
-    return f"how long is it from {told[0]} to {told[1]}" if told[0] != told[1] else None
+    found = (event_of(_CONJUNCTION.sub("", time)) for time in times)
+    events = [event for event in found if event is not None and event.chance >= _TOLD]
+    if len(events) != 2 or not all(event.kind in _ENDS_OF_FILM or _is_moment(event) for event in events):
+        return None
+    who = next((event.x for event in events if event.x not in _OF_ONE and named(event.x)), x or "it")
+    one, other = (
+        _ENDS_OF_FILM.get(event.kind) or f"when {_happens(event, event.x if named(event.x) else who)}"
+        for event in events
+    )
+    return f"how long is it from {one} to {other}" if one != other else None
 
 
 _ENDS_OF_FILM = {"film_start": "the start of the film", "film_end": "the end of the film"}
@@ -311,7 +313,7 @@ _TILL_ITS_END = re.compile(  # "from start of motion till it stops"
     r"^(?:before|until|till) (?:it|he|she|they) (?:grows?|falls?|goes|is|are|comes?) (?:still|quiet|silent|to rest)$"
 )
 _PLAINER_STILL = re.compile(
-    r"^come (?=\d|two\b|three\b|four\b|five\b)|^(?P<clock>\d+(?:\.\d+)? ?s(?:ec(?:ond)?s?)?) on the clock$|"
+    r"^come (?=\d|two\b|three\b|four\b|five\b)|"
     r"^at the end of (?:everything|it all|all this)$|\b(?:when )?t (?:=|equals|is) (?P<t>\d+(?:\.\d+)?)(?! ?s)|"
     r" 's (?P<doing>going|on|running)\b|\bfrom (?P<zero>zero)\b|(?<=[a-z]) 's (?=[a-z]+ing\b|open\b|shut\b|closed\b)"
 )
@@ -319,9 +321,9 @@ _PLAINER_STILL = re.compile(
 
 def _still_plainer(found: re.Match[str]) -> str:
     """A time in plainer words."""
-    if found["clock"] or found["t"]:
-        at = "" if found["t"] and found.start() and not found[0].startswith("when") else "at "
-        return f"{at}{found['clock'] or found['t'] + ' s'}"
+    if found["t"]:
+        at = "" if found.start() and not found[0].startswith("when") else "at "
+        return f"{at}{found['t']} s"
     if found["doing"]:
         return " is moving"
     if found["zero"]:
@@ -357,12 +359,11 @@ _HOW_PASSED = ("struck", "half", "tenths", "rank", "gone")
 def _number(passed: re.Match[str]) -> str:
     """The number of seconds in a match of `_PASSED`."""
     if passed["rank"]:
-        return str(1 + _RANKED.index(passed["rank"]))
+        return str(ORDINALS[passed["rank"]])
     tenths = seconds(passed["tenths"]) / 10 if passed["tenths"] else 0.5 if passed["half"] else 0.0
     return f"{seconds(passed['time']) + tenths:g}"
 
 
-_RANKED = ("first", "second", "third", "fourth", "fifth")
 _BY_NOW = re.compile(  # "by 3 s", "by the time 3 seconds have passed"
     r"^(?:by|once|when|after|on)(?: the time)? (?P<time>\d+(?:\.\d+)? ?s(?:ec(?:ond)?s?)?)"
     r"(?: (?:have|has|are|is) (?:passed|gone(?: by)?|up|elapsed|over))?$"

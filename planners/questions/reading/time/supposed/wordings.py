@@ -304,9 +304,8 @@ _OUT = re.compile(r"\b(?:pulled|slid|hang\w*|extended|wide|all the way|fully|com
 def _long_still(said: Said) -> Iterator[str]:
     back = not said.time or BEFORE_BACK.search(said.time) is not None
     pose = f"{said.rest} {said.off} {said.time}"
-    if said.x and (
-        (back and _OUT.search(pose)) or STROKES.match(said.time)
-    ):  # "how long does it sit there pulled all the way out"
+    out = (back and _OUT.search(pose)) or STROKES.match(said.time)  # "sits there pulled all the way out"
+    if said.x and out:
         yield f"how long does {said.x} stay fully open"
     elif said.x:
         yield f"how long does {said.x} stand still"
