@@ -26,13 +26,14 @@ from ...gaussians.motion.at import at
 from ...gaussians.motion.motion import Motion, Track, poses
 from ...gaussians.render import render
 from ...gaussians.scene import Scene
+from . import soft
 from .rooms import moving_room
 
 F64 = NDArray[np.float64]
 Rig = Literal["12", "4", "1"]  # cameras: twelve or four that stand, one that moves
 
 SIZE = (160, 120)
-FPS = {"books": 20.0, "ball": 10.0, "fan": 10.0, "toy": 10.0, "door": 5.0, "drawer": 5.0}
+FPS = {"books": 20.0, "door": 5.0, "drawer": 5.0}  # others: 10
 ENDS = {"books": 3.0}  # seconds; nothing happens after it. Others are filmed to the end of the room
 FOV = 62.0  # degrees, vertical
 
@@ -63,6 +64,9 @@ STAGES = {
     "fan": Stage((0.0, 0.2, 1.7), (0.9, 1.9), 4.0, 4.0),
     "books": Stage((0.0, 0.9, 0.8), (0.8, 2.1), 4.0, 3.6),
     "toy": Stage((-0.3, -0.1, 0.2), (0.8, 2.0), 4.0, 3.4),
+    "towel": Stage((0.0, 0.2, 1.1), (1.0, 2.1), 4.0, 3.4),
+    "plant": Stage((0.0, 0.2, 0.8), (1.0, 2.1), 4.0, 3.4),
+    "jelly": Stage((0.0, -0.2, 0.4), (0.9, 2.0), 4.0, 3.4),
 }
 _TESTS = (-1.95, -1.25)  # radians: where the two held-out cameras stand, seen from the middle; -pi/2 is the south
 
@@ -104,16 +108,16 @@ class Film:
 
 
 def film(name: str, rig: Rig, size: tuple[int, int] = SIZE, fps: float | None = None, detail: float = 1.0) -> Film:
-    """A film of a moving room; the same arguments give the same bytes.
+    """A film of a moving room, or of a soft one; the same arguments give the same bytes.
 
     Args:
         size: width and height of the pictures.
         fps: pictures a second of each camera; None: those of `FPS`.
         detail: of the room.
     """
-    scene = moving_room(name, detail)
+    scene = soft.soft_room(name, detail) if name in soft.names() else moving_room(name, detail)
     assert scene.motion is not None
-    return _filmed(scene, STAGES[name], rig, size, fps or FPS[name], ENDS.get(name, scene.motion.stop))
+    return _filmed(scene, STAGES[name], rig, size, fps or FPS.get(name, 10.0), ENDS.get(name, scene.motion.stop))
 
 
 def unseen(seed: int, rig: Rig, size: tuple[int, int] = SIZE, fps: float = 10.0, detail: float = 1.0) -> Film:
@@ -173,8 +177,8 @@ class Clouds:
     def __init__(self, scene: Scene) -> None:
         assert scene.motion is not None
         moving = torch.zeros(len(scene.cloud), dtype=torch.int32)
-        for track in scene.motion.tracks:
-            moving[torch.isin(scene.cloud.ids, torch.from_numpy(track.ids))] = 1
+        for ids in moving_things(scene.motion):
+            moving[torch.isin(scene.cloud.ids, torch.from_numpy(ids))] = 1
         self._scene = scene.replace(cloud=scene.cloud.replace(group=moving), language=None)
         self._at: tuple[float, Scene] | None = None
 
@@ -216,8 +220,15 @@ def _camera(stage: Stage, angle: float, level: float, size: tuple[int, int], cal
     return Camera.look_at(eye, (x, y, z), (0, 0, 1), *size, FOV, called)
 
 
+def moving_things(motion: Motion) -> tuple[NDArray[np.int64], ...]:
+    """Ids of each thing that moves: on a track, or with displacements alone."""
+    tracks = tuple(track.ids for track in motion.tracks)
+    free = (np.setdiff1d(residual.ids, np.concatenate([*tracks, []])) for residual in motion.residuals)
+    return (*tracks, *(ids for ids in free if len(ids)))
+
+
 def middles(scene: Scene, times: Sequence[float] | F64) -> F64:
-    """`[tracks, T, 3]` where the middle of each moving thing is."""
+    """`[tracks, T, 3]` where the middle of each thing on a track is."""
     assert scene.motion is not None
     found = []
     for track in scene.motion.tracks:

@@ -143,7 +143,7 @@ def _paths(scene: Scene, made: Film) -> tuple[NDArray[np.float64], float]:
         best = min(each, key=lambda e: float(e.mean()))
         if best.max() < 0.5 * max(float(np.ptp(path, axis=0).max()), _reach(made, path[0])):
             away.append(best)
-    return np.array(away).reshape(-1, len(made.times)), len(away) / len(true)
+    return np.array(away).reshape(-1, len(made.times)), len(away) / max(len(true), 1)
 
 
 def _reach(made: Film, middle: NDArray[np.float64]) -> float:

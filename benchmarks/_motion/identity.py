@@ -18,7 +18,7 @@ from ...gaussians.motion.at import at
 from ...gaussians.motion.fitting.seeds import weights
 from ...gaussians.render import render
 from ...gaussians.scene import Scene
-from .films import Film
+from .films import Film, moving_things
 
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -48,12 +48,13 @@ def belonging(scene: Scene, made: Film) -> Belonging:
     truth = made.scene
     assert truth.motion is not None
     things = np.full(len(truth.cloud), -1, np.int32)
-    for number, track in enumerate(truth.motion.tracks):
-        things[np.isin(truth.cloud.ids.numpy(), track.ids)] = number
+    each_ids = moving_things(truth.motion)
+    for number, ids in enumerate(each_ids):
+        things[np.isin(truth.cloud.ids.numpy(), ids)] = number
     marked = truth.replace(cloud=truth.cloud.replace(group=torch.from_numpy(things)), language=None)
     cameras = {frame.camera.name: frame.camera for frame in made.frames if frame.time == made.times[0]}
     chosen = made.times[np.unique(np.linspace(0, len(made.times) - 1, TIMES).astype(int))]
-    count = len(truth.motion.tracks)
+    count = len(each_ids)
     each = [_contributions(scene, marked, list(cameras.values()), float(t), count) for t in chosen]
     group = scene.cloud.group.numpy()
     found = [_of_thing(group, [(w[:, 0], w[:, 1 + k]) for w in each]) for k in range(count)]

@@ -55,7 +55,7 @@ def names() -> tuple[str, ...]:
 
 
 @dataclass
-class _Room:
+class Room:
     """A room into which things are put.
 
     Attributes:
@@ -71,7 +71,7 @@ class _Room:
     runs: dict[str, I64] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, size: Vec3, nodes: Sequence[_Node], detail: float, ceiling: bool = False) -> _Room:
+    def of(cls, size: Vec3, nodes: Sequence[Node], detail: float, ceiling: bool = False) -> Room:
         """The room with what stands still."""
         graph = SceneGraph.model_validate(
             {"room": {"size": size}, "nodes": [n.data(i) for i, n in enumerate(nodes)]}
@@ -123,7 +123,7 @@ class _Room:
 
 
 @dataclass(frozen=True)
-class _Node:
+class Node:
     """A thing that stands still: its name, size, place in plan, the way it looks (yaw, degrees), colour and support."""
 
     label: str
@@ -157,14 +157,14 @@ def _numbered(clouds: list[GaussianCloud], start: int) -> list[GaussianCloud]:
 def _ball(detail: float) -> Scene:
     """A red ball rolls from beside the sofa across the rug to the opposite wall."""
     rug, begin, way = (-0.85, 1.5), -1.95, 4.34
-    room = _Room.of(
+    room = Room.of(
         (5.0, 4.0, 2.6),
         (
-            _Node("sofa", (2.0, 0.9, 0.8), -2.02, 0.62, 90.0, "gray"),
-            _Node("rug", (2.35, 1.5, 0.012), 0.325, -0.6, 0.0, "blue"),
-            _Node("tv stand", (1.4, 0.4, 0.5), 1.2, 1.75),
-            _Node("floor lamp", (0.35, 0.35, 1.6), 2.2, 1.7),
-            _Node("coffee table", (1.0, 0.55, 0.42), -0.6, 0.8),
+            Node("sofa", (2.0, 0.9, 0.8), -2.02, 0.62, 90.0, "gray"),
+            Node("rug", (2.35, 1.5, 0.012), 0.325, -0.6, 0.0, "blue"),
+            Node("tv stand", (1.4, 0.4, 0.5), 1.2, 1.75),
+            Node("floor lamp", (0.35, 0.35, 1.6), 2.2, 1.7),
+            Node("coffee table", (1.0, 0.55, 0.42), -0.6, 0.8),
         ),
         detail,
     )
@@ -183,12 +183,12 @@ def _ball(detail: float) -> Scene:
 def _door(detail: float) -> Scene:
     """A brown door opens by 80 degrees into a hallway and stays open."""
     x, wall = 0.35, 1.5
-    room = _Room.of(
+    room = Room.of(
         (4.0, 3.0, 2.6),
         (
-            _Node("coat rack", (0.48, 0.48, 1.75), -1.2, 1.1, 0.0, "brown"),
-            _Node("bench", (1.2, 0.38, 0.45), -1.76, -0.3, 90.0),
-            _Node("potted plant", (0.45, 0.45, 1.0), 1.65, 1.15),
+            Node("coat rack", (0.48, 0.48, 1.75), -1.2, 1.1, 0.0, "brown"),
+            Node("bench", (1.2, 0.38, 0.45), -1.76, -0.3, 90.0),
+            Node("potted plant", (0.45, 0.45, 1.0), 1.65, 1.15),
         ),
         detail,
     )
@@ -204,12 +204,12 @@ def _door(detail: float) -> Scene:
 
 def _drawer(detail: float) -> Scene:
     """The top drawer of a white dresser slides out by 30 cm and back in."""
-    room = _Room.of(
+    room = Room.of(
         (4.0, 4.0, 2.6),
         (
-            _Node("bed", (1.6, 2.05, 0.6), -1.1, 0.9),
-            _Node("wardrobe", (1.3, 0.6, 2.0), 1.66, -0.4, -90.0, "brown"),
-            _Node("chair", (0.45, 0.5, 0.9), -1.2, -1.2, 150.0),
+            Node("bed", (1.6, 2.05, 0.6), -1.1, 0.9),
+            Node("wardrobe", (1.3, 0.6, 2.0), 1.66, -0.4, -90.0, "brown"),
+            Node("chair", (0.45, 0.5, 0.9), -1.2, -1.2, 150.0),
         ),
         detail,
     )
@@ -225,12 +225,12 @@ def _drawer(detail: float) -> Scene:
 def _fan(detail: float) -> Scene:
     """A ceiling fan turns once a second and stops at 4 s."""
     chairs = ((0.55, 0.75, 0.0), (-0.55, 0.75, 0.0), (0.55, -0.75, 180.0), (-0.55, -0.75, 180.0))
-    room = _Room.of(
+    room = Room.of(
         (4.0, 4.0, 2.6),
         (
-            _Node("dining table", (1.7, 0.95, 0.75), 0.0, 0.2),
-            _Node("vase", (0.16, 0.16, 0.3), 0.1, 0.2, 0.0, "blue", 0, 0.75),
-            *(_Node("chair", (0.45, 0.5, 0.9), x, 0.2 + y, yaw) for x, y, yaw in chairs),
+            Node("dining table", (1.7, 0.95, 0.75), 0.0, 0.2),
+            Node("vase", (0.16, 0.16, 0.3), 0.1, 0.2, 0.0, "blue", 0, 0.75),
+            *(Node("chair", (0.45, 0.5, 0.9), x, 0.2 + y, yaw) for x, y, yaw in chairs),
         ),
         detail,
         ceiling=True,
@@ -243,13 +243,13 @@ def _fan(detail: float) -> Scene:
 
 def _books(detail: float) -> Scene:
     """A red, a green and a blue book fall from a high board, one after another."""
-    room = _Room.of(
+    room = Room.of(
         (4.0, 3.6, 2.6),
         (
-            _Node("bookshelf", (0.9, 0.3, 1.8), -1.83, 0.3, 90.0),
-            _Node("desk", (1.3, 0.65, 0.75), 1.65, 0.1, -90.0),
-            _Node("lamp", (0.2, 0.3, 0.45), 1.7, 0.4, -90.0, "", 1, 0.75),
-            _Node("wall shelf", (1.4, 0.22, 0.05), 0.0, 1.69, 0.0, "brown", "wall", 1.45),
+            Node("bookshelf", (0.9, 0.3, 1.8), -1.83, 0.3, 90.0),
+            Node("desk", (1.3, 0.65, 0.75), 1.65, 0.1, -90.0),
+            Node("lamp", (0.2, 0.3, 0.45), 1.7, 0.4, -90.0, "", 1, 0.75),
+            Node("wall shelf", (1.4, 0.22, 0.05), 0.0, 1.69, 0.0, "brown", "wall", 1.45),
         ),
         detail,
     )
@@ -265,12 +265,12 @@ def _books(detail: float) -> Scene:
 
 def _toy(detail: float) -> Scene:
     """A green toy robot walks from the shelf, turns left and walks to the bed; a toy car stands still."""
-    room = _Room.of(
+    room = Room.of(
         (4.0, 3.4, 2.6),
         (
-            _Node("bed", (0.95, 2.0, 0.55), 0.5, 1.18, 90.0),
-            _Node("shelf", (0.9, 0.32, 1.3), -1.8, -0.45, 90.0),
-            _Node("toy car", (0.12, 0.24, 0.12), 0.9, -0.8, 40.0, "yellow"),
+            Node("bed", (0.95, 2.0, 0.55), 0.5, 1.18, 90.0),
+            Node("shelf", (0.9, 0.32, 1.3), -1.8, -0.45, 90.0),
+            Node("toy car", (0.12, 0.24, 0.12), 0.9, -0.8, 40.0, "yellow"),
         ),
         detail,
     )

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...fit.parameters import Parameters
 from .. import keys
+from .bends import Bend
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -66,19 +67,21 @@ class Line:
 
 @dataclass(eq=False)
 class Body:
-    """A rigid body: a point x of it is at `R(t) @ (x - pivot) + pivot + offset(t)`.
+    """A body: a point x of it is at `R(t) @ (x - pivot) + pivot + offset(t)`, and displaced before if it bends.
 
     Attributes:
         pivot: `[3]`.
         quats: `[T, 4]` wxyz, unit, at each time of the frames; the first is the identity, but in training.
         offsets: `[T, 3]` scene units; the first is 0, but in training (`Joint.settle`).
         line: the axis on which all poses lie, if the frames tell no more than that.
+        bend: how it changes its shape; None: it is rigid.
     """
 
     pivot: F64
     quats: F64
     offsets: F64
     line: Line | None = None
+    bend: Bend | None = None
 
     @classmethod
     def at_rest(cls, pivot: F64, times: int) -> Body:
@@ -87,16 +90,20 @@ class Body:
 
     def placed(self, t: int, means: F32, quats: F32) -> tuple[F32, F32]:
         """Means and quaternions of its Gaussians at a time."""
+        if self.bend is not None:
+            means = self.bend.displaced(t, means)
         return moved(means, quats, self.pivot, self.quats[t], self.offsets[t])
 
     def on(self, line: Line) -> Body:
         """The body with all poses on one axis."""
-        return Body(self.pivot, *line.poses(line.values, self.pivot), line)
+        return Body(self.pivot, *line.poses(line.values, self.pivot), line, self.bend)
 
     @property
     def runs(self) -> list[tuple[int, int]]:
-        """From which time to before which it has one pose: a body at rest has one for all of its rest."""
+        """From which time to before which it has one pose and one shape: a body at rest has one for all of its rest."""
         same = (self.quats[1:] == self.quats[:-1]).all(axis=1) & (self.offsets[1:] == self.offsets[:-1]).all(axis=1)
+        if self.bend is not None:
+            same &= (self.bend.moves[1:] == self.bend.moves[:-1]).all(axis=(1, 2))
         starts = [0, *(np.flatnonzero(~same) + 1).tolist()]
         return list(zip(starts, [*starts[1:], len(self.offsets)], strict=True))
 
@@ -104,17 +111,19 @@ class Body:
         """The same movement of the Gaussians as they are at a time."""
         back = np.array([left(q) @ (self.quats[t] * [1, -1, -1, -1]) for q in self.quats])
         line = self.line and replace(self.line, values=self.line.values - self.line.values[t])
-        return Body(self.pivot + self.offsets[t], back, self.offsets - self.offsets[t], line)
+        bend = self.bend and self.bend.started_at(t, self.quats[t], self.pivot, self.offsets[t])
+        return Body(self.pivot + self.offsets[t], back, self.offsets - self.offsets[t], line, bend)
 
     def backwards(self) -> Body:
         """The same poses in the opposite order of times."""
         line = self.line and replace(self.line, values=self.line.values[::-1].copy())
-        return Body(self.pivot, self.quats[::-1].copy(), self.offsets[::-1].copy(), line)
+        bend = self.bend and self.bend.backwards()
+        return Body(self.pivot, self.quats[::-1].copy(), self.offsets[::-1].copy(), line, bend)
 
     def seen_from(self, pivot: F64) -> Body:
         """The same poses about another pivot."""
         arm = pivot - self.pivot
-        return Body(pivot, self.quats, self.offsets + keys.matrices(self.quats) @ arm - arm, self.line)
+        return Body(pivot, self.quats, self.offsets + keys.matrices(self.quats) @ arm - arm, self.line, self.bend)
 
 
 class Labelled(Parameters):

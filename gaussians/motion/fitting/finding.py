@@ -10,18 +10,24 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from ...fit.parameters import Parameters
 from .axes import agrees, line_of
+from .bending import Torn, bends, bent_alone, bent_best
 from .bodies import Body, Columns, Labelled
 from .budget import SEARCH_UNTIL, SEEDS_UNTIL, Budget, OutOfTime
 from .footage import Footage
 from .rolling import Ball
-from .seeds import LEAST, Flags, gone, halves, seeds
+from .seeds import LEAST, Flags, around, gone, halves, reach, seeds
 from .sharing import shared
 from .smoothing import smoothed
 from .supposing import supposed
 from .tracking import Tracker
+
+I64 = NDArray[np.int64]
 
 EXPLAINS = 0.7  # of the difference without a body, to which its path must bring the pictures
 MOST_BODIES = 12
@@ -32,6 +38,7 @@ PASSED = 0.5  # of the difference without the bodies that are known, to which th
 TOGETHER = 0.6  # of the difference standing still, below which a body follows another without a search of its own
 RIGHT = 0.05  # root mean square difference of colours up to which what stands still is taken to be covered meanwhile
 SORTED = 10  # times at which that is measured
+LOOKS = 5  # times at which a body is looked at whether it bends
 SETTLED = 1  # rounds in which paths are mended and Gaussians assigned to bodies
 
 
@@ -44,16 +51,19 @@ class Finder:
         rng: draws the order of frames.
         budget: of the fit.
         tell: is called before each search.
+        bends: whether bodies may change their shape; before one camera that moves none does.
 
     Attributes:
         cut: whether there was no time for all that could be searched or improved.
     """
 
     def __init__(
-        self, footage: Footage, seed: int, rng: np.random.Generator, budget: Budget, tell: Callable[[], None]
+        self, footage: Footage, seed: int, rng: np.random.Generator, budget: Budget, tell: Callable[[], None],
+        bends: bool = False,
     ) -> None:  # fmt: skip
         self._footage, self._seed, self._rng, self._budget, self._tell = footage, seed, rng, budget, tell
         self._alone, self._until, self.cut = bool(footage.at_first), SEEDS_UNTIL, False
+        self._bends = bends and not self._alone
 
     def find(self, start: Parameters) -> tuple[Labelled, list[Body], int]:
         """What moves, by the number of its label, its paths, and how many bodies were tried.
@@ -77,6 +87,8 @@ class Finder:
         self._sort_out(labelled, bodies)
         for _ in range(SETTLED):
             self._follow(labelled, bodies)
+            if self._bends:
+                self._bend(labelled, bodies)
             self._settle(labelled, bodies)
         self._sort_out(labelled, bodies)
         self._follow(labelled, bodies)
@@ -86,9 +98,10 @@ class Finder:
         self._budget.check(self._until)
 
     def _found(self, columns: Columns, flags: Flags) -> tuple[NDArray[np.int32], list[Body], int]:
-        """Labels `[N]` of the seeds that a path explains, the paths, and how many were tried."""
-        footage, found = self._footage, list[tuple[NDArray[np.int64], Body]]()
+        """Labels `[N]` of the seeds that a path or a bend explains, the paths, and how many were tried."""
+        footage, found = self._footage, list[tuple[I64, Body]]()
         queue = seeds(columns, footage, flags)[:MOST_BODIES]
+        whole = list(queue)
         still, tried = np.ones(len(flags), bool), 0
         for rows in queue:
             still[rows] = False
@@ -111,6 +124,8 @@ class Finder:
                 found.append((rows, path))
             elif tried < 2 * MOST_BODIES and not self._alone:
                 queue = [*queue, *halves(rows, flags)]
+        if self._bends:
+            found += self._bent(columns, whole, still, found)
         labels, bodies = np.zeros(len(flags), np.int32), list[Body]()
         for rows, body in found:
             same = next((k for k, b in enumerate(bodies) if _alike(b, body, columns[0][rows], footage.radius)), None)
@@ -119,6 +134,67 @@ class Finder:
                 bodies.append(body)
             labels[rows] = same + 1
         return labels, bodies, tried
+
+    def _bent(
+        self, columns: Columns, whole: Sequence[I64], still: Flags, found: Sequence[tuple[I64, Body]]
+    ) -> list[tuple[I64, Body]]:  # fmt: skip
+        """Of seeds of which nothing has a path, those that bend, with what they bend with."""
+        known, more = still.copy(), list[tuple[I64, Body]]()
+        for rows, _ in found:
+            known[rows] = True
+        free = [rows for rows in whole if not known[rows].any()]
+        for rows in free:
+            self._tell()
+            rows = around(columns, self._footage, rows)
+            rows = rows[still[rows] | np.isin(rows, np.concatenate(free))]
+            rest = still.copy()
+            rest[rows] = False
+            try:
+                tracker = Tracker(columns, rows, rest, self._footage, self._seed, [*found, *more], self._check)
+                body = bent_alone(tracker, _some(range(1, len(self._footage.times))))
+            except OutOfTime:
+                self.cut = True
+                break
+            if body is not None:
+                more.append((rows, body))
+        return more
+
+    def _bend(self, labelled: Labelled, bodies: list[Body]) -> None:
+        """Let bodies bend where that explains the frames much better than their paths, bodies that touch as one, with
+        what touches them; in place."""
+        for numbers in self._touching(labelled, bodies):
+            self._check()
+            torn = np.flatnonzero(np.isin(labelled.labels, numbers))
+            tracker, parts = self._torn(labelled, bodies, numbers, torn)
+            times = sorted({t for _, body in parts.parts for t, _ in body.runs[1:]})
+            if not bends(tracker, parts, _some(times, LOOKS)):
+                continue
+            rows = around(labelled.columns(), self._footage, torn)
+            rows = rows[np.isin(labelled.labels[rows], [0, *numbers])]
+            tracker, parts = self._torn(labelled, bodies, numbers, rows)
+            bodies[numbers[0] - 1] = bent_best(tracker, parts, _some(times))
+            labelled.labels[rows] = numbers[0]
+        self._renumber(labelled, bodies, labelled.labels)
+
+    def _touching(self, labelled: Labelled, bodies: list[Body]) -> list[list[int]]:
+        """Numbers of bodies that may be one thing that bends: groups of those that touch, the largest body first."""
+        rows = np.flatnonzero(labelled.labels > 0)
+        labels, size = labelled.labels[rows], np.bincount(labelled.labels, minlength=len(bodies) + 1)
+        pairs = cKDTree(labelled.means[rows]).query_pairs(reach(self._footage), output_type="ndarray")
+        graph = coo_matrix((np.ones(len(pairs)), labels[pairs].T), shape=(len(size), len(size)))
+        _, groups = connected_components(graph, directed=False)
+        free = [k for k in range(1, len(size)) if bodies[k - 1].bend is None and size[k]]
+        each = [[k for k in free if groups[k] == group] for group in np.unique(groups[free])]
+        return [sorted(group, key=lambda k: -int(size[k])) for group in each]
+
+    def _torn(self, labelled: Labelled, bodies: list[Body], numbers: list[int], rows: I64) -> tuple[Tracker, Torn]:
+        """A tracker of rows as one body while other bodies go their ways, and each row on the path that it has."""
+        labels = labelled.labels
+        others = [(np.flatnonzero(labels == k), b) for k, b in enumerate(bodies, 1) if k not in numbers]
+        still = labels == 0
+        still[rows] = False
+        parts = tuple((np.flatnonzero(labels[rows] == k), bodies[k - 1]) for k in numbers)
+        return Tracker(labelled.columns(), rows, still, self._footage, self._seed, others, self._check), Torn(parts)
 
     def _path(self, tracker: Tracker) -> Body | None:
         """A path that explains a body, if there is one."""
@@ -135,7 +211,7 @@ class Finder:
         """Whether one camera's frames are explained much better by a path than by standing still."""
         still, errors = Body.at_rest(path.pivot, len(path.offsets)), np.zeros(2)
         for t in range(1, len(path.offsets)):
-            errors += tracker.errors(t, [(b.quats[t], b.offsets[t]) for b in (path, still)])[0]
+            errors += tracker.errors_of(t, (path, still))[0]
         return bool(errors[1] > self._as_well(path) * errors[0])
 
     def _as_well(self, path: Body) -> float:
@@ -150,6 +226,8 @@ class Finder:
             self._check()
             tracker = self._tracker(labelled, bodies, k + 1)
             body = bodies[k].seen_from(tracker.pivot)
+            if body.bend is not None:
+                continue
             if self._alone and body.line is None:
                 body = smoothed(tracker, body, self._footage.radius)
             line = line_of(tracker, body)
@@ -186,7 +264,7 @@ class Finder:
             if not some:
                 labelled.labels[labelled.labels == number] = 0
                 continue
-            errors = np.sum([tracker.errors(t, [(p.quats[t], p.offsets[t]) for p in paths])[0] for t in some], axis=0)
+            errors = np.sum([tracker.errors_of(t, paths)[0] for t in some], axis=0)
             enough = self._as_well(own) * errors[0]
             if errors[1] <= enough:  # as little motion as needed: what stands still joins nothing
                 labelled.labels[labelled.labels == number] = 0
@@ -215,7 +293,7 @@ class Finder:
         return Tracker(labelled.columns(), rows, labels == 0, self._footage, self._seed, others, self._check)
 
 
-def _covered(tracker: Tracker, times: NDArray[np.int64], alone: bool) -> bool:
+def _covered(tracker: Tracker, times: I64, alone: bool) -> bool:
     """Whether what stands still looks right at times at which it is gone, since known bodies pass before it.
 
     Args:
@@ -223,8 +301,8 @@ def _covered(tracker: Tracker, times: NDArray[np.int64], alone: bool) -> bool:
     """
     if not tracker.moving:
         return False
-    rest, some = Body.at_rest(tracker.pivot, 1), _some(times.tolist())
-    each = [tracker.errors(t, [(rest.quats[0], rest.offsets[0])]) for t in some]
+    rest, some = Body.at_rest(tracker.pivot, len(tracker.seconds)), _some(times.tolist())
+    each = [tracker.errors_of(t, (rest,)) for t in some]
     known = sum(float(e[0]) for e, _ in each)
     if known < 3 * RIGHT**2 * sum(pixels for _, pixels in each):
         return True
@@ -236,18 +314,18 @@ def _goes_with(tracker: Tracker, paths: Sequence[Body]) -> Body | None:
     best: tuple[float, Body | None] = (TOGETHER, None)
     for path in paths:
         body = path.seen_from(tracker.pivot)
-        rest = body.quats[0], body.offsets[0]
+        rest = Body.at_rest(body.pivot, len(body.offsets))
         some = _some([t for t, _ in body.runs[1:]])
-        each = [tracker.errors(t, [(body.quats[t], body.offsets[t]), rest])[0] for t in some]
+        each = [tracker.errors_of(t, (body, rest))[0] for t in some]
         with_it, without = np.sum(each, axis=0) if each else (1.0, 1.0)
         if with_it / max(without, 1e-9) < best[0]:
             best = with_it / max(without, 1e-9), body
     return best[1]
 
 
-def _some(times: Sequence[int]) -> list[int]:
-    """At most `SORTED` of some times, evenly chosen."""
-    chosen = np.unique(np.linspace(0, len(times) - 1, min(SORTED, len(times))).astype(int))
+def _some(times: Sequence[int], most: int = SORTED) -> list[int]:
+    """At most so many of some times, evenly chosen."""
+    chosen = np.unique(np.linspace(0, len(times) - 1, min(most, len(times))).astype(int))
     return [int(times[k]) for k in chosen]
 
 

@@ -28,7 +28,6 @@ from numpy.typing import NDArray
 
 from ...cloud import NO_GROUP, GaussianCloud
 from ...files.captures.colmap import Points
-from ...fit.densify import MCMCStrategy
 from ...fit.fitting import SECONDS, Settings, Status
 from ...fit.initialize import MIN_POINTS
 from ...fit.parameters import Parameters
@@ -51,18 +50,17 @@ from .simplify import track_of
 from .sketch import MOST_PIXELS, STEREO_FRAMES, at_all_times, covering, reduced, sketched, stereo_pixels
 from .start import PIXELS, changing, start_cloud, trainer
 from .stillness import nothing_moves
-from .training import Joint, Single
+from .training import Joint
 
 F64 = NDArray[np.float64]
-Detail = Literal["static", "rigid", "residual"]  # the motion that may be fitted: none, paths, and single Gaussians' too
+Detail = Literal["static", "rigid", "residual"]  # the motion that may be fitted: none, paths, and bodies that bend, too
 
 START = 0.3  # share of the fit that is told as completed when all together are trained, at least
 TOLERANCE = 0.004  # of the radius of the cameras: how far the track may be from the poses at the frames
 LEAST_TOGETHER = 0.2  # share of the time that the training of all together has at least
 SHOWN = (0.3, 0.6)  # shares of the training of all together, at which bodies get what they show later
 MORE = 1.2  # times the Gaussians of the start: greatest number at the end, for what was hidden at the start
-SINGLE = 0.15  # of the steps of all together, that displacements of single Gaussians are trained for
-GAIN = 0.05  # dB on held-out frames, for which displacements of single Gaussians are kept
+GAIN = 0.05  # dB on held-out frames, for which bodies bend
 REPORT_EVERY = 0.5  # seconds
 
 
@@ -197,10 +195,7 @@ class _Film:
         settings, labelled, bodies = self._settings, found.labelled, found.bodies
         most = min(settings.max_gaussians, int(MORE * len(labelled)))
         joint = Joint(labelled, bodies, self._footage, Carving(most, self._rng, sight=self._sight), self._rng)
-        single = self._detail == "residual" and bool(bodies) and bool(self._photos.held_out)
         left = self._budget.left(least=LEAST_TOGETHER)
-        if left is not None and single:
-            left /= 1 + SINGLE
         more = None if settings.steps is None else settings.steps - found.steps
         turns = list(SHOWN) if bodies else []
         while (share := _share(joint, more, left)) < 1:
@@ -210,12 +205,9 @@ class _Film:
                 turns.pop(0)
             self._tell(joint.step(share), found.steps + joint.steps, START + (1 - START) * share, len(labelled))
         joint.settle()
-        scene, steps = self._scene(labelled, bodies, None), found.steps + joint.steps
-        if single and scene.motion is not None:
-            scene, more = self._with_single(scene, labelled, bodies, round(SINGLE * joint.steps))
-            steps += more
+        scene = self._gaining(labelled, bodies)
         quality = measure_film(scene, self._photos.held_out)
-        return FittedFilm(scene, quality, steps, self._budget.gone, found.tried, self._cut)
+        return FittedFilm(scene, quality, found.steps + joint.steps, self._budget.gone, found.tried, self._cut)
 
     @cached_property
     def _start(self) -> GaussianCloud:
@@ -289,7 +281,7 @@ class _Film:
         def tell() -> None:
             self._tell(math.nan, 0, START, len(start))
 
-        finder = Finder(footage, self._settings.seed, self._rng, self._budget, tell)
+        finder = Finder(footage, self._settings.seed, self._rng, self._budget, tell, self._detail == "residual")
         found = finder.find(start)
         self._cut = finder.cut
         return found
@@ -298,20 +290,16 @@ class _Film:
         """Paths that were found in the sketch, at the times of all frames."""
         return [at_all_times(body, self._sketch.times, self._footage.times) for body in bodies]
 
-    def _with_single(
-        self, scene: Scene, labelled: Labelled, bodies: list[Body], steps: int
-    ) -> tuple[Scene, int]:  # fmt: skip
-        """The scene with displacements of single Gaussians if held-out frames gain by them, and the steps it took."""
-        single = Single.none(np.flatnonzero(labelled.labels > 0), self._footage.times)
-        copy = Labelled.labelled(Parameters.load(deepcopy(labelled.state())), labelled.labels.copy())
-        joint = Joint(copy, bodies, self._footage, MCMCStrategy(len(copy), self._rng), self._rng, single)
-        while joint.steps < steps:
-            joint.step(1.0)
-        finer = self._scene(copy, bodies, single)
-        before, after = (measure_film(s, self._photos.held_out).psnr for s in (self._scene(copy, bodies, None), finer))
-        return (finer if after - before >= GAIN else scene), steps
+    def _gaining(self, labelled: Labelled, bodies: Sequence[Body]) -> Scene:
+        """The scene; bodies bend in it only if held-out frames, where there are some, gain by that."""
+        scene = self._scene(labelled, bodies)
+        if not self._photos.held_out or not any(body.bend for body in bodies):
+            return scene
+        rigid = self._scene(labelled, [replace(body, bend=None) for body in bodies])
+        before, after = (measure_film(s, self._photos.held_out).psnr for s in (rigid, scene))
+        return scene if after - before >= GAIN else rigid
 
-    def _scene(self, labelled: Labelled, bodies: Sequence[Body], single: Single | None) -> Scene:
+    def _scene(self, labelled: Labelled, bodies: Sequence[Body]) -> Scene:
         """The scene, rows by body, with tracks of few keys."""
         footage = self._footage
         order = np.argsort(labelled.labels, kind="stable")
@@ -319,28 +307,27 @@ class _Film:
         cloud = labelled.cloud()[torch.from_numpy(order)]
         cloud = cloud.replace(ids=torch.arange(len(cloud)))
         group = np.full(len(cloud), NO_GROUP, np.int32)
-        tracks = list[Track]()
+        tracks, residuals = list[Track](), list[Residual]()
+        things, tolerance = 0, TOLERANCE * footage.radius
         for number, body in enumerate(bodies, 1):
             rows = np.flatnonzero(labels == number)
             if not len(rows):
                 continue
-            track = track_of(
-                body, rows, footage.times, _size(cloud, rows), TOLERANCE * footage.radius, f"thing {number}"
-            )  # fmt: skip
-            if track is not None:
-                group[rows] = len(tracks)
-                tracks.append(track)
+            track = track_of(body, rows, footage.times, _size(cloud, rows), tolerance, f"thing {number}")
+            residual = _residual(body, rows, cloud.means.numpy()[rows], footage.times, tolerance)
+            if track is None and residual is not None:  # what it bends with may stand
+                rows = residual.ids
+            if track is not None or residual is not None:
+                group[rows] = things
+                things += 1
+            tracks += [track] if track is not None else []
+            residuals += [residual] if residual is not None else []
         cameras = tuple(sorted(footage.cameras, key=lambda camera: camera.name))
         scene = Scene(cloud.replace(group=torch.from_numpy(group)), cameras=cameras)
-        if not tracks:
+        if not things:
             return scene
-        residuals: tuple[Residual, ...] = ()
-        if single is not None:
-            ids = np.argsort(order)[single.rows]  # where each row went
-            by = np.argsort(ids)
-            residuals = (Residual(ids[by], footage.times, single.basis, single.weights[by]),)
         first, last = float(footage.times[0]), float(footage.times[-1])
-        return scene.replace(motion=Motion(tuple(tracks), (), residuals, first, last))
+        return scene.replace(motion=Motion(tuple(tracks), (), tuple(residuals), first, last))
 
     def _tell(self, loss: float, steps: int, share: float, gaussians: int) -> None:
         """Report progress now and then."""
@@ -356,6 +343,17 @@ class _Film:
 def _share(joint: Joint, steps: int | None, seconds: float | None) -> float:
     """Completed share of the training of all together."""
     return min(1.0, joint.steps / max(steps, 1) if steps is not None else joint.seconds / max(seconds or 0.0, 1e-6))
+
+
+def _residual(
+    body: Body, ids: NDArray[np.int64], means: NDArray[np.float32], times: F64, tolerance: float
+) -> Residual | None:  # fmt: skip
+    """The displacements of a body that bends, of as low a rank as keeps them within a tolerance (scene units)."""
+    if body.bend is None:
+        return None
+    basis, weights = body.bend.low_rank(means, tolerance)
+    moves = np.linalg.norm(np.einsum("tb,nbc->tnc", basis, weights), axis=2).max(axis=0, initial=0.0) > tolerance
+    return Residual(ids[moves], times, basis, weights[moves]) if moves.any() else None
 
 
 def _size(cloud: GaussianCloud, rows: NDArray[np.int64]) -> float:

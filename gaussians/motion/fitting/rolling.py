@@ -23,6 +23,7 @@ RADII = np.geomspace(0.74, 1.2, 49)  # of the ball's radius, each one per cent m
 LEAST_WAY = 3.0  # of the ball's radius: what goes less far does not roll
 ROUND = 0.25  # of the radius: how far from the surface a Gaussian may be that is taken to be on it
 SHARE = 0.75  # of the Gaussians of a body that are on the surface of a ball
+PATCH = 0.8  # length of the mean of unit vectors to its Gaussians, 0.5 for half a ball: more is a patch of no ball
 TRUER = 0.97  # of the variance of colours with its own turns, below which a body rolls
 FACING = 0.3  # cosine between normal and sight from which a point of the surface is seen
 FRAMES = 200  # in which they are looked at
@@ -57,7 +58,10 @@ class Ball:
             centre, radius = found[:3], float(np.sqrt(max(found[3] + found[:3] @ found[:3], 1e-12)))
             off = np.linalg.norm(means - centre, axis=1) / radius - 1
             own = weights / (1 + (off / (0.2 * ROUND)) ** 2)
-        return cls(centre, radius) if np.average(np.abs(off) < ROUND, weights=weights) >= SHARE else None
+        out = (means - centre) / np.maximum(np.linalg.norm(means - centre, axis=1, keepdims=True), 1e-12)
+        around = float(np.linalg.norm(np.average(out, axis=0, weights=weights)))
+        on = np.average(np.abs(off) < ROUND, weights=weights)
+        return cls(centre, radius) if on >= SHARE and around <= PATCH else None
 
     def rolled(self, body: Body, footage: Footage) -> tuple[Ball, Body] | None:
         """The ball and a body rolling along its path, if the colours of its surface are steadier so than with its own

@@ -25,6 +25,7 @@ Flags = NDArray[np.bool_]
 
 SEEN = 0.2  # of the largest weight of a Gaussian in any picture, from which a picture counts as showing it
 GONE = 0.75  # share of a Gaussian's weight on changed pixels, over the pictures that show it, from which it is gone
+PARTLY = 0.3  # the same of what may bend with others that are gone
 FAINT = 0.15  # opacity below which a Gaussian says nothing
 ALIKE = 0.8  # overlap of the times at which two neighbours are gone, from which they are of one thing
 NEAR = 5.0  # pixels, at the distance of the cameras' radius: as near are Gaussians that touch
@@ -46,8 +47,12 @@ def weights(columns: Columns, camera: Camera, masks: Sequence[Flags | F32]) -> F
     return np.concatenate(found, axis=1)
 
 
-def gone(columns: Columns, footage: Footage) -> Flags:
-    """`[N, T]` whether each Gaussian of the start is gone at each time: hidden or elsewhere."""
+def gone(columns: Columns, footage: Footage, share: float = GONE) -> Flags:
+    """`[N, T]` whether each Gaussian of the start is gone at each time: hidden or elsewhere.
+
+    Args:
+        share: of its weight that is on changed pixels then.
+    """
     count, times = len(columns[0]), len(footage.times)
     total, changed, known = np.zeros((3, count, times), np.float32)
     each, most = [], np.zeros(count, np.float32)
@@ -64,11 +69,16 @@ def gone(columns: Columns, footage: Footage) -> Flags:
         changed[:, own] += np.where(shows[:, None] > 0, found[:, 1:], 0)
         known[:, own] += shows[:, None] > 0
     opaque = (columns[3] > FAINT) & (most > 0.02)
-    flags: Flags = np.asarray(opaque[:, None] & (known > 0) & (changed > GONE * total))
+    flags: Flags = np.asarray(opaque[:, None] & (known > 0) & (changed > share * total))
     if footage.at_first:  # one picture a time does not show all sides: they are as they were when they were seen last
         last = np.maximum.accumulate(np.where(known > 0, np.arange(times), 0), axis=1)
         flags = np.take_along_axis(flags, last, axis=1)
     return flags
+
+
+def reach(footage: Footage) -> float:
+    """How near Gaussians are that touch, scene units."""
+    return NEAR * footage.radius / footage.cameras[0].fx
 
 
 def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.int64]]:
@@ -84,8 +94,7 @@ def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.i
     if len(rows) < LEAST:
         return []
     means, own = columns[0][rows], flags[rows].astype(np.float32)
-    reach = NEAR * footage.radius / footage.cameras[0].fx
-    pairs = cKDTree(means).query_pairs(reach, output_type="ndarray")
+    pairs = cKDTree(means).query_pairs(reach(footage), output_type="ndarray")
     both = (own[pairs[:, 0]] * own[pairs[:, 1]]).sum(axis=1)
     either = np.maximum(own[pairs[:, 0]], own[pairs[:, 1]]).sum(axis=1)
     pairs = pairs[both >= ALIKE * either]
@@ -93,6 +102,21 @@ def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.i
     _, labels = connected_components(graph, directed=False)
     found = [rows[labels == k] for k in np.flatnonzero(np.bincount(labels) >= LEAST)]
     return sorted(found, key=lambda r: -float(flags[r].sum()))
+
+
+def around(columns: Columns, footage: Footage, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Rows, and those beside them of which a part changes, from one to the next, with all that touches these: what
+    bends hardly changes where it is fastened, and within an even colour."""
+    own = np.zeros(len(columns[0]), bool)
+    own[rows] = True
+    some = np.flatnonzero(own | (gone(columns, footage, PARTLY).sum(axis=1) >= 2))
+    means = columns[0]
+    pairs = cKDTree(means[some]).query_pairs(reach(footage), output_type="ndarray")
+    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(some), len(some)))
+    _, labels = connected_components(graph, directed=False)
+    joined = some[np.isin(labels, labels[own[some]])]
+    away, _ = cKDTree(means[joined]).query(means, distance_upper_bound=reach(footage))
+    return np.flatnonzero((np.isfinite(away) & (columns[3] > FAINT)) | own)
 
 
 def halves(rows: NDArray[np.int64], flags: Flags) -> list[NDArray[np.int64]]:

@@ -85,6 +85,8 @@ def at_all_times(body: Body, some: F64, times: F64) -> Body:
     """
     if len(some) == len(times):
         return body
+    if body.bend is not None:
+        return replace(at_all_times(replace(body, bend=None), some, times), bend=body.bend.at(some, times))
     if body.line is not None:
         return body.on(replace(body.line, values=np.interp(times, some, body.line.values)))
     after = np.clip(np.searchsorted(some, times, side="right"), 1, len(some) - 1)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,13 @@ DIFFERENCE = 0.02  # of the body's size: a step of which two renders tell a deri
 APART = 0.02  # of the body's size: poses that are nearer are the same
 
 Pose = tuple[F64, F64]  # quaternion [4] and offset [3]
+
+
+class Placed(Protocol):
+    """What says where Gaussians are at a time of the frames."""
+
+    def placed(self, t: int, means: F32, quats: F32) -> tuple[F32, F32]:
+        """Means `[N, 3]` and quaternions `[N, 4]` at a time, from those of the first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,9 +205,16 @@ class Tracker:
     def errors(self, t: int, choices: Sequence[Pose]) -> tuple[F64, int]:
         """`[M]` squared difference of the rendered to the taken pictures of a time with the body at poses, all in the
         same parts of the same pictures; and how many pixels these have."""
+        return self._compared(t, [Body(self.pivot, q[None], o[None]).placed(0, *self._own[:2]) for q, o in choices])
+
+    def errors_of(self, t: int, bodies: Sequence[Placed]) -> tuple[F64, int]:
+        """As `errors`, with the Gaussians where bodies have them at the time."""
+        return self._compared(t, [body.placed(t, *self._own[:2]) for body in bodies])
+
+    def _compared(self, t: int, placed: Sequence[tuple[F32, F32]]) -> tuple[F64, int]:
+        """As `errors`, with the Gaussians at means and quaternions."""
         self._check()
-        placed = [Body(self.pivot, q[None], o[None]).placed(0, self._own[0], self._own[1]) for q, o in choices]
-        found, pixels = np.zeros(len(choices)), 0
+        found, pixels = np.zeros(len(placed)), 0
         for view in self._views(np.concatenate([means for means, _ in placed]), t, 0.0):
             pixels += view.photo.shape[0] * view.photo.shape[1]
             for k, (means, quats) in enumerate(placed):
@@ -213,6 +228,41 @@ class Tracker:
         errors, _ = self.errors(t, [(body.quats[0], body.offsets[0])])
         self.moving = kept
         return float(errors[0])
+
+    def pull(self, body: Body, t: int, views: Sequence[View]) -> tuple[float, F64]:
+        """Squared difference in some pictures of a time, and its gradient by displacements `[n, 3]` of the body's
+        Gaussians before it is placed."""
+        self._check()
+        means, quats = body.placed(t, *self._own[:2])
+        value, slope = 0.0, np.zeros(means.shape)
+        for view in views:
+            off, found = self._found(view, means, quats)
+            value, slope = value + off, slope + found.means[len(view.rest[0]) :]
+        return value, slope @ keys.matrices(body.quats[t])
+
+    def views(self, body: Body, t: int) -> list[View]:
+        """The pictures around the body at a time, those that show it largest."""
+        return self._views(body.placed(t, *self._own[:2])[0], t, 0.0)
+
+    def rests(self, body: Body, t: int, since: int) -> bool:
+        """Whether nothing changed around the body since a time at which it was as it is at the other."""
+        here = body.placed(t, *self._own[:2])
+        views = self._views(here[0], t, 0.0)
+        return not views or self._rests(t, since, views, here)
+
+    def area(self, body: Body, t: int) -> int:
+        """Pixels at which the body makes a difference at a time, in the pictures that show it largest."""
+        placed, found = body.placed(t, *self._own[:2]), 0
+        for view in self.views(body, t):
+            both = _joined(view.rest, (*placed, *self._own[2:]))
+            seen, bare = (gradient.draw(columns, view.camera, BLACK).rgb for columns in (both, view.rest))
+            found += int((np.abs(seen - bare).max(axis=2) > MATTERS).sum())
+        return found
+
+    @property
+    def means(self) -> F32:
+        """`[n, 3]` of its Gaussians at the first time."""
+        return self._own[0]
 
     def slope(self, body: Body, t: int) -> tuple[F64, F64]:
         """Gradient of the squared difference at a time by a further turn about the body's middle and by a shift."""
@@ -374,16 +424,22 @@ class Tracker:
             body.quats[t] = turned(body.quats[t], -move[3:] / self.size)
         _, body.quats[t], body.offsets[t] = best
 
-    def _slope(self, view: _View, means: F32, quats: F32, centre: F64) -> tuple[float, F64, F64]:
+    def _slope(self, view: View, means: F32, quats: F32, centre: F64) -> tuple[float, F64, F64]:
+        """Squared difference in a picture, and its gradient by a further turn and a shift."""
+        value, found = self._found(view, means, quats)
+        start = len(view.rest[0])
+        turn, shift = pose_gradient(means, quats, centre, found.means[start:], found.quats[start:])
+        return value, turn, shift
+
+    def _found(self, view: View, means: F32, quats: F32) -> tuple[float, gradient.Gradients]:
+        """Squared difference in a picture, and its gradient by what stands still and by the body, in this order."""
         columns = _joined(view.rest, (means, quats, *self._own[2:]))
         drawn = gradient.draw(columns, view.camera, BLACK)
         off = unlike(drawn, view.photo)
         found = gradient.draw_backward(drawn, 2 * off, -2 * (off * view.photo).sum(axis=2))
-        start = len(view.rest[0])
-        turn, shift = pose_gradient(means, quats, centre, found.means[start:], found.quats[start:])
-        return float((off**2).sum()), turn, shift
+        return float((off**2).sum()), found
 
-    def _views(self, means: F32, t: int, ahead: float) -> list[_View]:
+    def _views(self, means: F32, t: int, ahead: float) -> list[View]:
         """The pictures around means at a time, those that show them largest; and what else is in them.
 
         Args:
@@ -406,7 +462,7 @@ class Tracker:
                 found.append((-area, c, (int(low[0]), int(low[1]), int(high[0]), int(high[1]))))
         return [self._view(c, t, window) for _, c, window in sorted(found)[:VIEWS]]
 
-    def _view(self, c: int, t: int, window: tuple[int, int, int, int]) -> _View:
+    def _view(self, c: int, t: int, window: tuple[int, int, int, int]) -> View:
         x0, y0, x1, y1 = (int(v) for v in window)
         camera = self._footage.cameras[c]
         pixels, reach, depth = self._near[c]
@@ -417,9 +473,9 @@ class Tracker:
         for own, body in self.moving:
             rest = _joined(rest, (*body.placed(t, own[0], own[1]), *own[2:]))
         photo = self._footage.shots[self._footage.frames[c, t]].colors[y0:y1, x0:x1]
-        return _View(c, part, rest, np.ascontiguousarray(photo), (x0, y0, x1, y1))
+        return View(c, part, rest, np.ascontiguousarray(photo), (x0, y0, x1, y1))
 
-    def _rests(self, t: int, since: int, views: Sequence[_View], here: tuple[F32, F32]) -> bool:
+    def _rests(self, t: int, since: int, views: Sequence[View], here: tuple[F32, F32]) -> bool:
         """Whether nothing changed around a body since a time: to the frames of then, or, of a camera that moves, to
         what it would see with the body `here` (means and quaternions)."""
         changed = area = 0
@@ -453,7 +509,7 @@ class Tracker:
 
 
 @dataclass(frozen=True, eq=False)
-class _View:
+class View:
     """A picture around a body: which camera took it, the camera of the cropped picture, what stands still in it."""
 
     number: int

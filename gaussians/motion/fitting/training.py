@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...fit.adam import Adam
 from ...fit.densify import Strategy
 from ...fit.loss import BLACK, photometric
 from ...fit.parameters import parameter_gradients
@@ -24,68 +23,32 @@ SSIM = 0.2
 OFFSETS_LR = 8e-4  # of poses, of the radius of the cameras; a turn moves the Gaussians of a body as far
 POSES_DECAY = 0.1  # that rate at the end: a pose is trained by the frames of its time alone, in few steps
 LINE_LR = 0.3  # of a line's pivot and axis, of those of poses: they step at every frame
-SINGLE_LR = 2e-5  # of displacements of single Gaussians, of the radius of the cameras
-RANK = 3  # of those displacements: a drift, and a there and back
+TOGETHER = 0.01  # how far a node of what bends is drawn towards its neighbours at each step
 GROWS_UNTIL = 0.7  # share of the training after which no Gaussians are added
 WARM = 0.35  # the learning rate of means at the start, of that of a training from nothing
 
 
 @dataclass(eq=False)
 class _Moments:
-    """Adam's moments of the six numbers of each pose, or of the value of each time; and of the six of a line, last."""
+    """Adam's moments of rows of numbers: the six of each pose, or the value of each time, and the six of a line as the
+    last row; or the displacements of the nodes of each time."""
 
     first: F64
     second: F64
     steps: NDArray[np.int64]
 
     @classmethod
-    def none(cls, times: int) -> _Moments:
+    def none(cls, rows: int, width: int) -> _Moments:
         """No steps yet."""
-        return cls(np.zeros((times + 1, 6)), np.zeros((times + 1, 6)), np.zeros(times + 1, np.int64))
+        return cls(np.zeros((rows, width)), np.zeros((rows, width)), np.zeros(rows, np.int64))
 
     def direction(self, row: int, slope: F64) -> F64:
-        """The direction `[6]` of a step of a row by its gradient."""
+        """The direction of a step of a row by its gradient."""
         self.steps[row] += 1
         self.first[row] = 0.9 * self.first[row] + 0.1 * slope
         self.second[row] = 0.99 * self.second[row] + 0.01 * slope**2
         n = int(self.steps[row])
         return np.asarray(self.first[row] / (1 - 0.9**n) / (np.sqrt(self.second[row] / (1 - 0.99**n)) + 1e-15))
-
-
-@dataclass(eq=False)
-class Single:
-    """Displacements of single Gaussians before their body is placed: `sum over b of basis[t, b] * weights[:, b]`.
-
-    Attributes:
-        rows: `[n]` of the parameters, whose order does not change meanwhile.
-        basis: `[T, B]`, 0 at the first time.
-        weights: `[n, B, 3]` scene units.
-        adam: of the weights.
-    """
-
-    rows: NDArray[np.int64]
-    basis: F64
-    weights: NDArray[np.float32]
-    adam: Adam
-
-    @classmethod
-    def none(cls, rows: NDArray[np.int64], times: F64) -> Single:
-        """No displacements yet, of Gaussians at some rows."""
-        share = (times - times[0]) / (times[-1] - times[0])
-        basis = np.stack([share, *(np.sin(k * np.pi * share) for k in range(1, RANK))], axis=1)
-        weights = np.zeros((len(rows), RANK, 3), np.float32)
-        return cls(rows, basis, weights, Adam.of(weights))
-
-    def displaced(self, means: NDArray[np.float32], t: int) -> NDArray[np.float32]:
-        """All means at a time of the frames, before bodies are placed."""
-        found = means.copy()
-        found[self.rows] += np.einsum("b,nbc->nc", self.basis[t], self.weights).astype(np.float32)
-        return found
-
-    def step(self, slope: NDArray[np.float32], t: int, rate: float) -> None:
-        """A step by the gradient of all means `[N, 3]` at a time."""
-        each = np.einsum("b,nc->nbc", self.basis[t], slope[self.rows]).astype(np.float32)
-        self.adam.step(self.weights, np.ascontiguousarray(each), rate)
 
 
 class Joint:
@@ -97,16 +60,18 @@ class Joint:
         footage: frames to train on.
         strategy: densifies and prunes.
         rng: draws the order of frames.
-        single: displacements of single Gaussians; with them no Gaussians are added, and poses stay.
     """
 
     def __init__(
-        self, parameters: Labelled, bodies: list[Body], footage: Footage, strategy: Strategy, rng: np.random.Generator,
-        single: Single | None = None,
+        self, parameters: Labelled, bodies: list[Body], footage: Footage, strategy: Strategy, rng: np.random.Generator
     ) -> None:  # fmt: skip
-        self.parameters, self.bodies, self._footage, self._rng, self._single = parameters, bodies, footage, rng, single
+        self.parameters, self.bodies, self._footage, self._rng = parameters, bodies, footage, rng
         self._strategy = strategy
-        self._moments = [_Moments.none(len(footage.times)) for _ in bodies]
+        self._moments = [_Moments.none(len(footage.times) + 1, 6) for _ in bodies]
+        self._of_nodes = [
+            None if body.bend is None else _Moments.none(len(footage.times), 3 * len(body.bend.nodes))
+            for body in bodies
+        ]
         self._runs = [{t: run for run in body.runs for t in range(*run)} for body in bodies]
         self._order: list[int] = []
         self.steps, self.seconds = 0, 0.0
@@ -123,24 +88,19 @@ class Joint:
         frame = self._order.pop()
         shot, t = self._footage.shots[frame], int(self._footage.when[frame])
         parameters = self.parameters
-        columns = parameters.columns()
-        if self._single is not None:
-            columns = (self._single.displaced(columns[0], t), *columns[1:])
-        columns = placed(columns, parameters.labels, self.bodies, t)
+        columns = placed(parameters.columns(), parameters.labels, self.bodies, t)
         drawn = gradient.draw(columns, shot.camera, BLACK)
         loss, slope = photometric(drawn.rgb, shot.colors, SSIM)
         found = gradient.draw_backward(drawn, slope, np.zeros(slope.shape[:2], np.float32))
         rate = WARM * LR_DECAY**progress
         self._pull_back(columns, found, t, OFFSETS_LR * self._footage.radius * POSES_DECAY**progress)
-        if self._single is not None and t > 0:
-            self._single.step(found.means, t, SINGLE_LR * self._footage.radius)
         gradients = parameter_gradients(found, columns[2], columns[3])
         self._strategy.regularise(gradients, columns[2], columns[3])
         means_lr = MEANS_LR * self._footage.radius * rate
         parameters.step(gradients, means_lr)
         self._strategy.after_step(parameters, found.centers, (shot.camera.width, shot.camera.height), means_lr)
         self.steps += 1
-        if self._single is None and self.steps % REFINE_EVERY == 0 and progress < GROWS_UNTIL:
+        if self.steps % REFINE_EVERY == 0 and progress < GROWS_UNTIL:
             self._strategy.refine(parameters, self.steps)
             parameters.take(morton_order(parameters.means))
         self.seconds += time.perf_counter() - started
@@ -161,14 +121,31 @@ class Joint:
             if not len(rows):
                 continue
             d_means, d_quats = found.means[rows], found.quats[rows]
-            if self._single is None and np.any(d_means):
+            if np.any(d_means):
                 centre = body.pivot + body.offsets[t]
                 turn, shift = pose_gradient(columns[0][rows], columns[1][rows], centre, d_means, d_quats)
                 reach = float(np.sqrt(((columns[0][rows] - centre) ** 2).sum(axis=1).mean()))
                 self._step_pose(number - 1, t, turn, shift, far, far / max(reach, 1e-9))
             matrix = keys.matrices(body.quats[t])
             found.means[rows] = (d_means @ matrix).astype(np.float32)
+            if np.any(d_means):
+                self._step_nodes(number - 1, t, rows, found.means[rows], far)
             found.quats[rows] = (d_quats @ left(body.quats[t])).astype(np.float32)
+
+    def _step_nodes(
+        self, number: int, t: int, rows: NDArray[np.int64], by_mean: NDArray[np.float32], far: float
+    ) -> None:
+        """A step of the displacements of a body that bends at a time, by the gradient `[n, 3]` of its displaced means.
+
+        The shape is the same at all times of a rest, and that of the first time stays.
+        """
+        body, moments, run = self.bodies[number], self._of_nodes[number], slice(*self._runs[number][t])
+        if body.bend is None or moments is None or not run.start:
+            return
+        slope = body.bend.shares(self.parameters.means[rows]).T @ by_mean
+        move = moments.direction(run.start, slope.reshape(-1).astype(np.float64)).reshape(slope.shape)
+        moves = body.bend.together(body.bend.moves[run.start] - far * move, TOGETHER)
+        self.bodies[number] = replace(body, bend=body.bend.with_moves(run, moves))
 
     def _step_pose(self, number: int, t: int, turn: F64, shift: F64, far: float, wide: float) -> None:
         """A step of the pose of a body at a time by its gradient, or of its place on its line and of the line.

@@ -26,6 +26,7 @@ from . import surface_depth as surface
 Array = NDArray[Any]
 
 LIMITS = (np.float32(convention.ALPHA_MAX), np.float32(convention.T_MIN), np.float32(layout.Q_MAX))
+ALONE = 4096, 80 * 60  # Gaussians and pixels, up to which a picture is drawn by one thread
 MAX_ENTRIES = 1 << 26  # (footprint, tile) pairs held at once (256 MB); an image with more is drawn in strips
 
 
@@ -64,6 +65,11 @@ def make_image(camera: Camera) -> tuple[Array, ...]:
     )  # fmt: skip
 
 
+def workers(rows: int, pixels: int) -> int:
+    """Number of threads for a picture: a small one is done before a second thread has begun."""
+    return 1 if rows <= ALONE[0] and pixels <= ALONE[1] else compiled.workers()
+
+
 def draw_strips(
     columns: tuple[Array, ...], camera: Camera, background: Vec3, out: tuple[Array, ...]
 ) -> Iterator[tuple[int, int, Bins]]:
@@ -72,7 +78,8 @@ def draw_strips(
     Yields:
         first row and end row of the strip, and its sorted footprints (the backward pass needs them).
     """
-    colors, count = tuple(np.float32(channel) for channel in background), compiled.workers()
+    colors = tuple(np.float32(channel) for channel in background)
+    count = workers(len(columns[0]), camera.width * camera.height)
     scratch, only = blend.make_scratch(count), blend.only_group(columns[5])
     for top, bottom, bins in _strips(columns, camera, count, 0, camera.height):
         strip = tuple(channel[top:bottom] for channel in out)

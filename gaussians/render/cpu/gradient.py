@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ... import compiled
 from ...camera import Camera, Vec3
-from . import LIMITS, Bins, _counter, blend_backward, draw_strips, make_image, project_backward
+from . import LIMITS, Bins, _counter, blend_backward, draw_strips, make_image, project_backward, workers
 
 Array = NDArray[Any]
 
@@ -51,7 +51,7 @@ def draw(columns: tuple[Array, ...], camera: Camera, background: Vec3) -> Drawn:
 
 def draw_backward(picture: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
     """Propagate the gradient of an image, `[H, W, 3]` and `[H, W]`, back to the columns. Same input, same bytes."""
-    columns, count = picture.columns, compiled.workers()
+    columns, count = picture.columns, workers(len(picture.columns[0]), d_alpha.size)
     out = *(np.zeros_like(column) for column in columns), np.zeros((len(columns[0]), 2), np.float32)
     scratch = blend_backward.make_scratch(count)
     for top, bottom, bins in picture.strips:

@@ -225,7 +225,7 @@ def test_what_stands_still_as_well_joins_no_body(swinging, monkeypatch):
     both[np.flatnonzero(labels == 0)[:40]] = 2
     labelled, bodies = labelled_of(columns, both), [body, body.on(body.line)]
     # Of its own path, at rest, and with the other: the other is better by less than the pictures tell.
-    monkeypatch.setattr(Tracker, "errors", lambda self, t, poses: (np.array([1.0, 1.005, 1.004])[: len(poses)], 1))
+    monkeypatch.setattr(Tracker, "errors_of", lambda self, t, found: (np.array([1.0, 1.005, 1.004])[: len(found)], 1))
     Finder(footage, 0, np.random.default_rng(0), Budget(None), lambda: None)._sort_out(labelled, bodies)
     assert (labelled.labels != 2).all() and not (labelled.labels[both == 2] == 1).any()
 
