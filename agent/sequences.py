@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -61,9 +62,27 @@ def read(pattern: Path, fps: float | None) -> tuple[Scene, Report, int]:
     paths = files_of(pattern)
     first, report = load_with_report(paths[0])
     frames = [lambda: first.cloud, *(lambda path=path: load(path).cloud for path in paths[1:])]
-    found = motion_of(frames, [i / fps for i in range(len(paths))])
-    report = replace(report, notes=(*report.notes, *told(found, len(paths))))
+    times, gaps = times_of(paths, fps)
+    found = motion_of(frames, times)
+    report = replace(report, notes=(*report.notes, *gaps, *told(found, len(paths))))
     return first.replace(motion=found.motion), report, sum(path.stat().st_size for path in paths)
+
+
+def times_of(paths: list[Path], fps: float) -> tuple[list[float], tuple[str, ...]]:
+    """The seconds of the files of a sequence, and what is to be said of gaps in it.
+
+    Files are numbered by the first number by which their names differ; the smallest step between two numbers is one
+    file, so that a missing file leaves a gap. Names without such numbers follow one another.
+    """
+    parts = [[int(n) for n in re.findall(r"\d+", path.stem)] for path in paths]
+    numbers = next((list(n) for n in zip(*parts, strict=False) if len(set(n)) == len(paths)), list(range(len(paths))))
+    if len({len(part) for part in parts}) > 1 or numbers != sorted(numbers):
+        numbers = list(range(len(paths)))
+    steps = [b - a for a, b in itertools.pairwise(numbers)]
+    places = [(n - numbers[0]) / min(steps) for n in numbers]
+    wide = [f"{a.name} and {b.name}" for a, b, step in zip(paths, paths[1:], steps, strict=False) if step > min(steps)]
+    notes = (f"files are missing between {', '.join(wide)}: what moves goes on evenly there",) if wide else ()
+    return [place / fps for place in places], notes
 
 
 def told(found: Found, files: int) -> tuple[str, ...]:
@@ -89,14 +108,14 @@ def _bodies(found: Found) -> str:
 
 
 def write(scene: Scene, pattern: Path, span: tuple[float, float], fps: float | None, force: bool) -> dict[str, Any]:
-    """Write a scene at times from the start of a span to its stop, one file each; all of them or none.
+    """Write a scene at times from the start of a span to its stop, one file each; all of them or none. Every file has
+    all Gaussians, those that are hidden then with opacity 0.
 
     Raises:
         UserError: no rate is given, there would be too many files, or one exists and `force` is not set.
         FileError: they cannot be written.
     """
     from ..gaussians.files import save
-    from ..gaussians.motion.at import at
     from .output_files import refuse_existing, write_whole
     from .terminal.output import terminal
 
@@ -110,10 +129,22 @@ def write(scene: Scene, pattern: Path, span: tuple[float, float], fps: float | N
 
     def make(i: int, path: Path) -> None:
         terminal.progress(f"writing {i + 1} of {len(times)}", i / len(times))
-        save(at(scene, times[i]), path)
+        save(_whole(scene, times[i]), path)
 
     with terminal.interruptible():
         write_whole(paths, make, force)
     terminal.clear()
     size = sum(path.stat().st_size for path in paths)
     return {"path": str(pattern), "files": len(paths), "bytes": size, "time": list(span), "fps": fps}
+
+
+def _whole(scene: Scene, time: float) -> Scene:
+    """The scene at a time with all its Gaussians."""
+    from ..gaussians.motion.at import at, rows_at
+
+    found = at(scene, time)
+    if scene.motion is None or len(found.cloud) == len(scene.cloud):
+        return found
+    cloud, gone = rows_at(scene.cloud, scene.motion, time)
+    assert gone is not None
+    return found.replace(cloud=cloud.replace(opacities=cloud.opacities.masked_fill(gone, 0.0)))

@@ -65,9 +65,11 @@ def command(
         Path | None, typer.Option("--pictures", metavar="FOLDER", help="Write a picture of the object on the way here.")
     ] = None,
     up: Annotated[
-        Literal["auto", "x", "y", "z"],
+        Literal["auto", "x", "y", "z", "-x", "-y", "-z"],
         typer.Option(
-            "--up", help="Axis that points up in what a program writes; auto: y, or as the kind's size tells."
+            "--up",
+            help="Axis that points up in what a program writes (-y in the axes of cameras, as in COLMAP); auto: y, "
+            "or x or z as the kind's size tells.",
         ),
     ] = "auto",
     device: Annotated[

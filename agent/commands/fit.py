@@ -179,11 +179,14 @@ def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | N
     if isinstance(done, Still):
         return done
     save(done.scene, output, force=force)
-    tracks = done.scene.motion.tracks if done.scene.motion is not None else ()
+    tracks, residuals = (
+        (done.scene.motion.tracks, done.scene.motion.residuals) if done.scene.motion is not None else ((), ())
+    )
     data = {
         "path": str(output), "gaussians": len(done.scene.cloud), "bytes": output.stat().st_size,
         "psnr": round(done.quality.psnr, 4), "ssim": round(done.quality.ssim, 4), "times": len(times),
         "tracks": [{"name": t.name, "kind": t.kind, "keys": len(t.times), "gaussians": len(t)} for t in tracks],
+        "residuals": [{"rank": r.basis.shape[1], "gaussians": len(r.ids)} for r in residuals],
         "steps": done.steps, "seconds": round(done.seconds, 2), "seed": settings.seed,
     }  # fmt: skip
     if report is not None:
@@ -191,9 +194,10 @@ def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | N
 
         with writing(report / "report.json", force=force) as file:
             file.write((json.dumps(data, indent=2) + "\n").encode())
-    told = ", ".join(f"{t.name} ({t.kind}, {len(t.times)} keys, {len(t):,} Gaussians)" for t in tracks)
+    each = [f"{t.name} ({t.kind}, {len(t.times)} keys, {len(t):,} Gaussians)" for t in tracks]
+    each += [f"{len(r.ids):,} Gaussians change their shape (rank {r.basis.shape[1]})" for r in residuals]
     how = f"{done.quality.psnr:.2f} dB, SSIM {done.quality.ssim:.3f} on {len(done.quality.each)} held-out frames"
-    moves = f"moves: {told}" if tracks else "what was followed hardly moves: the scene stands still"
+    moves = f"moves: {', '.join(each)}" if each else "what was followed hardly moves: the scene stands still"
     if done.cut:
         moves += f"\nnote: the search for what moves ended early, {SHORT}"
     terminal.result(

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import UserError
+from ..terminal.output import terminal
 
 if TYPE_CHECKING:
     from ...gaussians.motion.motion import Motion
@@ -31,6 +32,9 @@ def time_span(text: str, motion: Motion | None, what: str) -> tuple[float, float
         raise UserError("--time takes seconds as in 2.5 or 0:5")
     if last < first:
         raise UserError(f"--time {text} ends before it begins; write the earlier time first")
+    if first < motion.start or last > motion.stop:
+        lasts = f"{what} lasts from {motion.start:g} to {motion.stop:g} s"
+        terminal.say(f"note: {lasts}; before and after, it stays as it is")
     return first, last
 
 

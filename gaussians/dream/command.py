@@ -19,7 +19,8 @@ from ..errors import BackendError, ScenewrightError, UserError
 PREFIX = "command:"
 PLACES = ("{prompt}", "{image}", "{output}")
 OUTPUT = "object.ply"
-MOST = 2_000_000  # Gaussians of an object
+LEAST, MOST = 8, 2_000_000  # Gaussians of an object: that can be seen, and in all
+FAINT = 0.05  # opacity up to which a Gaussian is not seen
 _TOLD = 300  # characters of what a program says when it fails
 
 
@@ -100,6 +101,12 @@ def run(spec: str, prompt: str, image: Path | None, seconds: float) -> GaussianC
             cloud = load(output if output in written else written[0]).cloud
         except ScenewrightError as error:
             raise BackendError(f"what {command[0]} wrote cannot be used: {error}") from error
-    if not 0 < len(cloud) <= MOST:
-        raise BackendError(f"{command[0]} wrote {len(cloud):,} Gaussians; an object has 1 to {MOST:,}")
+    seen = int((cloud.opacities > FAINT).sum())
+    if seen < LEAST:
+        raise BackendError(
+            f"{command[0]} wrote {len(cloud):,} Gaussians, of which {seen} can be seen (opacity above {FAINT:g}); an "
+            f"object has {LEAST} or more"
+        )
+    if len(cloud) > MOST:
+        raise BackendError(f"{command[0]} wrote {len(cloud):,} Gaussians; an object has {MOST:,} at most")
     return cloud

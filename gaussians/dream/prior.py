@@ -10,7 +10,6 @@ import torch
 
 from ..assets.modeling import imported
 from ..assets.modeling.make import make
-from ..camera import Vec3
 from ..cloud import GaussianCloud
 from ..color import known
 from ..errors import UserError
@@ -75,16 +74,14 @@ def standing(cloud: GaussianCloud, prompt: str, height: float | None = None) -> 
     """
     points = cloud.means.to(torch.float64).numpy()
     low, high = np.quantile(points, [0.005, 0.995], axis=0)
-    span = np.maximum(high - low, 1e-6)
-    factor = float(height / span[2]) if height is not None else _usual(prompt, (span[0], span[1], span[2]))
+    longest = max(float((high - low).max()), 1e-30)
+    factor = _longest(prompt) / longest if height is None else height / max(float(high[2] - low[2]), 1e-3 * longest)
     foot = torch.from_numpy(np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]]).astype(np.float32))
     placed = cloud.replace(means=(cloud.means - foot) * factor, scales=cloud.scales * factor)
     return Scene(placed, frame=_FRAME)
 
 
-def _usual(prompt: str, span: Vec3) -> float:
-    """Metres a unit that give an object of that box the size of its kind."""
+def _longest(prompt: str) -> float:
+    """The longest side of a thing of its kind as sold, metres."""
     kind = kind_of(prompt)
-    if kind is None:
-        return UNKNOWN / max(span)
-    return float(np.exp(np.mean([np.log(max(u, 1e-3) / s) for u, s in zip(kind.usual_size, span, strict=True)])))
+    return UNKNOWN if kind is None else max(kind.usual_size)

@@ -13,16 +13,20 @@ from ..cloud import GaussianCloud
 from ..rotations import from_matrix, multiply, normalize
 from ..world.kinds import Kind
 
-Up = Literal["auto", "x", "y", "z"]
+Up = Literal["auto", "x", "y", "z", "-x", "-y", "-z"]
 F64 = NDArray[np.float64]
 
 USUAL: Up = "y"  # of what programs write that turn a picture into Gaussians
 _CLEARER = 1.3  # factor by which proportions have to fit better than as usual
-# Rows: our x, y, z in the axes of the file. The front of files whose y is up is +z; of those whose z is up, -y.
+# Rows: our x, y, z in the axes of the file. The front of files whose y is up is +z; of those whose z is up, -y. In the
+# axes of a camera (COLMAP) -y is up, and what is seen from the front faces the camera, -z.
 TURNS: dict[str, F64] = {
     "x": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
     "y": FROM_Y_UP,
     "z": np.eye(3),
+    "-x": np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]]),
+    "-y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+    "-z": np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]),
 }
 
 
@@ -31,7 +35,8 @@ def upright(cloud: GaussianCloud, kind: Kind | None, up: Up = "auto") -> tuple[G
 
     Args:
         kind: of the object; None if unknown.
-        up: their axis that points up; "auto" takes y, or another axis if the proportions of the kind say so clearly.
+        up: their axis that points up; "auto" takes y, or x or z if the proportions of the kind say so clearly. They
+            tell no head from foot.
     """
     points = cloud.means.to(torch.float64).numpy()
     axis = up if up != "auto" else _by_proportions(points, kind)
@@ -55,5 +60,5 @@ def _by_proportions(points: F64, kind: Kind | None) -> str:
         box = np.abs(TURNS[axis]) @ span
         return min(float(np.ptp(np.log(usual / sides))) for sides in (box, box[[1, 0, 2]]))
 
-    best = min(TURNS, key=off)
+    best = min(("x", "y", "z"), key=off)
     return best if off(USUAL) - off(best) > np.log(_CLEARER) else USUAL

@@ -129,6 +129,12 @@ class Course:
             return np.zeros(len(times))
         return np.asarray(np.linalg.norm(rotation_vectors(self.moving.poses(times)[0]), axis=1))
 
+    def tilts(self, times: F64) -> F64:
+        """`[T]` angle from the vertical of what of its moving piece is upright at the start, in [0, pi]."""
+        if self.moving is None:
+            return np.zeros(len(times))
+        return np.asarray(np.arccos(np.clip(self.moving.poses(times)[0] @ self.up @ self.up, -1, 1)))
+
     def grid(self, span: Span | None = None, step: float = STEP) -> F64:
         """Times of the scene, or of a span, for sampling."""
         return grid(*(span or (self.start, self.stop)), step)

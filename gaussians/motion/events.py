@@ -6,6 +6,7 @@ exact to a millisecond. Lengths are scene units, unless a name says metres.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -36,6 +37,7 @@ _SLOW = 0.02  # of the fastest speed: slower is still, so that smooth starts cou
 _JITTER = 0.008  # metres of way, of the fastest corner, under which a movement is noise of a fit
 _DROP = 0.08  # metres that a thing sinks, at least, to have fallen
 _STEEP = 0.7  # of the way: what sinks by less rolls or slides
+_TIPPED = math.radians(60)  # from the vertical: what leans by less has not tipped over
 _LEVEL = 0.12  # of the way in plan: less up and down than this is a bobbing walk, whose way is that in plan
 _OWN = ("touches", "moving", "still")
 
@@ -248,7 +250,8 @@ def movements(course: Course, unit: float = 1.0) -> list[Span]:
 
 
 def falls(course: Course, unit: float = 1.0) -> list[Span]:
-    """The spans in which a group falls: it sinks, and more than it moves to the side."""
+    """The spans in which a group falls: it sinks, and more than it moves to the side; or it tips over, and lies lower
+    then than it stood."""
     if not course.moves:
         return []
     times = course.grid()
@@ -259,7 +262,9 @@ def falls(course: Course, unit: float = 1.0) -> list[Span]:
     fastest = float(sinking(times).max())
     level = max(STILL * unit, _SLOW * fastest)
     found = joined(spans(sinking, times, level, 0.5 * level), PAUSE / 3)
-    return [s for s in found if _drop(course, s) > max(_DROP * unit, _STEEP * _way(course, s))]
+    found = [s for s in found if _drop(course, s) > max(_DROP * unit, _STEEP * _way(course, s))]
+    tipped = [s for s in movements(course, unit) if _tilt(course, s) > _TIPPED and _drop(course, s) > _DROP * unit]
+    return sorted([*found, *(s for s in tipped if not any(s[0] < b and a < s[1] for a, b in found))])
 
 
 def path_length(course: Course, span: Span | None = None) -> float:
@@ -343,6 +348,12 @@ def _swept(course: Course, span: Span) -> float:
 
 def _drop(course: Course, span: Span) -> float:
     return float(-displacement(course, span) @ course.up)
+
+
+def _tilt(course: Course, span: Span) -> float:
+    """How much farther from the vertical it is at the end of a span than at its start, radians."""
+    before, after = course.tilts(np.array(span))
+    return float(after - before)
 
 
 def _way(course: Course, span: Span) -> float:

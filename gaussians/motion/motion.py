@@ -316,6 +316,13 @@ class Motion:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.start) and math.isfinite(self.stop) and self.start <= self.stop):
             raise UserError(f"a motion must last from a start to a later stop, not from {self.start} to {self.stop} s")
+        parts: dict[str, type] = {"tracks": Track, "looks": Look, "residuals": Residual}
+        for name, kind in parts.items():
+            given = getattr(self, name)
+            if not isinstance(given, tuple) or not all(isinstance(each, kind) for each in given):
+                raise UserError(
+                    f"the {name} of a motion must be a tuple, as in ({name[:-1]},), not {type(given).__name__}"
+                )
         for number, track in enumerate(self.tracks):
             if not _rests(track, *pose(track, self.start)):
                 raise UserError(
@@ -326,6 +333,11 @@ class Motion:
             away = np.abs(residual.displacements(self.start)).max(initial=0.0)
             if away > AT_REST * max(1e-6, float(np.abs(residual.weights).max(initial=0.0))):
                 raise UserError(f"a residual is not 0 at the start of the motion ({self.start:g} s)")
+        ends = max((float(track.times[-1]) for track in self.tracks), default=self.start)
+        if self.stop == self.start < ends:
+            raise UserError(
+                f"a motion of no length: nothing would move; give its end, stop={ends:g} for all of its tracks"
+            )
 
     def __bool__(self) -> bool:
         """Whether anything changes with time."""
@@ -601,9 +613,12 @@ def _array(values: Any, name: str, shape: tuple[int, ...]) -> F64:
     """Finite numbers of a shape, -1 for any length. Raises UserError otherwise."""
     found = np.asarray(values, dtype=np.float64)
     fits = found.ndim == len(shape) and all(want in (-1, have) for want, have in zip(shape, found.shape, strict=True))
-    if not fits or not np.isfinite(found).all():
+    if not np.isfinite(found).all():
+        where = np.argwhere(~np.isfinite(found))[0].tolist()
+        raise UserError(f"{name} of a motion must be finite, but at {where} there is {found[tuple(where)]}")
+    if not fits:
         wanted = ", ".join("any" if n < 0 else str(n) for n in shape)
-        raise UserError(f"{name} of a motion must be finite numbers of shape [{wanted}], got {list(found.shape)}")
+        raise UserError(f"{name} of a motion must be numbers of shape [{wanted}], got {list(found.shape)}")
     return found
 
 

@@ -95,13 +95,13 @@ def motion_of(frames: Sequence[Callable[[], GaussianCloud]], times: Sequence[flo
 def _require_same(first: GaussianCloud, cloud: GaussianCloud, number: int) -> None:
     if len(cloud) != len(first):
         raise UserError(
-            f"picture {number} of the sequence has {len(cloud):,} Gaussians and the first one {len(first):,}; a "
+            f"file {number + 1} of the sequence has {len(cloud):,} Gaussians and the first one {len(first):,}; a "
             "sequence must hold the same Gaussians in the same order"
         )
     other = (cloud.scales - first.scales).abs() > _SAME * (cloud.scales + first.scales)
     if float(other.any(dim=1).float().mean()) > 0.5:
         raise UserError(
-            f"picture {number} of the sequence holds other Gaussians than the first one, or in another order; a "
+            f"file {number + 1} of the sequence holds other Gaussians than the first one, or in another order; a "
             "sequence must hold the same ones in the same order"
         )
 

@@ -11,8 +11,11 @@ from ...gaussians.assets.modeling.make import Asset
 from ...gaussians.camera import Vec3
 from ...gaussians.color import Rgb, name_of, rgb_to_lab
 from ...gaussians.dream.generating import Generator
+from ...gaussians.errors import BackendError
 from ...gaussians.world import kinds
 from .asset_folder import FolderAsset
+
+TALLER = 2.0  # times the height of its place, which a thing may have that is dreamt
 
 
 @dataclass(frozen=True)
@@ -34,12 +37,19 @@ class DreamtAssets:
         return imported.read(path, size, name), (f"{name}: made by {self.generator.spec}",)
 
     def take(self, label: str, size: Vec3, tint: Rgb | None, exact: bool) -> FolderAsset:
-        """The asset with the name `label`, fitted to `size`, None if the library draws it."""
+        """The asset with the name `label` in its own proportions, as large as its place in plan, `size`, lets it be;
+        None if the library draws it or it cannot be made."""
         if exact or _drawn(label):
             return FolderAsset(None)
         color = None if tint is None else name_of(rgb_to_lab(torch.tensor(tint)))
-        path = self.generator.path(_prompt(label, color))
-        return FolderAsset(imported.read(path, size, label), (f"{label}: made by {self.generator.spec}",))
+        try:
+            path = self.generator.path(_prompt(label, color))
+        except BackendError as error:
+            return FolderAsset(None, (f"{label}: {error}",))
+        own = imported.natural_size(path)
+        factor = min(size[0] / own[0], size[1] / own[1], TALLER * size[2] / own[2])
+        fitted = own[0] * factor, own[1] * factor, own[2] * factor
+        return FolderAsset(imported.read(path, fitted, label), (f"{label}: made by {self.generator.spec}",))
 
 
 def _drawn(name: str) -> bool:

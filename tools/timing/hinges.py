@@ -30,6 +30,9 @@ _THIN = 0.3  # of its width: a door or a lid is not thicker
 _OUT = 0.7  # of its depth: how far a drawer comes out
 _WIDE_OPEN = {"door": math.radians(80), "lid": math.radians(75)}
 _HANDLE = 1.2  # centimetres by which a handle stands out of a leaf
+_ASIDE = 0.2  # of a leaf's width from its middle, at least, is a handle that tells where it hangs
+_WITHIN, _HALFWAY = 0.43, 0.22  # of a leaf's width and height from its middle: where a handle is and no frame
+_FEW, _COMPACT = 4, 0.2  # points of a handle at least, and how far across they may lie, of the leaf's width
 _NEAR = 4.0  # centimetres: what is nearer to an edge holds it
 _CLEARLY = 1.6  # times as many points at one edge as at the other tell on which side a leaf hangs
 _SAMPLE = 20_000
@@ -114,13 +117,15 @@ def _door(scene: Scene, body: Body, points: F64, up: F64, name: str) -> Opening:
     local = points - center
     into = _room_side(scene, center, normal)
     out, side = local @ normal, local @ across
-    half = np.quantile(np.abs(out), 0.5)
-    stands_out = np.abs(out) > half + _HANDLE * cm
-    handle = side[stands_out & (np.abs(side) < 0.49 * size[wide])]
+    handle = _handle(local @ into, side / size[wide], local @ up / size[2], _HANDLE * cm)
+    if handle is None:
+        stands_out = np.abs(out) > np.quantile(np.abs(out), 0.5) + _HANDLE * cm
+        found = side[stands_out & (np.abs(side) < 0.49 * size[wide])] / size[wide]
+        handle = float(np.median(found)) if len(found) >= 8 else 0.0
     told = ""
     sign = 0.0
-    if len(handle) >= 8 and abs(float(np.median(handle))) > 0.2 * size[wide]:
-        sign = -float(np.sign(np.median(handle)))  # the hinge is on the other side
+    if abs(handle) > _ASIDE:
+        sign = -float(np.sign(handle))  # the hinge is on the other side
         told = "its handle is at the other side"
     else:
         held = [_held(scene, body, center + s * across * size[wide] / 2, across, up, size, cm) for s in (-1.0, 1.0)]
@@ -136,6 +141,25 @@ def _door(scene: Scene, body: Body, points: F64, up: F64, name: str) -> Opening:
     # Positive angles about `axis` take the free edge, which is at -sign * across, towards the room.
     axis = up if float(np.cross(up, -sign * across) @ into) > 0 else -up
     return Opening("door", np.asarray(axis), np.asarray(pivot), _WIDE_OPEN["door"], told)
+
+
+def _handle(off: F64, side: F64, height: F64, stands: float) -> float | None:
+    """Where the handle of a leaf is across, of its width from its middle; None if nothing stands out at one place.
+
+    A frame stands out at the edges and above, a handle within the leaf and about half-way up.
+
+    Args:
+        off: of the leaf's points towards the room, scene units.
+        side, height: of these across and up, of the size of the leaf from its middle.
+        stands: how far a handle stands out of the leaf, scene units.
+    """
+    within = (np.abs(side) < _WITHIN) & (np.abs(height) < _HALFWAY)
+    if within.sum() < 8:
+        return None
+    found = side[within & (off > np.quantile(off[within], 0.75) + stands)]
+    if len(found) < _FEW or float(np.ptp(np.quantile(found, [0.1, 0.9]))) > _COMPACT:
+        return None
+    return float(np.median(found))
 
 
 def _held(scene: Scene, body: Body, edge: F64, across: F64, up: F64, size: F64, cm: float) -> int:

@@ -114,6 +114,8 @@ def _keys(track: Track, warp: Warp) -> tuple[F64, F64]:
     times = warp.when(track.times)
     complete = len(warp.new) == 1 and len(times) == len(track.times)
     single = complete and (times[0] >= warp.new[0] or times[-1] <= warp.new[0])  # all of it is played at one rate
+    if single and track.kind == "spin" and times[-1] < warp.new[0]:  # it goes on until then
+        times = np.append(times, warp.new[0])
     if not single and warp.rate is None:
         times = np.unique(np.concatenate([times, np.array(warp.new)]))
         between = [np.arange(a, b, _STEP) for a, b in itertools.pairwise(times) if warp(b) != warp(a)]

@@ -164,15 +164,14 @@ class Finder:
         what touches them; in place."""
         for numbers in self._touching(labelled, bodies):
             self._check()
-            torn = np.flatnonzero(np.isin(labelled.labels, numbers))
-            tracker, parts = self._torn(labelled, bodies, numbers, torn)
-            times = sorted({t for _, body in parts.parts for t, _ in body.runs[1:]})
-            if not bends(tracker, parts, _some(times, LOOKS)):
-                continue
-            rows = around(labelled.columns(), self._footage, torn)
+            own = np.flatnonzero(np.isin(labelled.labels, numbers))
+            rows = around(labelled.columns(), self._footage, own)
             rows = rows[np.isin(labelled.labels[rows], [0, *numbers])]
-            tracker, parts = self._torn(labelled, bodies, numbers, rows)
-            bodies[numbers[0] - 1] = bent_best(tracker, parts, _some(times))
+            tracker, torn = self._torn(labelled, bodies, numbers, rows)
+            times = sorted({t for _, body in torn.parts for t, _ in body.runs[1:]})
+            if not bends(tracker, torn, _some(times, LOOKS)):
+                continue
+            bodies[numbers[0] - 1] = bent_best(tracker, torn, _some(times))
             labelled.labels[rows] = numbers[0]
         self._renumber(labelled, bodies, labelled.labels)
 

@@ -111,7 +111,8 @@ def fit_film(
     """Fit a scene with time to frames whose `Shot.time` differ.
 
     What moves is searched in reduced frames of some of the times (`sketch`), and each phase keeps to its share of
-    `settings.seconds` (`budget`); then all is trained on all frames.
+    `settings.seconds` (`budget`); then all is trained on all frames. Before cameras that stand, a film begins when most
+    of them have a frame; those that have none then are trained on alone.
 
     Args:
         settings: of the length, the greatest number of Gaussians and the seed; degree 0 only. Default: five minutes.
@@ -162,11 +163,14 @@ class _Film:
     ) -> None:  # fmt: skip
         self._photos, self._settings, self._detail, self._on_status = photos, settings, detail, on_status
         self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
+        if self._footage.stands:
+            self._footage = self._footage.since(self._footage.begins or 0)
+        self._steady = self._footage.steady if self._footage.stands else self._footage
         self._rng, self._budget = np.random.default_rng(settings.seed), Budget(settings.seconds)
         self._pixels = MOST_PIXELS
         if not self._footage.stands:
             self._pixels = min(MOST_PIXELS, stereo_pixels(settings.seconds, len(photos.shots)))
-        small = sketched(photos.shots, self._pixels)
+        small = sketched(self._steady.shots, self._pixels)
         self._sketch = Footage.of(small, [s.time for s in small])
         self._sight: Sight | None = None
         self._told, self._loss, self._cut = 0.0, math.nan, False
@@ -214,7 +218,7 @@ class _Film:
         """Gaussians to start from, at points of the first frames of cameras that stand, or of all of one that moves."""
         sketch, photos, settings = self._sketch, self._photos, self._settings
         if self._footage.stands:
-            whole = [shot for shot in photos.shots if shot.time in sketch.times]
+            whole = [shot for shot in self._steady.shots if shot.time in sketch.times]
             pixels = stereo_pixels(settings.seconds, len(sketch.first))
             first = [whole[i] for i in sketch.first]
             return start_cloud(first, photos, settings.max_gaussians, self._rng, pixels, changing(sketch))
@@ -235,7 +239,7 @@ class _Film:
         pixels = stereo_pixels(self._settings.seconds, len(first))
         self._sight = Sight.of([reduced(shot, pixels) for shot in first], photos.extent)
         start = trainer(
-            self._footage, self._start, photos.extent, self._settings, self._sight, self._rng, self._budget
+            self._steady, self._start, photos.extent, self._settings, self._sight, self._rng, self._budget
         )  # fmt: skip
         while start.progress < 1:
             self._tell(start.step(), start.steps, START * start.progress, len(start.parameters))

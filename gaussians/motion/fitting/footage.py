@@ -19,6 +19,7 @@ F64 = NDArray[np.float64]
 U8 = NDArray[np.uint8]
 I64 = NDArray[np.int64]
 
+MOST = 0.6  # share of the cameras that have a frame of the time at which a film begins
 SAME_PLACE = 1e-4  # of the numbers of a pose: cameras within it are one camera that stands
 CHANGED = 0.05  # least difference of a colour, of 1, that counts as a change; more where frames are noisy
 NOISES = 4.0  # times the frames' own noise, from which a difference counts
@@ -90,8 +91,29 @@ class Footage:
 
     @property
     def stands(self) -> bool:
-        """Whether the cameras stand: each has frames at several times, among them the first."""
-        return len(self.cameras) > 1 and bool((self.when[self.first] == 0).all())
+        """Whether the cameras stand: several have frames at many times, and most of them at one from which on the film
+        can be followed (`begins`)."""
+        return len(self.cameras) > 1 and len(self.shots) >= 2 * len(self.cameras) and self.begins is not None
+
+    @cached_property
+    def begins(self) -> int | None:
+        """The first of the times, but the last, of which most cameras have a frame; None: there is none."""
+        most = np.bincount(self.when, minlength=len(self.times))[:-1] >= MOST * len(self.cameras)
+        return int(most.argmax()) if most.any() else None
+
+    def since(self, t: int) -> Footage:
+        """The frames from a time on."""
+        return self._of(self.when >= t)
+
+    @property
+    def steady(self) -> Footage:
+        """The frames of the cameras that have one of the first time."""
+        return self._of((self.when[self.first] == 0)[self.who])
+
+    def _of(self, kept: NDArray[np.bool_]) -> Footage:
+        """Some of the frames; itself if they are all."""
+        rows = np.flatnonzero(kept)
+        return self if kept.all() else Footage.of([self.shots[i] for i in rows], self.seconds[rows].tolist())
 
     def backwards(self) -> Footage:
         """The same frames in the opposite order: its seconds are negated."""

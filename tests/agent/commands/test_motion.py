@@ -11,10 +11,11 @@ import pytest
 import torch
 from PIL import Image
 
+from scenewright.agent import sequences
 from scenewright.gaussians import files
 from scenewright.gaussians.files.motion_file import motion_path
 from scenewright.gaussians.motion.at import at
-from scenewright.gaussians.motion.motion import Motion, Track
+from scenewright.gaussians.motion.motion import Look, Motion, Track
 from scenewright.gaussians.scene import Scene
 
 
@@ -98,6 +99,46 @@ def test_a_sequence_is_written_and_read_as_the_motion_that_it_was(call: Any, sli
     numbered = call("convert", folder / "frames" / "%03d.ply", folder / "again.ply", "--fps", 4, "--views", 0, "--json")
     assert numbered.code == 0
     assert motion_path(folder / "again.ply").stat().st_size == motion_path(folder / "back.ply").stat().st_size
+
+
+def test_a_file_that_is_missing_leaves_its_time_in_a_sequence(call: Any, slid: Scene, room: Path) -> None:
+    folder = room.parent
+    assert call("convert", room, folder / "frames" / "%03d.ply", "--time", "0:2", "--fps", 4).code == 0
+    (folder / "frames" / "003.ply").unlink()
+    back = call("convert", folder / "frames" / "*.ply", folder / "back.ply", "--fps", 4, "--views", 0, "--json")
+    assert any("missing between 002.ply and 004.ply" in note for note in back.data["notes"])
+    again = files.load(folder / "back.ply")
+    assert again.motion is not None and again.motion.stop == 2.0
+    torch.testing.assert_close(at(again, 1.0).cloud.means, at(slid, 1.0).cloud.means, atol=2e-3, rtol=0)
+
+
+def test_files_are_numbered_by_the_number_in_which_they_differ() -> None:
+    def of(*names: str) -> tuple[list[float], int]:
+        times, notes = sequences.times_of([Path(name) for name in names], 2.0)
+        return times, len(notes)
+
+    assert of("room2_0010.ply", "room2_0020.ply", "room2_0040.ply") == ([0.0, 0.5, 1.5], 1)
+    assert of("a.ply", "b.ply", "c.ply") == ([0.0, 0.5, 1.0], 0)
+    assert of("1.ply", "2_5.ply", "3.ply") == ([0.0, 0.5, 1.0], 0)
+
+
+def test_what_is_hidden_for_a_while_stays_in_a_sequence(call: Any, slid: Scene, room: Path) -> None:
+    folder, motion = room.parent, slid.motion
+    assert motion is not None
+    ids = slid.cloud.ids[:40].numpy()
+    hidden = Look(ids, 0.5, 1.2, opacities=torch.zeros(40))
+    files.save(slid.replace(motion=motion.replace(looks=(hidden,))), room, force=True)
+    assert call("convert", room, folder / "frames" / "%03d.ply", "--time", "0:2", "--fps", 4).code == 0
+    each = [files.load(path).cloud for path in sorted((folder / "frames").iterdir())]
+    assert {len(cloud) for cloud in each} == {len(slid.cloud)}
+    assert float(each[3].opacities[:40].max()) < 0.01 < float(each[0].opacities[:40].min())
+    back = call("convert", folder / "frames" / "*.ply", folder / "back.ply", "--fps", 4, "--views", 0, "--json")
+    assert back.code == 0 and any("change their colour or opacity" in note for note in back.data["notes"])
+
+
+def test_a_time_beyond_the_film_is_told(call: Any, room: Path) -> None:
+    answer = call("render", room, "--time", "9", "-o", room.parent / "late.png", "--size", "32x24")
+    assert answer.code == 0 and "lasts from 0 to 2 s" in answer.err
 
 
 def test_one_time_is_one_file_and_other_formats_keep_the_motion(call: Any, slid: Scene, room: Path) -> None:

@@ -468,6 +468,18 @@ def test_footage_sorts_frames_by_camera_and_time():
     assert not Footage.of([shot(0.0), shot(0.1), shot(0.2)], [0.0, 0.5, 1.0]).stands
 
 
+def test_cameras_stand_though_one_lacks_a_frame_or_begins_earlier():
+    eyes, times = (0.0, 1.0, 2.0), (0.0, 0.5, 1.0)
+    each = [(shot(x), t) for t in times for x in eyes]
+    lacking = Footage.of(*zip(*each[1:], strict=True))
+    assert lacking.stands and lacking.begins == 0
+    assert len(lacking.steady.cameras) == 2 and len(lacking.steady.shots) == 6
+    early = Footage.of(*zip(*each, (shot(1.0), -3.0), strict=True))
+    assert early.stands and early.begins == 1
+    assert early.since(1).times.tolist() == [0.0, 0.5, 1.0] and len(early.since(1).steady.cameras) == 3
+    assert not Footage.of([shot(x) for x in (0.0, 1.0, 2.0, 0.0, 1.0)], [0.0, 0.1, 0.2, 0.3, 0.4]).stands
+
+
 @pytest.mark.parametrize(
     ("seconds", "said"),
     [

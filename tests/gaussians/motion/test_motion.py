@@ -227,7 +227,7 @@ def test_ids_are_grouped_by_the_tracks_that_hold_them() -> None:
 
 def test_what_moves_is_what_a_pose_or_a_residual_moves() -> None:
     assert moving_ids(example()).tolist() == [1, 2, 3, 4, 5]
-    assert moving_ids(Motion((Track.along([1], [0, 1], np.zeros((2, 3))),))).tolist() == []
+    assert moving_ids(Motion((Track.along([1], [0, 1], np.zeros((2, 3))),), stop=1)).tolist() == []
     assert moving_ids(None).tolist() == []
 
 
@@ -251,6 +251,17 @@ def test_bad_motions_are_refused() -> None:
         Track.rigid([1], [0], [[2.0, 0, 0, 0]])
     with pytest.raises(UserError, match="finite"):
         Track.along([1], [0, 1], [[0, 0, 0], [math.nan, 0, 0]])
+    with pytest.raises(UserError, match=r"finite, but at \[1\] there is nan"):
+        Track.slide([1], [0, math.nan], [0, 1], (0, 0, 1))
+    track = Track.slide([1], [0, 2], [0, 1], (0, 0, 1))
+    with pytest.raises(UserError, match=r"no length.*stop=2"):
+        Motion((track,))
+    with pytest.raises(UserError, match=r"tuple, as in \(track,\), not Track"):
+        Motion(track, stop=2)  # type: ignore[arg-type]
+    with pytest.raises(UserError, match="whole numbers"):
+        Track.slide([0.5], [0, 2], [0, 1], (0, 0, 1))
+    with pytest.raises(UserError, match="whole numbers"):
+        Track.slide("the door", [0, 2], [0, 1], (0, 0, 1))
     with pytest.raises(UserError, match="axis of a hinge"):
         Track.hinge([1], [0, 1], [0, 1], (0, 0, 0), (0, 0, 0))
     with pytest.raises(UserError, match="disjoint"):

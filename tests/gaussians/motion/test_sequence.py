@@ -65,7 +65,7 @@ def test_still_frames_have_no_motion_and_changed_colours_are_told() -> None:
 
 def test_other_rows_are_refused() -> None:
     cloud = balls(100).cloud
-    with pytest.raises(UserError, match=r"picture 1 .* has 99 Gaussians and the first one 100"):
+    with pytest.raises(UserError, match=r"file 2 .* has 99 Gaussians and the first one 100"):
         motion_of([lambda: cloud, lambda: cloud[1:]], [0.0, 1.0])
     with pytest.raises(UserError, match="another order"):
         motion_of([lambda: cloud, lambda: cloud[torch.arange(99, -1, -1)]], [0.0, 1.0])
