@@ -127,8 +127,8 @@ def _timed(text: str, survey: Survey, timeline: Timeline) -> Reading:
     words, names = static.without_relative(tuple(said.split()), survey, timeline), _names(survey)
     found = _as_said(text, words, names, survey, timeline)
     if found is not None and found.answer.answer is not None:
-        if _OF_A_SORT.search(said) is not None and not found.restated:
-            return found  # "which wall is it at" wants a wall
+        if (_OF_A_SORT.search(said) is not None and not found.restated) or found.kind in kinds.OF_LOOKS:
+            return found  # "which wall is it at" wants a wall; how a thing looks is asked in few ways
         first = goes_first(text)
         strictly = not first and found.answer.answer != ()
         surer = _read_as(supposed(text, names, LEAST if first else SURE, strictly), survey, timeline)

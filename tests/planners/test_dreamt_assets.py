@@ -66,3 +66,19 @@ def test_a_room_takes_them(dreams: OwnAssets, tmp_path: Path, monkeypatch: pytes
 def test_unknown_generators_are_told_at_once() -> None:
     with pytest.raises(BackendError, match="unknown model"):
         own_assets("dream:onnx:x")
+
+
+def test_a_thing_keeps_its_proportions_within_its_place(dreams: OwnAssets) -> None:
+    natural = dreams.natural("astronaut", None)[0]
+    taken = dreams.take("astronaut", (0.4, 0.4, 0.3), None, False).asset
+    assert natural is not None and taken is not None
+    factors = [a / b for a, b in zip(taken.size, natural.size, strict=True)]
+    assert max(factors) == pytest.approx(min(factors), rel=0.05)
+    assert taken.size[0] <= 0.41 and taken.size[1] <= 0.41 and taken.size[2] <= 0.61
+
+
+def test_what_cannot_be_made_is_told_and_left_to_others() -> None:
+    found = own_assets(f"dream:command:{shlex.quote(sys.executable)} -c 'raise SystemExit(3)' {{output}}")
+    assert found is not None
+    taken = found.take("zorb", (1.0, 1.0, 1.0), None, False)
+    assert taken.asset is None and "zorb: " in taken.notes[0] and "ended with 3" in taken.notes[0]

@@ -97,7 +97,8 @@ def bends(tracker: Tracker, torn: Torn, some: Sequence[int]) -> bool:
 def bent_best(tracker: Tracker, torn: Torn, some: Sequence[int]) -> Body:
     """The body with its displacements: on the path that it has, or without one if some times are explained about as
     well so."""
-    ways = [bent(tracker, path, starts) for path, starts in _ways(tracker, torn)]
+    alone = len(torn.parts) == 1  # its nodes are followed better from time to time than from where it was taken to be
+    ways = [bent(tracker, path, None if alone else starts) for path, starts in _ways(tracker, torn)]
     errors = _errors(tracker, ways, some)
     return ways[0] if errors[0] <= AS_WELL * errors.min() else ways[int(errors.argmin())]
 

@@ -272,9 +272,15 @@ class Finder:
         self._renumber(labelled, bodies, labelled.labels)
 
     def _settle(self, labelled: Labelled, bodies: list[Body]) -> None:
-        """Assign Gaussians to bodies by the frames, in place; a body that keeps too few is dropped."""
+        """Assign Gaussians to bodies by the frames, in place; a body that keeps too few is dropped.
+
+        What bends keeps those that it has: frames tell nothing of what goes along with a part of it that stands.
+        """
         self._check()
         labels = shared(labelled.columns(), labelled.labels, bodies, self._footage, self._rng)
+        soft = [k for k, body in enumerate(bodies, 1) if body.bend is not None]
+        kept = np.isin(labelled.labels, soft) | np.isin(labels, soft)
+        labels = np.where(kept, labelled.labels, labels).astype(np.int32)
         self._renumber(labelled, bodies, labels)
 
     def _renumber(self, labelled: Labelled, bodies: list[Body], labels: NDArray[np.int32]) -> None:

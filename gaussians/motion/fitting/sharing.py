@@ -75,6 +75,8 @@ def shown_later(labelled: Labelled, bodies: list[Body], footage: Footage, rng: n
     rest is trained to show them, and is not there when the body goes on. It is put where the body had it at first.
     """
     for number, body in enumerate(bodies, 1):
+        if body.bend is not None:  # where it rests, it has another shape
+            continue
         t = _rest(labelled.means[labelled.labels == number], body, footage)
         if t is None:
             continue

@@ -27,6 +27,7 @@ from . import (
 )
 
 OF_MOTION = motion.KINDS  # first in scenes with time, last in others
+OF_LOOKS = frozenset(kind.name for kind in motion.looks.KINDS)
 KINDS = (
     routes.BLOCKED,
     placed.BETWEEN,

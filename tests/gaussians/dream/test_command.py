@@ -13,7 +13,7 @@ import torch
 from scenewright.gaussians.assets import make
 from scenewright.gaussians.dream.command import arguments, run
 from scenewright.gaussians.dream.generating import Generator, from_command
-from scenewright.gaussians.dream.prior import kind_of
+from scenewright.gaussians.dream.prior import kind_of, standing
 from scenewright.gaussians.dream.upright import TURNS, upright
 from scenewright.gaussians.errors import BackendError, UserError
 from scenewright.gaussians.files import save
@@ -33,6 +33,16 @@ def _program(tmp_path: Path, body: str) -> str:
     path = tmp_path / "program.py"
     path.write_text(f"import shutil, sys\n{body}\n")
     return f"command:{shlex.quote(sys.executable)} {shlex.quote(str(path))}"
+
+
+def _of_opacity(count: int, opacity: float) -> str:
+    """A program that writes so many Gaussians of an opacity."""
+    return (
+        "import torch; from scenewright.gaussians.cloud import GaussianCloud; "
+        "from scenewright.gaussians.files import save; from scenewright.gaussians.scene import Scene; "
+        f"n = {count}; save(Scene(GaussianCloud.create(torch.rand(n, 3), torch.tensor([[1.0, 0, 0, 0]]).repeat(n, 1), "
+        f"torch.full((n, 3), 0.1), torch.full((n,), {opacity}), torch.zeros(n, 1, 3))), sys.argv[1])"
+    )
 
 
 def test_words_and_paths_are_filled_in_once() -> None:
@@ -64,6 +74,8 @@ def test_specifications_that_make_no_sense(spec: str, image: Path | None, said: 
         ("pass", "wrote nothing"),
         ("open(sys.argv[1], 'w').write('nonsense')", "cannot be used"),
         ("import time; time.sleep(30)", "longer than"),
+        (_of_opacity(7, 0.9), "wrote 7 Gaussians, of which 7 can be seen"),
+        (_of_opacity(60, 0.001), "wrote 60 Gaussians, of which 0 can be seen"),
     ],
 )
 def test_programs_that_fail_are_named(tmp_path: Path, body: str, said: str) -> None:
@@ -71,6 +83,25 @@ def test_programs_that_fail_are_named(tmp_path: Path, body: str, said: str) -> N
         run(f"{_program(tmp_path, body)} {{output}}", "a chair", None, 0.4 if "sleep" in body else 20)
     with pytest.raises(BackendError, match="there is no program"):
         run("command:/nowhere/program {output}", "a chair", None, 5)
+
+
+@pytest.mark.parametrize("axis", ["-x", "-y", "-z"])
+def test_up_may_be_the_other_way(axis: str) -> None:
+    """The turn that brings the axis up is a rotation, and undone by that of the axis it is opposite to."""
+    turn = TURNS[axis]
+    assert np.allclose(turn @ turn.T, np.eye(3)) and np.linalg.det(turn) == pytest.approx(1.0)
+    assert (turn[2] == -TURNS[axis[1]][2]).all()
+    lamp = make("floor lamp", 0).cloud
+    other = lamp.replace(means=lamp.means @ torch.from_numpy(turn).float())  # as a file with that axis up has it
+    assert torch.allclose(upright(other, None, axis)[0].means, lamp.means, atol=1e-5)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e5])
+def test_what_is_made_has_the_longest_side_of_its_kind_however_large_it_comes(scale: float) -> None:
+    lamp = make("floor lamp", 0).cloud
+    made = standing(lamp.replace(means=lamp.means * scale, scales=lamp.scales * scale), "a floor lamp").cloud.means
+    wanted = max(kind_of("a floor lamp").usual_size)  # type: ignore[union-attr]
+    assert float((made.max(dim=0).values - made.min(dim=0).values).max()) == pytest.approx(wanted, rel=0.03)
 
 
 @pytest.mark.parametrize("axis", ["x", "y", "z"])

@@ -1,9 +1,10 @@
 """Kinds of questions about scenes with time, in the order in which they are tried."""
 
-from . import lasting, movers, order, places, speeds, when, whether
+from . import lasting, looks, movers, order, places, speeds, when, whether
 
 KINDS = (
     lasting.CLIP,
+    *looks.KINDS,
     lasting.BETWEEN,
     order.ORDER,
     order.DOES,

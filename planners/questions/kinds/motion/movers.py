@@ -122,8 +122,9 @@ def _ranked(told: Told, found: list[tuple[Body, list[Span]]]) -> Answer:
         if PLACES[rank] >= len(ordered):
             raise Untold(f"Only {listed([b.name for b, _ in ordered])} {verb(told)}.")
         body, spans = ordered[PLACES[rank]]
-        text = "; ".join(f"{b.name} {verb(told)} {spoken(s)}" for b, s in ordered)
-        return names([body], f"{cap(text)}.", spans[0][0], single=True)
+        text = "; ".join(f"{b.name} {verb(told)} {_when(told, s)}" for b, s in ordered)
+        first = f"{cap(body.name)}: " if len(ordered) > 1 else ""
+        return names([body], cap(f"{first}{text}."), spans[0][0], single=True)
     by = _speed if rank in ("fastest", "slowest") else _way
     if deed is not None and deed.kind in STATES:
         return _longest(told, found)
@@ -134,7 +135,8 @@ def _ranked(told: Told, found: list[tuple[Body, list[Span]]]) -> Answer:
         told_each = listed([f"{b.name} {v:.2f}" for v, b in scored])
         raise Untold(f"They do not differ: {told_each} {'m/s' if by is _speed else 'm'}.")
     text = listed([f"{b.name} {v:.2f} {'m/s' if by is _speed else 'm'}" for v, b in scored])
-    return names([scored[0][1]], f"{cap(text)}.", single=True)
+    first = f"{cap(scored[0][1].name)}: " if len(scored) > 1 else ""
+    return names([scored[0][1]], cap(f"{first}{text}."), single=True)
 
 
 def _longest(told: Told, found: list[tuple[Body, list[Span]]]) -> Answer:

@@ -170,6 +170,9 @@ def _turning(told: Told, body: Body, now: float | None) -> Answer:
     return number(value, sign, text, [body], found[0][0])
 
 
+_SLIDES = {"close": "closes", "move": "moves"}
+
+
 def _far(told: Told) -> Answer | None:
     told = _so_far(told)
     what = told.frame.what
@@ -240,13 +243,13 @@ def _far_one(told: Told, body: Body) -> Answer:
             told,
             body,
             away,
-            f"{body.name} {'opens' if deed.kind != 'close' else 'closes'} by",
+            f"{body.name} {_SLIDES.get(deed.kind, 'opens')} by",
             found[0] if found else None,
         )
     if deed.kind in ("fall", "land") or re.match(r"(?:and )?(?:from |by )*(?:how|what) (?:high|height|deep)", said):
         fall = (events.falls(body.course, told.timeline.unit) or list(body.moving))[0]
-        drop = abs(float(events.displacement(body.course, fall) @ body.course.up))
-        return _length(told, body, drop, f"{body.name} falls by", fall)
+        rise = float(events.displacement(body.course, fall) @ body.course.up)
+        return _length(told, body, abs(rise), f"{body.name} {'rises' if rise > 0 else 'falls'} by", fall)
     if deed.kind in ("reach", "land", "enter", "leave", "pass") and (to := told.spans(body)):
         found = within(list(body.moving), (told.timeline.start, to[0][0])) or found
     if _NET.search(told.asked.text):
