@@ -86,18 +86,25 @@ class Bend:
         each = np.stack([np.interp(times, some, column) for column in flat.T], axis=1)
         return replace(self, moves=each.reshape(len(times), *self.moves.shape[1:]))
 
-    def low_rank(self, means: F32, tolerance: float) -> tuple[F64, F32]:
-        """Basis `[T, B]` and weights `[N, B, 3]` of as low a rank as keeps the nodes within a tolerance (scene units)
-        of their places, root mean square over nodes and times."""
+    def factors(self, tolerance: float) -> tuple[F64, F64]:
+        """Basis `[T, B]` and ways `[B, K, 3]` whose product is the displacements, of as low a rank as keeps the nodes
+        within a tolerance (scene units) of their places, root mean square over nodes and times. The greatest of each
+        column of the basis is 1."""
         flat = self.moves.reshape(len(self.moves), -1)
         left, values, right = np.linalg.svd(flat, full_matrices=False)
         for rank in range(len(values) + 1):
             rest = flat - (left[:, :rank] * values[:rank]) @ right[:rank]
             if np.sqrt((rest**2).sum() / max(rest.size / 3, 1)) <= tolerance:
                 break
-        ways = right[:rank].reshape(rank, len(self.nodes), 3)
+        most = np.abs(left[:, :rank]).max(axis=0, initial=0.0)
+        ways = (values[:rank] * most)[:, None] * right[:rank]
+        return left[:, :rank] / most, ways.reshape(rank, len(self.nodes), 3)
+
+    def low_rank(self, means: F32, tolerance: float) -> tuple[F64, F32]:
+        """Basis `[T, B]` and weights `[N, B, 3]` of the displacements of means `[N, 3]`; see `factors`."""
+        basis, ways = self.factors(tolerance)
         weights = np.einsum("nk,bkc->nbc", self.shares(means).astype(np.float64), ways)
-        return left[:, :rank] * values[:rank], weights.astype(np.float32)
+        return basis, weights.astype(np.float32)
 
     def started_at(self, t: int, turn: F64, pivot: F64, offset: F64) -> Bend:
         """The same displacements of what is where it is at a time, at which the body is placed by a pose."""

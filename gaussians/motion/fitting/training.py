@@ -14,16 +14,20 @@ from ...fit.parameters import parameter_gradients
 from ...fit.train import LR_DECAY, MEANS_LR, REFINE_EVERY, morton_order
 from ...render.cpu import gradient
 from .. import keys
+from .bends import Bend
 from .bodies import Body, Labelled, left, placed, pose_gradient, put_at, turned
 from .footage import Footage
 
 F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
 
 SSIM = 0.2
 OFFSETS_LR = 8e-4  # of poses, of the radius of the cameras; a turn moves the Gaussians of a body as far
 POSES_DECAY = 0.1  # that rate at the end: a pose is trained by the frames of its time alone, in few steps
 LINE_LR = 0.3  # of a line's pivot and axis, of those of poses: they step at every frame
-TOGETHER = 0.01  # how far a node of what bends is drawn towards its neighbours at each step
+SHAPE = 0.004  # of the radius of the cameras: how far the nodes of what bends may be from where they were found
+WAYS_LR = 0.3  # of the ways of these nodes, of that of poses: they step at every frame
+TOGETHER = 0.002  # how far a node is drawn towards its neighbours at each step
 GROWS_UNTIL = 0.7  # share of the training after which no Gaussians are added
 WARM = 0.35  # the learning rate of means at the start, of that of a training from nothing
 
@@ -51,6 +55,46 @@ class _Moments:
         return np.asarray(self.first[row] / (1 - 0.9**n) / (np.sqrt(self.second[row] / (1 - 0.99**n)) + 1e-15))
 
 
+@dataclass(eq=False)
+class _Shapes:
+    """Displacements of the nodes of a body that bends, as a product of low rank: what a frame tells of a way counts for
+    all times.
+
+    Attributes:
+        basis, ways: see `Bend.factors`; the basis is 0 at the first time.
+        of_times, of_ways: Adam's moments.
+    """
+
+    basis: F64
+    ways: F64
+    of_times: _Moments
+    of_ways: _Moments
+
+    @classmethod
+    def of(cls, bend: Bend, tolerance: float) -> _Shapes:
+        """The displacements of a bend within a tolerance, scene units."""
+        basis, ways = bend.factors(tolerance)
+        return cls(basis, ways, _Moments.none(len(basis), basis.shape[1]), _Moments.none(1, ways.size))
+
+    def step(self, times: slice, slope: F64, far: float) -> None:
+        """A step at some times by the gradient of the displacements of the nodes `[K, 3]` then.
+
+        Args:
+            far: of the step, scene units.
+        """
+        now = self.basis[times.start]
+        by_basis = np.einsum("bkc,kc->b", self.ways, slope)
+        by_ways = now[:, None, None] * slope
+        sizes = np.maximum(np.sqrt((self.ways**2).sum(axis=2).mean(axis=1)), 1e-9)
+        self.basis[times] = now - far / sizes * self.of_times.direction(times.start, by_basis)
+        self.ways -= WAYS_LR * far * self.of_ways.direction(0, by_ways.reshape(-1)).reshape(self.ways.shape)
+
+    def moves(self, bend: Bend) -> F64:
+        """`[T, K, 3]` displacements of the nodes."""
+        self.ways = np.stack([bend.together(way, TOGETHER) for way in self.ways]) if len(self.ways) else self.ways
+        return np.einsum("tb,bkc->tkc", self.basis, self.ways)
+
+
 class Joint:
     """A training in progress.
 
@@ -68,10 +112,8 @@ class Joint:
         self.parameters, self.bodies, self._footage, self._rng = parameters, bodies, footage, rng
         self._strategy = strategy
         self._moments = [_Moments.none(len(footage.times) + 1, 6) for _ in bodies]
-        self._of_nodes = [
-            None if body.bend is None else _Moments.none(len(footage.times), 3 * len(body.bend.nodes))
-            for body in bodies
-        ]
+        self._shapes = [None if body.bend is None else _Shapes.of(body.bend, SHAPE * footage.radius) for body in bodies]
+        self._poses = [body.bend is None or bool(np.any(body.offsets) or np.any(body.quats[:, 1:])) for body in bodies]
         self._runs = [{t: run for run in body.runs for t in range(*run)} for body in bodies]
         self._order: list[int] = []
         self.steps, self.seconds = 0, 0.0
@@ -125,27 +167,25 @@ class Joint:
                 centre = body.pivot + body.offsets[t]
                 turn, shift = pose_gradient(columns[0][rows], columns[1][rows], centre, d_means, d_quats)
                 reach = float(np.sqrt(((columns[0][rows] - centre) ** 2).sum(axis=1).mean()))
-                self._step_pose(number - 1, t, turn, shift, far, far / max(reach, 1e-9))
+                if self._poses[number - 1]:
+                    self._step_pose(number - 1, t, turn, shift, far, far / max(reach, 1e-9))
             matrix = keys.matrices(body.quats[t])
             found.means[rows] = (d_means @ matrix).astype(np.float32)
             if np.any(d_means):
-                self._step_nodes(number - 1, t, rows, found.means[rows], far)
+                self._step_shape(number - 1, t, rows, found.means[rows], far)
             found.quats[rows] = (d_quats @ left(body.quats[t])).astype(np.float32)
 
-    def _step_nodes(
-        self, number: int, t: int, rows: NDArray[np.int64], by_mean: NDArray[np.float32], far: float
-    ) -> None:
+    def _step_shape(self, number: int, t: int, rows: I64, by_mean: NDArray[np.float32], far: float) -> None:
         """A step of the displacements of a body that bends at a time, by the gradient `[n, 3]` of its displaced means.
 
         The shape is the same at all times of a rest, and that of the first time stays.
         """
-        body, moments, run = self.bodies[number], self._of_nodes[number], slice(*self._runs[number][t])
-        if body.bend is None or moments is None or not run.start:
+        body, shapes, run = self.bodies[number], self._shapes[number], slice(*self._runs[number][t])
+        if body.bend is None or shapes is None or not run.start:
             return
         slope = body.bend.shares(self.parameters.means[rows]).T @ by_mean
-        move = moments.direction(run.start, slope.reshape(-1).astype(np.float64)).reshape(slope.shape)
-        moves = body.bend.together(body.bend.moves[run.start] - far * move, TOGETHER)
-        self.bodies[number] = replace(body, bend=body.bend.with_moves(run, moves))
+        shapes.step(run, slope.astype(np.float64), far)
+        self.bodies[number] = replace(body, bend=replace(body.bend, moves=shapes.moves(body.bend)))
 
     def _step_pose(self, number: int, t: int, turn: F64, shift: F64, far: float, wide: float) -> None:
         """A step of the pose of a body at a time by its gradient, or of its place on its line and of the line.
