@@ -92,6 +92,7 @@ class Bend:
         column of the basis is 1."""
         flat = self.moves.reshape(len(self.moves), -1)
         left, values, right = np.linalg.svd(flat, full_matrices=False)
+        left[~flat.any(axis=1)] = 0.0  # but for rounding, they are so
         for rank in range(len(values) + 1):
             rest = flat - (left[:, :rank] * values[:rank]) @ right[:rank]
             if np.sqrt((rest**2).sum() / max(rest.size / 3, 1)) <= tolerance:

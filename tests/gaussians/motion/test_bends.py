@@ -173,7 +173,7 @@ def test_displacements_are_trained_but_for_those_of_the_first_time(waving):
     columns, rows, _, footage = waving
     labels = np.isin(np.arange(len(columns[0])), rows).astype(np.int32)
     bend = Bend.none(columns[0][rows], len(TIMES))
-    bend = replace(bend, moves=bend.moves + 1e-3 * np.arange(len(TIMES))[:, None, None])
+    bend = replace(bend, moves=bend.moves + 0.02 * np.arange(len(TIMES))[:, None, None])
     body = replace(Body.at_rest(np.zeros(3), len(TIMES)), bend=bend)
     labelled = Labelled.labelled(parameters(columns), labels)
     strategy = MCMCStrategy(len(labels), np.random.default_rng(0))
