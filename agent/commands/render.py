@@ -86,7 +86,7 @@ def command(
 
     from ...gaussians.color import parse
     from ...gaussians.errors import UserError
-    from ...gaussians.files import load
+    from ...gaussians.files import load_with_report
     from ...gaussians.motion.at import cloud_at
     from ...gaussians.render import render
     from ...gaussians.tiles.store import is_tiles
@@ -119,7 +119,9 @@ def command(
         leveled = DrawnTiles.of(scene, backend)
         loaded = leveled.scene()
     elif not isinstance(leveled, Drawn):
-        loaded = load(scene)
+        loaded, report = load_with_report(scene)
+        for note in report.notes if at_time is not None else ():
+            terminal.say(f"note: {note}")
     else:
         chosen = (view == "auto" and not leveled.streamed.cameras) if not film else cameras is None or bool(orbit)
         loaded = leveled.scene(whole=chosen)  # all of it where it says which views there are, as without levels

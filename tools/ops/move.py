@@ -43,6 +43,8 @@ from ..transform import shift, turn
 _NO: dict[str, Any] = {"enum": [False]}
 _MOST_OF_IT = 0.8  # of the way to something: where a wall ends it after more, it is near enough
 
+_SHORT = 1e-4  # units: less is no way that a wall ends
+
 
 class Move(TargetedOp):
     """Move the target: in a `direction`, `toward` something, or to a `place`; exactly one of the three.
@@ -123,7 +125,7 @@ class Move(TargetedOp):
                 said += () if self.distance is not None else ("no distance was given: moved by its own extent",)
                 return [self._asked(b, self._retreat(scene, b, goals)) for b in bodies], said
             ways = [self._approach(scene, b, goals) for b in bodies]
-            short = tuple(f"a wall ends its way {off:.2g} units before it" for _, off in ways if off > 0)
+            short = tuple(f"a wall ends its way {off:.2g} units before it" for _, off in ways if off > _SHORT)
             return [self._asked(b, way) for b, (way, _) in zip(bodies, ways, strict=True)], (*said, *short)
         assert self.direction is not None
         way = heading(context.viewer, scene.frame, self.direction)
