@@ -36,7 +36,7 @@ class Figures:
         whole, inside: mean PSNR of held-out frames, and within the masks of what moves, dB.
         path: mean distance of the middle of each moving thing from where it is, scene units (metres); NaN: none moves.
         worst: the largest such distance.
-        found: share of the moving things whose path is within half their way.
+        found: share of the things on a track whose path is within half their way; NaN: nothing is on one.
         overlap: intersection over union of the pixels of what moves, over all held-out frames.
         assigned, kept: the same of Gaussians, see `identity.Belonging`.
         residual: share of the Gaussians that have a displacement of their own.
@@ -67,7 +67,7 @@ def wanted(name: str, rig: Rig) -> bool:
     return not only or f"{name}-{rig}" in only.split(",")
 
 
-def fitted(made: Film, steps: int, detail: Detail = "rigid") -> Figures:
+def fitted(made: Film, steps: int, detail: Detail = "residual") -> Figures:
     """Fit a film and measure it."""
     started = time.process_time()
     shots, held = (tuple(Shot(f.camera, f.photo, f.time) for f in part) for part in (made.frames, made.held_out))
@@ -133,7 +133,7 @@ def _paths(scene: Scene, made: Film) -> tuple[NDArray[np.float64], float]:
     """
     true = middles(made.scene, made.times)
     if scene.motion is None or not scene.motion.tracks:
-        return np.zeros((0, len(made.times))), 0.0
+        return np.zeros((0, len(made.times))), 0.0 if len(true) else math.nan
     away = []
     for path in true:
         each = []
@@ -143,7 +143,7 @@ def _paths(scene: Scene, made: Film) -> tuple[NDArray[np.float64], float]:
         best = min(each, key=lambda e: float(e.mean()))
         if best.max() < 0.5 * max(float(np.ptp(path, axis=0).max()), _reach(made, path[0])):
             away.append(best)
-    return np.array(away).reshape(-1, len(made.times)), len(away) / max(len(true), 1)
+    return np.array(away).reshape(-1, len(made.times)), len(away) / len(true) if len(true) else math.nan
 
 
 def _reach(made: Film, middle: NDArray[np.float64]) -> float:

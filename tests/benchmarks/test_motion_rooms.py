@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from scenewright.agent.session.session import Session
-from scenewright.benchmarks._motion import films, fitted, identity, rooms
+from scenewright.benchmarks._motion import films, fitted, identity, rooms, soft
 from scenewright.gaussians.errors import InstructionError, UserError
 from scenewright.gaussians.motion.at import at
 
@@ -114,3 +114,23 @@ def test_a_name_of_a_family_means_the_kind_that_fits() -> None:
     lamp = next(g.id for g in session.scene.language.groups if g.label == "lamp")
     assert session.select("the desk lamp").groups == session.select("the lamp").groups == (lamp,)
     assert session.select("the floor lamp").verdict == "absent"
+
+
+@pytest.mark.parametrize("name", soft.names())
+def test_soft_rooms_change_a_shape_and_stand_at_the_start(name):
+    scene = soft.soft_room(name, 0.15)
+    (residual,) = scene.motion.residuals
+    assert residual.basis.shape[1] <= 2 and np.isin(residual.ids, scene.cloud.ids.numpy()).all()
+    assert (residual.basis[0] == 0).all()
+    assert max(np.abs(residual.displacements(t)).max() for t in np.linspace(0, 5, 26)) > 0.1  # metres
+    (thing,) = films.moving_things(scene.motion)
+    assert set(thing) == set(residual.ids)
+    first, later = (
+        films.Clouds(scene).frame(films.standing(films.STAGES[name], 4, (64, 48))[1], t) for t in (0.0, 1.3)
+    )
+    assert first.mask.any() and (first.photo != later.photo).any()
+
+
+def test_an_unknown_soft_room_is_refused():
+    with pytest.raises(UserError, match="towel, plant, jelly"):
+        soft.soft_room("garden")

@@ -38,7 +38,7 @@ class Torn:
     """The Gaussians of a tracker, each on the path of a body of its own; others stand.
 
     Attributes:
-        parts: rows and body of each.
+        parts: rows and body of each, the largest first.
     """
 
     parts: tuple[tuple[I64, Body], ...]
@@ -105,7 +105,7 @@ def bent_best(tracker: Tracker, torn: Torn, some: Sequence[int]) -> Body:
 
 def _ways(tracker: Tracker, torn: Torn) -> list[tuple[Body, F64 | None]]:
     """Paths on which a body may bend, and what is known of its displacements: without a path, from where its parts are;
-    and on the path of its only part."""
+    and on the path of its largest part."""
     still = Body.at_rest(tracker.pivot, len(tracker.seconds))
     ways: list[tuple[Body, F64 | None]] = [
         (still, torn.moves(Bend.none(tracker.means, len(tracker.seconds)), tracker.means))
