@@ -135,10 +135,10 @@ def _jelly(room: Room) -> Scene:
     squash, gone, high = np.zeros((3, len(_KEYS)))
     for start, stop in _HOPS:
         share = np.clip((_KEYS - start) / (stop - start), 0, 1)
-        jump = np.clip((share - 0.3) / 0.6, 0, 1)
+        jump = np.clip((share - 0.45) / 0.5, 0, 1)
         gone += 0.6 * jump
         high += 0.9 * jump * (1 - jump)
-        squash += np.sin(np.pi * np.clip(share / 0.3, 0, 1)) ** 2
+        squash += np.sin(np.pi * np.clip(share / 0.5, 0, 1)) ** 2
     offsets = np.stack([gone, 0.1 * gone, high], axis=1)
     quats = np.tile([1.0, 0.0, 0.0, 0.0], (len(_KEYS), 1))
     room.tracks.append(Track(runs, _KEYS, quats, offsets, np.array([x, y, 0.0]), "rigid", None, None, name="jelly"))

@@ -27,6 +27,7 @@ RATE, LAST = 0.1, 0.15  # size of a step, of the distance between nodes; and of 
 TOGETHER = 0.06  # how far a node is drawn towards its neighbours at each step
 LEADS = 0.7  # of the change since the time before, which is taken to go on
 BETTER = 0.75  # of the difference with the path alone, below which a body bends
+WORST = 5  # times by which that is told
 EXPLAINS = 0.5  # the same of what has no path and stands still otherwise
 ONE = 1.1  # of the difference with the paths of several parts, below which they are one thing that bends
 AS_WELL = 1.1  # times the difference with path and bend, up to which the bend alone is as good
@@ -82,7 +83,10 @@ def bent(tracker: Tracker, path: Body, starts: F64 | None = None) -> Body:
 
 
 def bends(tracker: Tracker, torn: Torn, some: Sequence[int]) -> bool:
-    """Whether what is taken for one or more rigid bodies is one that bends, by some times, each by itself."""
+    """Whether what is taken for one or more rigid bodies is one that bends, by those of some times that are explained
+    worst, each by itself."""
+    known = [float(_errors(tracker, (torn,), (t,))[0]) for t in some]
+    some = [some[k] for k in sorted(np.argsort(known, kind="stable")[-WORST:])]
     tried: list[Placed] = [torn]
     for path, starts in _ways(tracker, torn):
         none = Bend.none(tracker.means, len(path.offsets))
@@ -107,12 +111,8 @@ def _ways(tracker: Tracker, torn: Torn) -> list[tuple[Body, F64 | None]]:
     """Paths on which a body may bend, and what is known of its displacements: without a path, from where its parts are;
     and on the path of its largest part."""
     still = Body.at_rest(tracker.pivot, len(tracker.seconds))
-    ways: list[tuple[Body, F64 | None]] = [
-        (still, torn.moves(Bend.none(tracker.means, len(tracker.seconds)), tracker.means))
-    ]
-    if len(torn.parts) == 1:
-        ways.append((torn.parts[0][1].seen_from(tracker.pivot), None))
-    return ways
+    none = Bend.none(tracker.means, len(tracker.seconds))
+    return [(still, torn.moves(none, tracker.means)), (torn.parts[0][1].seen_from(tracker.pivot), None)]
 
 
 def bent_alone(tracker: Tracker, some: Sequence[int]) -> Body | None:

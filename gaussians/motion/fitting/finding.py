@@ -38,7 +38,6 @@ PASSED = 0.5  # of the difference without the bodies that are known, to which th
 TOGETHER = 0.6  # of the difference standing still, below which a body follows another without a search of its own
 RIGHT = 0.05  # root mean square difference of colours up to which what stands still is taken to be covered meanwhile
 SORTED = 10  # times at which that is measured
-LOOKS = 5  # times at which a body is looked at whether it bends
 SETTLED = 1  # rounds in which paths are mended and Gaussians assigned to bodies
 
 
@@ -169,7 +168,7 @@ class Finder:
             rows = rows[np.isin(labelled.labels[rows], [0, *numbers])]
             tracker, torn = self._torn(labelled, bodies, numbers, rows)
             times = sorted({t for _, body in torn.parts for t, _ in body.runs[1:]})
-            if not bends(tracker, torn, _some(times, LOOKS)):
+            if not bends(tracker, torn, _some(times, 2 * SORTED)):
                 continue
             bodies[numbers[0] - 1] = bent_best(tracker, torn, _some(times))
             labelled.labels[rows] = numbers[0]
