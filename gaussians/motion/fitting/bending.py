@@ -26,11 +26,8 @@ STEPS = 16  # of Adam at each time
 RATE, LAST = 0.1, 0.15  # size of a step, of the distance between nodes; and of the last one, of that
 TOGETHER = 0.06  # how far a node is drawn towards its neighbours at each step
 LEADS = 0.7  # of the change since the time before, which is taken to go on
-BETTER = 0.75  # of the difference with the path alone, below which a body bends
 WORST = 5  # times by which that is told
 EXPLAINS = 0.5  # the same of what has no path and stands still otherwise
-ONE = 1.1  # of the difference with the paths of several parts, below which they are one thing that bends
-AS_WELL = 1.1  # times the difference with path and bend, up to which the bend alone is as good
 HIDDEN = 0.5  # of the area at the first time, below which a body hides, so that the pictures tell nothing of it
 
 
@@ -82,37 +79,21 @@ def bent(tracker: Tracker, path: Body, starts: F64 | None = None) -> Body:
     return found
 
 
-def bends(tracker: Tracker, torn: Torn, some: Sequence[int]) -> bool:
-    """Whether what is taken for one or more rigid bodies is one that bends, by those of some times that are explained
-    worst, each by itself."""
+def gain_by_bending(tracker: Tracker, torn: Torn, path: Body, starts: F64 | None, some: Sequence[int]) -> float:
+    """Squared difference of what is taken for one or more rigid bodies as one that bends on a path, over that as it is
+    taken, at those of some times at which it is explained worst, each by itself.
+
+    Args:
+        starts: as `bent`; None: on its path.
+    """
     known = [float(_errors(tracker, (torn,), (t,))[0]) for t in some]
     some = [some[k] for k in sorted(np.argsort(known, kind="stable")[-WORST:])]
-    tried: list[Placed] = [torn]
-    for path, starts in _ways(tracker, torn):
-        none = Bend.none(tracker.means, len(path.offsets))
-        found = replace(path, bend=none if starts is None else replace(none, moves=starts))
-        for t in some:
-            found = _trained(tracker, found, t)
-        tried.append(found)
-    errors = _errors(tracker, tried, some)
-    return bool(errors[1:].min() < (BETTER if len(torn.parts) == 1 else ONE) * errors[0])
-
-
-def bent_best(tracker: Tracker, torn: Torn, some: Sequence[int]) -> Body:
-    """The body with its displacements: on the path that it has, or without one if some times are explained about as
-    well so."""
-    alone = len(torn.parts) == 1  # its nodes are followed better from time to time than from where it was taken to be
-    ways = [bent(tracker, path, None if alone else starts) for path, starts in _ways(tracker, torn)]
-    errors = _errors(tracker, ways, some)
-    return ways[0] if errors[0] <= AS_WELL * errors.min() else ways[int(errors.argmin())]
-
-
-def _ways(tracker: Tracker, torn: Torn) -> list[tuple[Body, F64 | None]]:
-    """Paths on which a body may bend, and what is known of its displacements: without a path, from where its parts are;
-    and on the path of its largest part."""
-    still = Body.at_rest(tracker.pivot, len(tracker.seconds))
-    none = Bend.none(tracker.means, len(tracker.seconds))
-    return [(still, torn.moves(none, tracker.means)), (torn.parts[0][1].seen_from(tracker.pivot), None)]
+    none = Bend.none(tracker.means, len(path.offsets))
+    found = replace(path, bend=none if starts is None else replace(none, moves=starts))
+    for t in some:
+        found = _trained(tracker, found, t)
+    errors = _errors(tracker, (torn, found), some)
+    return float(errors[1] / max(errors[0], 1e-9))
 
 
 def bent_alone(tracker: Tracker, some: Sequence[int]) -> Body | None:

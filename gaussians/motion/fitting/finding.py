@@ -16,7 +16,8 @@ from scipy.spatial import cKDTree
 
 from ...fit.parameters import Parameters
 from .axes import agrees, line_of
-from .bending import Torn, bends, bent_alone, bent_best
+from .bending import Torn, bent, bent_alone, gain_by_bending
+from .bends import Bend
 from .bodies import Body, Columns, Labelled
 from .budget import SEARCH_UNTIL, SEEDS_UNTIL, Budget, OutOfTime
 from .footage import Footage
@@ -27,6 +28,7 @@ from .smoothing import smoothed
 from .supposing import supposed
 from .tracking import Tracker
 
+F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
 EXPLAINS = 0.7  # of the difference without a body, to which its path must bring the pictures
@@ -36,6 +38,9 @@ AS_WELL = 1.05  # times the difference with its own path, up to which a body fol
 FREE_ALONE, LINE_ALONE = 1.5, 1.2  # the same of one camera, before which a free path explains what it should not
 PASSED = 0.5  # of the difference without the bodies that are known, to which they bring what they cover
 TOGETHER = 0.6  # of the difference standing still, below which a body follows another without a search of its own
+BENDS = 0.75  # of the difference with its path, below which a body bends
+ONE = 1.1  # of the difference with the paths of bodies that touch, below which they are one thing that bends
+ALONE = 1.1  # times what a body gains by bending on its path, up to which bending without a path is as good
 RIGHT = 0.05  # root mean square difference of colours up to which what stands still is taken to be covered meanwhile
 SORTED = 10  # times at which that is measured
 SETTLED = 1  # rounds in which paths are mended and Gaussians assigned to bodies
@@ -159,18 +164,30 @@ class Finder:
         return more
 
     def _bend(self, labelled: Labelled, bodies: list[Body]) -> None:
-        """Let bodies bend where that explains the frames much better than their paths, bodies that touch as one, with
-        what touches them; in place."""
+        """Let bodies bend where that explains the frames much better than their paths, bodies that touch as one: on the
+        path of the largest, or without one and with what touches them; in place."""
         for numbers in self._touching(labelled, bodies):
             self._check()
             own = np.flatnonzero(np.isin(labelled.labels, numbers))
-            rows = around(labelled.columns(), self._footage, own)
-            rows = rows[np.isin(labelled.labels[rows], [0, *numbers])]
-            tracker, torn = self._torn(labelled, bodies, numbers, rows)
-            times = sorted({t for _, body in torn.parts for t, _ in body.runs[1:]})
-            if not bends(tracker, torn, _some(times, 2 * SORTED)):
+            wide = around(labelled.columns(), self._footage, own)
+            wide = wide[np.isin(labelled.labels[wide], [0, *numbers])]
+            ways = list[tuple[float, Tracker, Body, F64 | None, I64]]()
+            for rows in (wide, own):
+                tracker, torn = self._torn(labelled, bodies, numbers, rows)
+                path, starts = bodies[numbers[0] - 1].seen_from(tracker.pivot), None
+                if rows is wide:
+                    path = Body.at_rest(tracker.pivot, len(tracker.seconds))
+                    starts = torn.moves(Bend.none(tracker.means, len(tracker.seconds)), tracker.means)
+                times = _some(sorted({t for _, body in torn.parts for t, _ in body.runs[1:]}), 2 * SORTED)
+                ways.append((gain_by_bending(tracker, torn, path, starts, times), tracker, path, starts, rows))
+            alone, on = ways
+            gain, tracker, path, told, rows = alone if alone[0] <= ALONE * on[0] else on
+            if gain > (BENDS if len(numbers) == 1 else ONE):
                 continue
-            bodies[numbers[0] - 1] = bent_best(tracker, torn, _some(times))
+            if len(numbers) == 1:  # nodes are followed better from time to time than from a path that is not theirs
+                told = None
+            bodies[numbers[0] - 1] = bent(tracker, path, told)
+            labelled.labels[own] = 0
             labelled.labels[rows] = numbers[0]
         self._renumber(labelled, bodies, labelled.labels)
 
