@@ -20,7 +20,7 @@ from ..world.box import Box, Boxes
 from . import keys
 from .boxes import boxes_over
 from .holding import STEP, Span, grid
-from .motion import Track, chained, combinations
+from .motion import Motion, Track, chained, combinations
 from .runs import held_by
 
 F64 = NDArray[np.float64]
@@ -35,20 +35,39 @@ class Piece:
     """Some Gaussians of a group that move alike.
 
     Attributes:
-        tracks: that move them, in their order; none for what stands still.
+        tracks: that move them, in their order; none for what stands still, or only changes its shape.
         points: `[P, 3]` some of them at the start.
         middle: `[3]` of them at the start.
         share: of the group's Gaussians, in [0, 1].
+        bent: `[T, P, 3]` displacements of the points at times, before the tracks; None: its shape does not change.
     """
 
     tracks: tuple[Track, ...]
     points: F64
     middle: F64
     share: float
+    bent: Callable[[F64], F64] | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is in tracks, or changes its shape."""
+        return bool(self.tracks) or self.bent is not None
 
     def poses(self, times: F64) -> tuple[F64, F64]:
         """`[T, 3, 3]` rotations and `[T, 3]` shifts."""
         return chained(list(self.tracks), times)
+
+    def center(self, times: F64) -> F64:
+        """`[T, 3]` its middle at times."""
+        turn, shift = self.poses(times)
+        away = np.zeros((len(times), 3)) if self.bent is None else self.bent(times).mean(axis=1)
+        return np.asarray(np.einsum("tij,tj->ti", turn, self.middle + away) + shift)
+
+    def places(self, times: F64) -> F64:
+        """`[T, P, 3]` its points at times."""
+        turn, shift = self.poses(times)
+        points = self.points if self.bent is None else self.points + self.bent(times)
+        return np.asarray(points @ turn.transpose(0, 2, 1) + shift[:, None])
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +80,7 @@ class Course:
         pieces: the largest first.
         start, stop: the time of the scene, seconds.
         up: `[3]` unit, world.
-        tracked: its boxes `[T]` where something of it is in tracks.
+        tracked: its boxes `[T]` where something of it moves.
     """
 
     group: int
@@ -74,18 +93,18 @@ class Course:
 
     @cached_property
     def moving_share(self) -> float:
-        """Share of its Gaussians that are in tracks."""
-        return sum(p.share for p in self.pieces if p.tracks)
+        """Share of its Gaussians that move."""
+        return sum(p.share for p in self.pieces if p.moves)
 
     @cached_property
     def moves(self) -> bool:
-        """Whether most of it is in tracks; it may stand still for all that."""
+        """Whether most of it is in tracks, or changes its shape; it may stand still for all that."""
         return self.moving_share > SHARE
 
     @cached_property
     def moving(self) -> Piece | None:
-        """The largest piece that is in tracks, None if there is none."""
-        return next((p for p in self.pieces if p.tracks), None)
+        """The largest piece that moves, None if there is none."""
+        return next((p for p in self.pieces if p.moves), None)
 
     def boxes(self, times: F64) -> Boxes:
         """Its upright boxes at T times."""
@@ -98,8 +117,7 @@ class Course:
         """`[T, 3]` the middle of its moving piece; of what stands still the middle of its box."""
         if self.moving is None:
             return np.tile(np.array(self.still.center), (len(times), 1))
-        turn, shift = self.moving.poses(times)
-        return np.asarray(turn @ self.moving.middle + shift)
+        return self.moving.center(times)
 
     def velocities(self, times: F64) -> F64:
         """`[T, 3]` of the middle, units a second."""
@@ -111,8 +129,7 @@ class Course:
         if self.moving is None:
             return np.zeros(len(times))
         early, late = self._around(times)
-        (turn, shift), (later, moved) = self.moving.poses(early), self.moving.poses(late)
-        way = self.moving.points @ (later - turn).transpose(0, 2, 1) + (moved - shift)[:, None]
+        way = self.moving.places(late) - self.moving.places(early)
         return np.asarray(np.linalg.norm(way, axis=2).max(axis=1) / (late - early))
 
     def turns(self, times: F64) -> F64:
@@ -147,10 +164,10 @@ class Course:
 
 
 def courses(scene: Scene) -> dict[int, Course]:
-    """The groups of an embedded scene of which Gaussians are in tracks, by id; none in a scene without motion."""
-    if scene.motion is None or scene.language is None or not scene.motion.tracks:
+    """The groups of an embedded scene of which Gaussians move, by id; none in a scene without motion."""
+    if scene.motion is None or scene.language is None:
         return {}
-    touched = boxes_over(scene, (scene.motion.start,))
+    touched = {*boxes_over(scene, (scene.motion.start,)), *_bent_groups(scene)}
     found = {group: course_of(scene, group) for group in sorted(touched)}
     return {group: course for group, course in found.items() if course.moving is not None}
 
@@ -161,7 +178,7 @@ def course_of(scene: Scene, group: int) -> Course:
     row, up, motion = scene.language.groups[group], scene.frame.up_vector, scene.motion
 
     def tracked(times: F64) -> list[Box]:
-        return boxes_over(scene, times)[group]
+        return boxes_over(scene, times).get(group) or [row.box] * len(times)
 
     if motion is None:
         return Course(group, row.box, (), 0.0, 0.0, up, tracked)
@@ -174,6 +191,11 @@ def course_of(scene: Scene, group: int) -> Course:
         if held.sum() > _STRAYS * len(ids):
             tracks = tuple(motion.tracks[i] for i in numbers)
             pieces.append(_piece(scene, rows[held], tracks, len(ids)))
+    for residual in motion.residuals:
+        held = np.isin(ids, residual.ids) & left
+        left &= ~held
+        if held.sum() > _STRAYS * len(ids):
+            pieces.append(_piece(scene, rows[held], (), len(ids)))
     if left.sum() > _STRAYS * len(ids):
         pieces.append(_piece(scene, rows[left], (), len(ids)))
     pieces.sort(key=lambda p: -p.share)
@@ -193,4 +215,35 @@ def _piece(scene: Scene, rows: NDArray[np.int64], tracks: tuple[Track, ...], cou
     """Some rows of a group of `count` Gaussians as a piece."""
     points = scene.cloud.means[torch.from_numpy(rows)].double().cpu().numpy()
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    return Piece(tracks, points[:: max(len(points) // _SPREAD, 1)], middle, len(rows) / count)
+    some = slice(None, None, max(len(points) // _SPREAD, 1))
+    ids = scene.cloud.ids[torch.from_numpy(rows[some])].cpu().numpy()
+    return Piece(tracks, points[some], middle, len(rows) / count, _bent(scene.motion, ids))
+
+
+def _bent(motion: Motion | None, ids: NDArray[np.int64]) -> Callable[[F64], F64] | None:
+    """The displacements `[T, P, 3]` of some Gaussians at times; None: they have none."""
+    own = [r for r in (() if motion is None else motion.residuals) if np.isin(ids, r.ids).any()]
+    if not own:
+        return None
+
+    def bent(times: F64) -> F64:
+        found = np.zeros((len(times), len(ids), 3))
+        for residual in own:
+            held = np.flatnonzero(np.isin(ids, residual.ids))
+            weights = residual.weights[np.searchsorted(residual.ids, ids[held])]
+            found[:, held] += np.einsum("tb,nbc->tnc", residual.at(times), weights)
+        return found
+
+    return bent
+
+
+def _bent_groups(scene: Scene) -> set[int]:
+    """The groups of which Gaussians are displaced one by one, and what these are parts of."""
+    assert scene.motion is not None and scene.language is not None
+    if not scene.motion.residuals:
+        return set()
+    ids = torch.from_numpy(np.concatenate([residual.ids for residual in scene.motion.residuals]))
+    held = torch.unique(scene.cloud.group[torch.isin(scene.cloud.ids.cpu(), ids)]).tolist()
+    table = scene.language.groups
+    own = {int(g) for g in held if 0 <= g < len(table)}
+    return own | ({table[g].parent for g in own} - {-1})

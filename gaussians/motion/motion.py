@@ -290,10 +290,13 @@ class Residual:
         for name, value in {"ids": ids, "times": times, "basis": basis, "weights": weights}.items():
             object.__setattr__(self, name, value)
 
+    def at(self, times: F64) -> F64:
+        """The basis `[T, B]` at times."""
+        return np.asarray(keys.between(self.times, self.basis, times, smooth=True))
+
     def displacements(self, time: float) -> F64:
         """`[n, 3]` at a time, scene units."""
-        now = keys.between(self.times, self.basis, np.array([time], dtype=np.float64), smooth=True)[0]
-        return np.asarray(np.einsum("b,nbc->nc", now, self.weights))
+        return np.asarray(np.einsum("b,nbc->nc", self.at(np.array([time], dtype=np.float64))[0], self.weights))
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,7 +23,7 @@ from ..operation import Context, Length, Outcome, TargetedOp
 from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_most
 from ..timing.bending import bent, upright_turns
-from ..timing.retiming import Warp, divided, moved, movement, playing, with_tracks
+from ..timing.retiming import Warp, divided, moved, movement, parted, playing, waving, with_tracks
 from ..timing.spans import Span, spans_of
 from ..when import During, When
 
@@ -135,10 +135,11 @@ class Pace(TargetedOp):
             raise InstructionError(
                 f"{self.target.describe()} does not move: say what it is to do, as 'move it to the sofa in 3 seconds'"
             )
-        if any(np.isin(residual.ids, ids).any() for residual in motion.residuals) or (self._whole and motion.residuals):
+        waves, residuals = parted(motion.residuals, ids)
+        if waves and self.change in ("part", "mirror", "turn", "go_on"):
             raise InstructionError(
-                f"some of {self.target.describe()} moves point by point (a displacement of each Gaussian), and when "
-                "that happens cannot be changed: name things that move as a whole"
+                f"some of {self.target.describe()} changes its shape, which has no way or turn that could be another "
+                "one: say when it is to move, or how fast"
             )
         when = When(during=self.when.during) if self.when is not None and self._of_one_movement else self.when
         spans = spans_of(when, scene, selection, context) if when is not None else []
@@ -149,13 +150,16 @@ class Pace(TargetedOp):
         for group in _things(scene, selection, ids, self._whole):
             held = [i for i, t in enumerate(tracks) if inside[i] and np.isin(t.ids, group).any()]
             own = [tracks[i] for i in held]
-            span = movement(own, motion.start, motion.stop)
+            shapes, waves = parted(waves, group)
+            residuals += shapes
+            span = movement(own, motion.start, motion.stop, shapes)
             if span is None:
                 continue
             if (
                 self.change in ("speed", "reverse", "go_on")
                 and (turning := [is_turning(t) for t in own])
                 and all(turning)
+                and not shapes
             ):
                 for i in held:
                     made[i], end = self._turned(tracks[i], motion, spans)
@@ -177,8 +181,9 @@ class Pace(TargetedOp):
                 warp, end = self._warp(motion, own, span, spans)
             for i in held:
                 made[i] = playing(tracks[i], warp)
+            residuals[len(residuals) - len(shapes) :] = [waving(shape, warp) for shape in shapes]
             stop = end if self._whole else max(stop, end)
-        after = with_tracks(scene, made, stop)
+        after = with_tracks(scene, made, stop, tuple(residuals))
         moving = torch.from_numpy(ids)
         return Outcome(after, touched=moving, notes=self._notes(stop, motion))
 
@@ -187,7 +192,7 @@ class Pace(TargetedOp):
 
     def _warp(self, motion: Motion, own: list[Track], span: Span, spans: list[Span]) -> tuple[Warp, float]:
         """Which old time is shown when, and when the scene or the movement then ends."""
-        whole = self._whole or (self.change == "reverse" and _is_even(own, span))
+        whole = self._whole or (self.change == "reverse" and bool(own) and _is_even(own, span))
         low, high = (motion.start, motion.stop) if whole else span
         start = spans[0][0] if spans and math.isfinite(spans[0][0]) else None
         stop = spans[0][1] if spans and math.isfinite(spans[0][1]) else None
@@ -266,7 +271,9 @@ class Pace(TargetedOp):
             first = max(spans[0][0], high + _NO_TIME)
             end = first + _NO_TIME + high - low
             until = whole if self.when is not None and self.when.stop == "end" else spans[0][1]
-            if first < until < end and all(map(is_turning, own)):  # what turns round and round may stop anywhere
+            if (
+                first < until < end and own and all(map(is_turning, own))
+            ):  # what turns round and round may stop anywhere
                 last = low + until - first - _NO_TIME
                 return Warp((low, high, first, first + _NO_TIME, until), (low, high, high, low, last), 0.0, 0.0), until
             return Warp((low, high, first, first + _NO_TIME, end), (low, high, high, low, high), 0.0, 0.0), end

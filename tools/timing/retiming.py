@@ -95,7 +95,7 @@ def moved(part: tuple[float, float], to: tuple[float, float], before: float, beh
 
 def playing(track: Track, warp: Warp) -> Track:
     """A track that shows at each time what it showed at the mapped time; its start may not be at rest."""
-    times, values = _keys(track, warp)
+    times, values = _keys(track.times, warp, track.kind == "spin")
     if track.axis is not None and track.angles is not None:
         spins = track.kind == "spin" and abs(warp.after) > _SAME
         angles = angles_at(track, values)
@@ -109,12 +109,23 @@ def playing(track: Track, warp: Warp) -> Track:
     return Track.poses_at(track.ids, times, turns, shifts, track.pivot, track.smooth, track.name)
 
 
-def _keys(track: Track, warp: Warp) -> tuple[F64, F64]:
-    """The times of the keys of a track that is played in other time, and the old times that they show."""
-    times = warp.when(track.times)
-    complete = len(warp.new) == 1 and len(times) == len(track.times)
+def waving(residual: Residual, warp: Warp) -> Residual:
+    """Displacements that are at each time what they were at the mapped time; at its start they may not be 0."""
+    times, values = _keys(residual.times, warp, False)
+    return replace(residual, times=times, basis=residual.at(values))
+
+
+def _keys(old: F64, warp: Warp, spins: bool) -> tuple[F64, F64]:
+    """The times of the keys of what is played in other time, and the old times that they show.
+
+    Args:
+        old: the times of its keys.
+        spins: whether it goes on behind the last one.
+    """
+    times = warp.when(old)
+    complete = len(warp.new) == 1 and len(times) == len(old)
     single = complete and (times[0] >= warp.new[0] or times[-1] <= warp.new[0])  # all of it is played at one rate
-    if single and track.kind == "spin" and times[-1] < warp.new[0]:  # it goes on until then
+    if single and spins and times[-1] < warp.new[0]:  # it goes on until then
         times = np.append(times, warp.new[0])
     if not single and warp.rate is None:
         times = np.unique(np.concatenate([times, np.array(warp.new)]))
@@ -178,9 +189,18 @@ def _united(found: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return made
 
 
-def movement(tracks: Iterable[Track], start: float, stop: float) -> tuple[float, float] | None:
-    """When what the tracks move begins and ends to move, seconds; None if it never does."""
-    return whole(spells(tracks, start, stop))
+def movement(
+    tracks: Iterable[Track], start: float, stop: float, residuals: Iterable[Residual] = ()
+) -> tuple[float, float] | None:  # fmt: skip
+    """When what the tracks and residuals move begins and ends to move, seconds; None if it never does."""
+    own = [(float(r.times[a]), float(r.times[a + 1])) for r in residuals for a in np.flatnonzero(_waves(r))]
+    return whole(sorted([*spells(tracks, start, stop), *own]))
+
+
+def _waves(residual: Residual) -> NDArray[np.bool_]:
+    """`[K - 1]` whether something is displaced from one key to the next."""
+    reach = np.linalg.norm(residual.weights, axis=2).max(axis=0, initial=0.0)
+    return np.asarray((np.abs(np.diff(residual.basis, axis=0)) * reach).sum(axis=1) > _STILL)
 
 
 def whole(found: list[tuple[float, float]]) -> tuple[float, float] | None:
@@ -226,8 +246,20 @@ def divided(motion: Motion, ids: I64) -> tuple[list[Track], list[bool]]:
     return tracks, inside
 
 
+def parted(residuals: Iterable[Residual], ids: I64) -> tuple[list[Residual], list[Residual]]:
+    """What residuals say of some ids, and of all others."""
+    inside, outside = list[Residual](), list[Residual]()
+    for residual in residuals:
+        own = np.isin(residual.ids, ids)
+        for part, found in ((own, inside), (~own, outside)):
+            if part.any():
+                found.append(replace(residual, ids=residual.ids[part], weights=residual.weights[part]))
+    return inside, outside
+
+
 def with_tracks(scene: Scene, tracks: list[Track], stop: float, residuals: tuple[Residual, ...] | None = None) -> Scene:
-    """The scene with other tracks, which need not be at rest at its start: the cloud becomes what they show there.
+    """The scene with other tracks, and residuals, which need not be at rest at its start: the cloud becomes what they
+    show there.
 
     Raises:
         UserError: as `Motion`.
@@ -237,6 +269,8 @@ def with_tracks(scene: Scene, tracks: list[Track], stop: float, residuals: tuple
     looks = () if old is None else old.looks
     kept = (() if old is None else old.residuals) if residuals is None else residuals
     after, done = scene, list[Track]()
+    if residuals is not None:
+        after, kept = _displaced(scene, residuals, start)
     for track in tracks:
         turns, shifts = poses(track, (start,))
         begin, away = turns[0], shifts[0]
@@ -244,9 +278,9 @@ def with_tracks(scene: Scene, tracks: list[Track], stop: float, residuals: tuple
             done.append(track)
             continue
         ids = track.ids
-        motion = carried(Motion(tuple(done), looks, (), start, max(stop, start)), ids, begin, away)
+        motion = carried(Motion(tuple(done), looks, kept, start, max(stop, start)), ids, begin, away)
         if motion is not None:
-            done, looks = list(motion.tracks), motion.looks
+            done, looks, kept = list(motion.tracks), motion.looks, motion.residuals
         rows = rows_of_ids(after.cloud.ids, torch.from_numpy(ids))
         draft = Draft(after.cloud)
         turn(draft, rows, begin, away)
@@ -256,6 +290,23 @@ def with_tracks(scene: Scene, tracks: list[Track], stop: float, residuals: tuple
         done.append(_from_start(track, begin, away, start))
     made = Motion(tuple(t for t in done if not t.still), looks, kept, start, max(stop, start))
     return after.replace(motion=made or None)
+
+
+def _displaced(scene: Scene, residuals: tuple[Residual, ...], start: float) -> tuple[Scene, tuple[Residual, ...]]:
+    """The scene with its Gaussians where residuals have them at its start, and the residuals from there on."""
+    draft, kept, moved = Draft(scene.cloud), list[Residual](), False
+    for residual in residuals:
+        begin = residual.at(np.array([start]))[0]
+        if not begin.any():
+            kept.append(residual)
+            continue
+        rows = rows_of_ids(scene.cloud.ids, torch.from_numpy(residual.ids))
+        place = np.searchsorted(residual.ids, scene.cloud.ids[rows].cpu().numpy())
+        away = torch.from_numpy(np.einsum("b,nbc->nc", begin, residual.weights)[place])
+        draft.map("means", rows, lambda means, away=away: means + away.to(means))  # type: ignore[misc]
+        kept.append(replace(residual, basis=residual.basis - begin))
+        moved = True
+    return (scene.replace(cloud=draft.done()) if moved else scene), tuple(kept)
 
 
 def _from_start(track: Track, begin: F64, away: F64, start: float) -> Track:

@@ -122,7 +122,7 @@ def turning(body: Body) -> list[Span]:
     goes = way > 0.5 * max(body.group.box.size) and float(np.linalg.norm(events.displacement(course))) > 0.3 * way
     if yaw < TURNS:
         return list(body.moving) if events.turned(course) > TURNS else []
-    if not goes or course.moving is None or course.moving.tracks[0].kind in ("hinge", "spin"):
+    if not goes or course.moving is None or any(t.kind in ("hinge", "spin") for t in course.moving.tracks[:1]):
         return list(body.moving)
 
     def rate(times: F64) -> F64:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -461,15 +462,43 @@ def test_going_there_and_back_makes_a_short_scene_longer(moving: Scene, context:
     assert np.allclose(middle(made, 5.0), middle(moving, 0.0), atol=1e-4)
 
 
-def test_the_time_of_what_moves_point_by_point_is_not_changed(moving: Scene, context: Context) -> None:
+@pytest.fixture
+def swaying(moving: Scene) -> Scene:
+    """The moving scene, in which the vase changes its shape, too, from 1 to 3 s, and does not come back."""
     ids = moving.cloud.ids[moving.cloud.group == VASE].numpy()
-    weights = np.full((len(ids), 1, 3), 0.01, np.float32)
-    residual = Residual(ids, np.array([0.0, 4.0]), np.array([[0.0], [1.0]]), weights)
+    weights = np.random.default_rng(0).normal(size=(len(ids), 2, 3)).astype(np.float32) / 20
+    basis = np.array([[0, 0], [0, 0], [1, 0.5], [0.5, -1], [0.5, -1]])
     assert moving.motion is not None
-    scene = moving.replace(motion=replace(moving.motion, residuals=(residual,)))
-    with pytest.raises(InstructionError, match="point by point"):
-        done(scene, {"op": "pace", "target": {"groups": [VASE]}, "change": "reverse"}, context)
-    done(scene, {"op": "pace", "target": A_CHAIR, "change": "reverse"}, context)
+    residual = Residual(ids, np.array([0.0, 1.0, 2.0, 3.0, 4.0]), basis, weights)
+    return moving.replace(motion=replace(moving.motion, residuals=(residual,)))
+
+
+@pytest.mark.parametrize(
+    ("fields", "shows"),
+    [
+        ({"change": "reverse"}, lambda t: np.clip(4.0 - t, 1.0, 3.0)),
+        ({"change": "speed", "factor": 2.0}, lambda t: 1.0 + 2.0 * (t - 1.0) if t > 1.0 else t),
+        ({"change": "later", "seconds": 0.5}, lambda t: max(t - 0.5, 0.0)),
+        ({"change": "stop", "when": {"start": 2.0}}, lambda t: min(t, 2.0)),
+        ({"change": "begin", "when": {"start": 2.0, "lasting": 1.0}}, lambda t: 1.0 + 2.0 * np.clip(t - 2.0, 0.0, 1.0)),
+    ],
+)
+def test_what_changes_its_shape_does_so_at_other_times(
+    swaying: Scene, context: Context, fields: dict[str, Any], shows: Callable[[float], float]
+) -> None:
+    made = done(swaying, {"op": "pace", "target": {"groups": [VASE]}, **fields}, context).scene
+    own, other = swaying.cloud.group == VASE, swaying.cloud.group != VASE
+    for t in np.linspace(0.0, 4.0, 17):
+        found = at(made, t).cloud.means
+        torch.testing.assert_close(found[own], at(swaying, float(shows(t))).cloud.means[own], atol=2e-3, rtol=0)
+        torch.testing.assert_close(found[other], at(swaying, t).cloud.means[other], atol=1e-5, rtol=0)
+
+
+def test_a_shape_has_no_turn_to_be_another(swaying: Scene, context: Context) -> None:
+    for change in ({"change": "mirror"}, {"change": "part", "share": 0.5}, {"change": "go_on"}):
+        with pytest.raises(InstructionError, match="changes its shape"):
+            done(swaying, {"op": "pace", "target": {"groups": [VASE]}, **change}, context)
+    done(swaying, {"op": "pace", "target": A_CHAIR, "change": "reverse"}, context)
 
 
 def test_what_spins_turns_about_itself_as_often_as_was_said(corner: Scene, context: Context) -> None:

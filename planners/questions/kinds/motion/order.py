@@ -126,7 +126,7 @@ def story(body: Body, told: Told) -> list[Event]:
                 for kind in ("open", "close")
                 if (a, b) in (spans_of(Deed(kind), body, (), line, told.survey) or [])
             ]
-            slides = body.course.moving is not None and body.course.moving.tracks[0].kind == "slide"
+            slides = body.course.moving is not None and any(t.kind == "slide" for t in body.course.moving.tracks[:1])
             words = {"open": "slides out" if slides else "opens", "close": "slides back in" if slides else "closes"}
             found.append((a, f"{body.name} {words[said[0]] if said else 'moves'}", body))
             continue

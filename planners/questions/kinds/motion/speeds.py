@@ -233,7 +233,7 @@ def _far_one(told: Told, body: Body) -> Answer:
     )
     if angle:
         return _angle(told, body, found, unit)
-    slides = body.course.moving is not None and all(t.kind == "slide" for t in body.course.moving.tracks)
+    slides = body.course.moving is not None and {t.kind for t in body.course.moving.tracks} == {"slide"}
     if (deed.kind in ("open", "close", "is_open") and not hinged(body)) or (
         deed.kind == "move" and slides and window is None and not _TOTAL.search(told.asked.text)
     ):
