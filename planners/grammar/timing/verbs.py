@@ -29,7 +29,7 @@ SENSES: dict[str, str] = {
         "and round",
     "go": "roll, walk, drive, fly, glide, run, hop, crawl, march, wander, stroll, travel, jump, hover, scoot, "
         "trundle, dance, creep, rush, race, sail, slither, cruise, zoom, drift, trot, bounce, swing, float, "
-        "ride, sway, shuffle, step, proceed, coast, saunter",
+        "ride, sway, shuffle, step, proceed, coast, saunter, wave, flutter, flap, billow, ripple, undulate",
     "move": "move, go, come, slide, shift, return, head, get, push, pull, carry, send, bring, take, drag, "
         "shove, haul, translate, relocate, transfer, put, lead, steer, pass",
     "rise": "rise, ascend, climb, levitate, lift, lift off, lift up, raise, hoist, elevate, float up, rise up, "

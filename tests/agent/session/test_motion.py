@@ -10,6 +10,7 @@ import torch
 
 from scenewright.agent.session.session import Session
 from scenewright.benchmarks._motion.rooms import moving_room
+from scenewright.benchmarks._motion.soft import soft_room
 from scenewright.gaussians.errors import ScenewrightError
 from scenewright.gaussians.files import load
 from scenewright.gaussians.language.query.query import Query
@@ -79,3 +80,15 @@ def test_a_session_tells_how_something_would_move() -> None:
     assert session.after([session.plan("paint the sofa red").ops[0]], ball) is None  # that is no change of a motion
     assert session.after([stopped.model_copy(update={"when": None})], ball) == (0.0, 0.0, False, 5.0, 0.0, 0.0, (), ())
     assert session.scene is before
+
+
+def test_what_changes_its_shape_is_asked_of_and_told_when_to() -> None:
+    session = Session(soft_room("towel", 0.1), accept_unconfirmed=True)
+    assert session.ask("what moves?").answer == "towel"
+    assert session.ask("when does the towel start to wave?").answer == pytest.approx(0.5, abs=0.05)
+    assert session.ask("when does the towel stop flapping?").answer == pytest.approx(4.5, abs=0.05)
+    assert session.ask("does the bench move?").answer == "no"
+    session.do("let the towel wave twice as fast")
+    assert session.ask("how long does the towel wave?").answer == pytest.approx(2.0, abs=0.05)
+    session.undo()
+    assert session.ask("how long does the towel wave?").answer == pytest.approx(4.0, abs=0.05)

@@ -26,12 +26,13 @@ _IRREGULAR = {
 _PAST = bag(" ".join(_IRREGULAR.values())) - bag("does am is are 's having")
 _DOUBLED = bag(
     "stop travel drop plop flop run spin hop step get shut hit set sit bob slip pop begin quit skid flip tip jog ram "
-    "whir"
+    "whir flap"
 )
 
 CLASSES = {
     "GO": "move go travel roll walk run drive slide glide fly shift wander march float drift budge advance stroll hop "
-    "creep crawl step stride cruise proceed jump head journey trundle race stir jog pace skid",
+    "creep crawl step stride cruise proceed jump head journey trundle race stir jog pace skid wave flutter flap billow "
+    "ripple undulate",
     "COME": "come get pull pop stick poke protrude jut",
     "TURN": "turn spin rotate revolve swing whirl twirl swivel pivot circle gyrate wheel veer pirouette",
     "FALL": "fall drop tumble plunge topple plummet sink descend plop flop",
