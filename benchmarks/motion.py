@@ -10,7 +10,7 @@ what moves) is not measured.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from statistics import fmean
 from typing import NamedTuple, get_args
 
@@ -116,7 +116,7 @@ def _means(rig: Rig, every: Sequence[Figures]) -> list[Metric]:
     """Means over rooms; of paths, over those where something was found."""
     found = [f.path for f in every if f.found > 0]
     metrics = [
-        Metric(f"fit.mean.{rig}.{name}", _mean(getattr(f, name) for f in every), unit, "higher", 0.03)
+        Metric(f"fit.mean.{rig}.{name}", fmean(known), unit, "higher", 0.03)
         for name, unit in (
             ("whole", "dB"),
             ("inside", "dB"),
@@ -125,10 +125,6 @@ def _means(rig: Rig, every: Sequence[Figures]) -> list[Metric]:
             ("assigned", "IoU"),
             ("kept", "IoU"),
         )
+        if (known := [v for f in every if not math.isnan(v := getattr(f, name))])
     ]
     return [*metrics, Metric(f"fit.mean.{rig}.path", fmean(found), "m", "lower", 0.2)] if found else metrics
-
-
-def _mean(values: Iterable[float]) -> float:
-    """Without those that are not measured."""
-    return fmean(value for value in values if not math.isnan(value))

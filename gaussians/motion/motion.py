@@ -290,6 +290,11 @@ class Residual:
         for name, value in {"ids": ids, "times": times, "basis": basis, "weights": weights}.items():
             object.__setattr__(self, name, value)
 
+    @property
+    def still(self) -> bool:
+        """Whether it displaces nothing at any time."""
+        return not (self.basis.any() and self.weights.any())
+
     def at(self, times: F64) -> F64:
         """The basis `[T, B]` at times."""
         return np.asarray(keys.between(self.times, self.basis, times, smooth=True))
@@ -413,7 +418,7 @@ def moving_ids(motion: Motion | None) -> I64:
     if motion is None:
         return np.zeros(0, dtype=np.int64)
     parts = [track.ids for track in motion.tracks if not track.still]
-    parts += [residual.ids for residual in motion.residuals if np.abs(residual.weights).max(initial=0.0) > 0]
+    parts += [residual.ids for residual in motion.residuals if not residual.still]
     return np.unique(np.concatenate(parts)) if parts else np.zeros(0, dtype=np.int64)
 
 

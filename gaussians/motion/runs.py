@@ -18,7 +18,7 @@ def runs_of(ids: ArrayLike) -> I64:
         UserError: they are no whole numbers.
     """
     given = np.asarray(ids)
-    if given.size and (given.dtype.kind not in "iufb" or (given != np.floor(given)).any()):
+    if given.size and (given.dtype.kind not in "iuf" or (given != np.floor(given)).any()):
         raise UserError("the ids of a motion must be whole numbers, as those of `session.select(...)` are")
     ordered = np.unique(given.astype(np.int64).reshape(-1))
     if not len(ordered):

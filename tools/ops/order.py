@@ -20,7 +20,7 @@ from ..checks import count_matches
 from ..operation import Context, Outcome, TargetedOp
 from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_most
-from ..timing.retiming import Warp, divided, movement, playing, with_tracks
+from ..timing.retiming import Warp, divided, movement, parted, playing, waving, with_tracks
 from ..timing.spans import spans_of
 
 I64 = NDArray[np.int64]
@@ -81,7 +81,8 @@ class Order(TargetedOp):
             ids = np.intersect1d(scene.cloud.ids[rows].cpu().numpy(), moving)
             if motion is None or not len(ids):
                 continue
-            span = movement([t for t in tracks if np.isin(t.ids, ids).any()], motion.start, motion.stop)
+            own = [t for t in tracks if np.isin(t.ids, ids).any()]
+            span = movement(own, motion.start, motion.stop, parted(motion.residuals, ids)[0])
             if span is not None:
                 things.append((group, ids, span[0]))
         if motion is None or len(things) < 2:
@@ -89,17 +90,20 @@ class Order(TargetedOp):
         things.sort(key=lambda t: t[2])
         begins = self._begins([t[2] for t in things], scene, selection, context)
         placed = self._placed(things, scene, context)
-        end = motion.stop
+        end, residuals = motion.stop, list(motion.residuals)
         for (_, ids, was), begin in zip(placed, begins, strict=True):
             tracks, inside = divided(motion.replace(tracks=tuple(tracks)), ids)
             warp = Warp((begin,), (was,), 0.0, 1.0)
             tracks = [playing(t, warp) if own and begin != was else t for t, own in zip(tracks, inside, strict=True)]
-            span = movement([t for t, own in zip(tracks, inside, strict=True) if own], motion.start, 1e4)
+            shapes, residuals = parted(residuals, ids)
+            shapes = [waving(shape, warp) if begin != was else shape for shape in shapes]
+            residuals += shapes
+            span = movement([t for t, own in zip(tracks, inside, strict=True) if own], motion.start, 1e4, shapes)
             end = max(end, min(span[1], 1e4) if span is not None else end)
         stop = end if end < 1e4 else motion.stop
         touched = torch.from_numpy(np.unique(np.concatenate([ids for _, ids, _ in placed])))
         notes = (f"the scene lasts {stop:g} s now",) if stop > motion.stop + _SAME else ()
-        return Outcome(with_tracks(scene, tracks, stop), touched=touched, notes=notes)
+        return Outcome(with_tracks(scene, tracks, stop, tuple(residuals)), touched=touched, notes=notes)
 
     def _begins(self, was: list[float], scene: Scene, selection: Selection, context: Context) -> list[float]:
         """When the first, second, ... of them begins, seconds."""

@@ -147,6 +147,7 @@ class Pace(TargetedOp):
         tracks, inside = divided(motion, ids)
         stop = motion.stop
         made = list(tracks)
+        paced = False
         for group in _things(scene, selection, ids, self._whole):
             held = [i for i, t in enumerate(tracks) if inside[i] and np.isin(t.ids, group).any()]
             own = [tracks[i] for i in held]
@@ -155,6 +156,7 @@ class Pace(TargetedOp):
             span = movement(own, motion.start, motion.stop, shapes)
             if span is None:
                 continue
+            paced = True
             if (
                 self.change in ("speed", "reverse", "go_on")
                 and (turning := [is_turning(t) for t in own])
@@ -183,6 +185,8 @@ class Pace(TargetedOp):
                 made[i] = playing(tracks[i], warp)
             residuals[len(residuals) - len(shapes) :] = [waving(shape, warp) for shape in shapes]
             stop = end if self._whole else max(stop, end)
+        if not paced:
+            raise InstructionError(f"{self.target.describe()} hardly moves: say what it is to do")
         after = with_tracks(scene, made, stop, tuple(residuals))
         moving = torch.from_numpy(ids)
         return Outcome(after, touched=moving, notes=self._notes(stop, motion))

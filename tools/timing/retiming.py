@@ -15,7 +15,7 @@ from ...gaussians.motion.runs import runs_of
 from ...gaussians.rows import rows_of_ids
 from ...gaussians.scene import Scene
 from ..cloud_diff import Draft
-from ..field_update import after_move
+from ..field_update import after_move, with_measures
 from ..operation import Affine
 from ..transform import turn
 from .bending import upright_turns
@@ -193,14 +193,22 @@ def movement(
     tracks: Iterable[Track], start: float, stop: float, residuals: Iterable[Residual] = ()
 ) -> tuple[float, float] | None:  # fmt: skip
     """When what the tracks and residuals move begins and ends to move, seconds; None if it never does."""
-    own = [(float(r.times[a]), float(r.times[a + 1])) for r in residuals for a in np.flatnonzero(_waves(r))]
+    own = [(float(r.times[a]), float(r.times[a + 1])) for r in residuals for a in _waves(r)]
     return whole(sorted([*spells(tracks, start, stop), *own]))
 
 
-def _waves(residual: Residual) -> NDArray[np.bool_]:
-    """`[K - 1]` whether something is displaced from one key to the next."""
+def _waves(residual: Residual) -> I64:
+    """The keys from which to the next something is displaced: those since it was last as it is, together, farther than
+    what is no movement."""
     reach = np.linalg.norm(residual.weights, axis=2).max(axis=0, initial=0.0)
-    return np.asarray((np.abs(np.diff(residual.basis, axis=0)) * reach).sum(axis=1) > _STILL)
+    found, since = list[int](), 0
+    for key in range(1, len(residual.basis)):
+        if (np.abs(residual.basis[key] - residual.basis[since]) * reach).sum() > _STILL:
+            found += range(since, key)
+            since = key
+        elif not (residual.basis[key] != residual.basis[key - 1]).any():  # it rests
+            since = key
+    return np.array(found, np.int64)
 
 
 def whole(found: list[tuple[float, float]]) -> tuple[float, float] | None:
@@ -288,6 +296,7 @@ def with_tracks(scene: Scene, tracks: list[Track], stop: float, residuals: tuple
         body = Affine(rows, begin, away, rows)
         after = after.replace(cloud=cloud, language=after_move(after, cloud, (body,)))
         done.append(_from_start(track, begin, away, start))
+    kept = tuple(residual for residual in kept if not residual.still)
     made = Motion(tuple(t for t in done if not t.still), looks, kept, start, max(stop, start))
     return after.replace(motion=made or None)
 
@@ -306,7 +315,11 @@ def _displaced(scene: Scene, residuals: tuple[Residual, ...], start: float) -> t
         draft.map("means", rows, lambda means, away=away: means + away.to(means))  # type: ignore[misc]
         kept.append(replace(residual, basis=residual.basis - begin))
         moved = True
-    return (scene.replace(cloud=draft.done()) if moved else scene), tuple(kept)
+    if moved:
+        after = scene.replace(cloud=draft.done())
+        ids = torch.from_numpy(np.unique(np.concatenate([residual.ids for residual in residuals])))
+        scene = after.replace(language=with_measures(after, ids))
+    return scene, tuple(kept)
 
 
 def _from_start(track: Track, begin: F64, away: F64, start: float) -> Track:

@@ -23,11 +23,11 @@ F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
 STEPS = 16  # of Adam at each time
-RATE, LAST = 0.1, 0.15  # size of a step, of the distance between nodes; and of the last one, of that
+RATE, LAST = 0.1, 0.15  # size of a step, of how far a node is felt; and of the last one, of that
 TOGETHER = 0.06  # how far a node is drawn towards its neighbours at each step
 LEADS = 0.7  # of the change since the time before, which is taken to go on
-WORST = 5  # times by which that is told
-EXPLAINS = 0.5  # the same of what has no path and stands still otherwise
+WORST = 5  # times by which is told whether a body bends
+EXPLAINS = 0.5  # of the difference standing still, below which what has no path bends
 HIDDEN = 0.5  # of the area at the first time, below which a body hides, so that the pictures tell nothing of it
 
 

@@ -22,7 +22,7 @@ from .bodies import Body, Columns, Labelled
 from .budget import SEARCH_UNTIL, SEEDS_UNTIL, Budget, OutOfTime
 from .footage import Footage
 from .rolling import Ball
-from .seeds import LEAST, Flags, around, gone, halves, reach, seeds
+from .seeds import LEAST, Flags, around, changing_partly, gone, halves, reach, seeds
 from .sharing import shared
 from .smoothing import smoothed
 from .supposing import supposed
@@ -92,7 +92,7 @@ class Finder:
         for _ in range(SETTLED):
             self._follow(labelled, bodies)
             if self._bends:
-                self._bend(labelled, bodies)
+                self._let_bend(labelled, bodies)
             self._settle(labelled, bodies)
         self._sort_out(labelled, bodies)
         self._follow(labelled, bodies)
@@ -129,7 +129,7 @@ class Finder:
             elif tried < 2 * MOST_BODIES and not self._alone:
                 queue = [*queue, *halves(rows, flags)]
         if self._bends:
-            found += self._bent(columns, whole, still, found)
+            found += self._without_path(columns, whole, still, found)
         labels, bodies = np.zeros(len(flags), np.int32), list[Body]()
         for rows, body in found:
             same = next((k for k, b in enumerate(bodies) if _alike(b, body, columns[0][rows], footage.radius)), None)
@@ -139,21 +139,30 @@ class Finder:
             labels[rows] = same + 1
         return labels, bodies, tried
 
-    def _bent(
+    def _without_path(
         self, columns: Columns, whole: Sequence[I64], still: Flags, found: Sequence[tuple[I64, Body]]
     ) -> list[tuple[I64, Body]]:  # fmt: skip
         """Of seeds of which nothing has a path, those that bend, with what they bend with."""
-        known, more = still.copy(), list[tuple[I64, Body]]()
+        still, more = still.copy(), list[tuple[I64, Body]]()
         for rows, _ in found:
-            known[rows] = True
-        free = [rows for rows in whole if not known[rows].any()]
+            still[rows] = False
+        known = np.concatenate([np.zeros(0, np.int64), *(rows for rows, _ in found)])
+        free = [rows for rows in whole if not np.isin(rows, known).any()]
         for rows in free:
+            still[rows] = True
+        partly = None
+        for rows in free:
+            if not still[rows].all():
+                continue  # an earlier one took it along
             self._tell()
-            rows = around(columns, self._footage, rows)
-            rows = rows[still[rows] | np.isin(rows, np.concatenate(free))]
-            rest = still.copy()
-            rest[rows] = False
             try:
+                self._check()
+                if partly is None:
+                    partly = changing_partly(columns, self._footage)
+                rows = around(columns, self._footage, rows, partly)
+                rows = rows[still[rows]]
+                rest = still.copy()
+                rest[rows] = False
                 tracker = Tracker(columns, rows, rest, self._footage, self._seed, [*found, *more], self._check)
                 body = bent_alone(tracker, _some(range(1, len(self._footage.times))))
             except OutOfTime:
@@ -161,15 +170,21 @@ class Finder:
                 break
             if body is not None:
                 more.append((rows, body))
+                still[rows] = False
         return more
 
-    def _bend(self, labelled: Labelled, bodies: list[Body]) -> None:
+    def _let_bend(self, labelled: Labelled, bodies: list[Body]) -> None:
         """Let bodies bend where that explains the frames much better than their paths, bodies that touch as one: on the
         path of the largest, or without one and with what touches them; in place."""
-        for numbers in self._touching(labelled, bodies):
+        groups = self._touching(labelled, bodies)
+        partly = changing_partly(labelled.columns(), self._footage) if groups else np.zeros(0, bool)
+        for numbers in groups:
             self._check()
+            times = _some(sorted({t for k in numbers for t, _ in bodies[k - 1].runs[1:]}), 2 * SORTED)
+            if not times:
+                continue
             own = np.flatnonzero(np.isin(labelled.labels, numbers))
-            wide = around(labelled.columns(), self._footage, own)
+            wide = around(labelled.columns(), self._footage, own, partly)
             wide = wide[np.isin(labelled.labels[wide], [0, *numbers])]
             ways = list[tuple[float, Tracker, Body, F64 | None, I64]]()
             for rows in (wide, own):
@@ -178,7 +193,6 @@ class Finder:
                 if rows is wide:
                     path = Body.at_rest(tracker.pivot, len(tracker.seconds))
                     starts = torn.moves(Bend.none(tracker.means, len(tracker.seconds)), tracker.means)
-                times = _some(sorted({t for _, body in torn.parts for t, _ in body.runs[1:]}), 2 * SORTED)
                 ways.append((gain_by_bending(tracker, torn, path, starts, times), tracker, path, starts, rows))
             alone, on = ways
             gain, tracker, path, told, rows = alone if alone[0] <= ALONE * on[0] else on
@@ -239,10 +253,10 @@ class Finder:
         """Mend the path of each body, put it on one axis where the frames tell no more, or let it roll; in place."""
         for k in range(len(bodies)):
             self._check()
+            if bodies[k].bend is not None:
+                continue
             tracker = self._tracker(labelled, bodies, k + 1)
             body = bodies[k].seen_from(tracker.pivot)
-            if body.bend is not None:
-                continue
             if self._alone and body.line is None:
                 body = smoothed(tracker, body, self._footage.radius)
             line = line_of(tracker, body)

@@ -69,7 +69,7 @@ class FittedFilm:
     """A fitted scene with time.
 
     Attributes:
-        scene: with `motion` if something moves; the group of a Gaussian is the number of its track, from 0 on.
+        scene: with `motion` if something moves; the group of a Gaussian is the number of its thing, from 0 on.
         quality: on held-out frames, each at its time.
         steps, seconds: of the training.
         tried: how many bodies were tracked; those that no path explained stand still.
@@ -165,6 +165,9 @@ class _Film:
         self._footage = Footage.of(photos.shots, [s.time for s in photos.shots])
         if self._footage.stands:
             self._footage = self._footage.since(self._footage.begins or 0)
+            begins = float(self._footage.times[0])
+            held_out = tuple(shot for shot in photos.held_out if shot.time is None or shot.time >= begins)
+            self._photos = photos = replace(photos, held_out=held_out)
         self._steady = self._footage.steady if self._footage.stands else self._footage
         self._rng, self._budget = np.random.default_rng(settings.seed), Budget(settings.seconds)
         self._pixels = MOST_PIXELS

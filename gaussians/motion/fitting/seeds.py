@@ -104,12 +104,19 @@ def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.i
     return sorted(found, key=lambda r: -float(flags[r].sum()))
 
 
-def around(columns: Columns, footage: Footage, rows: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Rows, and those beside them of which a part changes, from one to the next, with all that touches these: what
-    bends hardly changes where it is fastened, and within an even colour."""
+def changing_partly(columns: Columns, footage: Footage) -> NDArray[np.bool_]:
+    """`[N]` Gaussians of which a part changes now and then."""
+    return np.asarray(gone(columns, footage, PARTLY).sum(axis=1) >= 2)
+
+
+def around(
+    columns: Columns, footage: Footage, rows: NDArray[np.int64], partly: NDArray[np.bool_]
+) -> NDArray[np.int64]:  # fmt: skip
+    """Rows, and those beside them of which a part changes (`partly`), from one to the next, with all that touches
+    these: what bends hardly changes where it is fastened, and within an even colour."""
     own = np.zeros(len(columns[0]), bool)
     own[rows] = True
-    some = np.flatnonzero(own | (gone(columns, footage, PARTLY).sum(axis=1) >= 2))
+    some = np.flatnonzero(own | partly)
     means = columns[0]
     pairs = cKDTree(means[some]).query_pairs(reach(footage), output_type="ndarray")
     graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(some), len(some)))

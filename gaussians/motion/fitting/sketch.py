@@ -81,7 +81,7 @@ def at_all_times(body: Body, some: F64, times: F64) -> Body:
 
     Args:
         some: `[S]` seconds, ascending, of the poses.
-        times: `[T]` seconds, ascending, from the first to the last of `some`.
+        times: `[T]` seconds, ascending; before the first and after the last of `some` the path rests.
     """
     if len(some) == len(times):
         return body
@@ -90,7 +90,7 @@ def at_all_times(body: Body, some: F64, times: F64) -> Body:
     if body.line is not None:
         return body.on(replace(body.line, values=np.interp(times, some, body.line.values)))
     after = np.clip(np.searchsorted(some, times, side="right"), 1, len(some) - 1)
-    shares = (times - some[after - 1]) / (some[after] - some[after - 1])
+    shares = np.clip((times - some[after - 1]) / (some[after] - some[after - 1]), 0, 1)
     poses = [
         led((body.quats[k - 1], body.offsets[k - 1]), (body.quats[k], body.offsets[k]), float(share))
         for k, share in zip(after, shares, strict=True)

@@ -27,7 +27,7 @@ POSES_DECAY = 0.1  # that rate at the end: a pose is trained by the frames of it
 LINE_LR = 0.3  # of a line's pivot and axis, of those of poses: they step at every frame
 SHAPE = 0.004  # of the radius of the cameras: how far the nodes of what bends may be from where they were found
 WAYS_LR = 0.3  # of the ways of these nodes, of that of poses: they step at every frame
-TOGETHER = 0.002  # how far a node is drawn towards its neighbours at each step
+TOGETHER = 0.002  # how far a node of what bends is drawn towards its neighbours at each step
 GROWS_UNTIL = 0.7  # share of the training after which no Gaussians are added
 WARM = 0.35  # the learning rate of means at the start, of that of a training from nothing
 
@@ -76,10 +76,11 @@ class _Shapes:
         basis, ways = bend.factors(tolerance)
         return cls(basis, ways, _Moments.none(len(basis), basis.shape[1]), _Moments.none(1, ways.size))
 
-    def step(self, times: slice, slope: F64, far: float) -> None:
+    def step(self, bend: Bend, times: slice, slope: F64, far: float) -> None:
         """A step at some times by the gradient of the displacements of the nodes `[K, 3]` then.
 
         Args:
+            bend: whose nodes they are.
             far: of the step, scene units.
         """
         now = self.basis[times.start]
@@ -87,11 +88,12 @@ class _Shapes:
         by_ways = now[:, None, None] * slope
         sizes = np.maximum(np.sqrt((self.ways**2).sum(axis=2).mean(axis=1)), 1e-9)
         self.basis[times] = now - far / sizes * self.of_times.direction(times.start, by_basis)
-        self.ways -= WAYS_LR * far * self.of_ways.direction(0, by_ways.reshape(-1)).reshape(self.ways.shape)
+        ways = self.ways - WAYS_LR * far * self.of_ways.direction(0, by_ways.reshape(-1)).reshape(self.ways.shape)
+        self.ways = np.stack([bend.together(way, TOGETHER) for way in ways]) if len(ways) else ways
 
-    def moves(self, bend: Bend) -> F64:
+    @property
+    def moves(self) -> F64:
         """`[T, K, 3]` displacements of the nodes."""
-        self.ways = np.stack([bend.together(way, TOGETHER) for way in self.ways]) if len(self.ways) else self.ways
         return np.einsum("tb,bkc->tkc", self.basis, self.ways)
 
 
@@ -150,9 +152,11 @@ class Joint:
 
     def settle(self) -> None:
         """Let bodies be where they are at the first time, which training shifts as it does any other time."""
-        for number, body in enumerate(self.bodies, 1):
+        for number, (body, shapes) in enumerate(zip(self.bodies, self._shapes, strict=True), 1):
             put_at(self.parameters, number, body, 0)
             self.bodies[number - 1] = body.started_at(0)
+            if shapes is not None:  # displacements turn with the body
+                shapes.ways = shapes.ways @ keys.matrices(body.quats[0]).T
 
     def _pull_back(
         self, columns: tuple[NDArray[np.float32], ...], found: gradient.Gradients, t: int, far: float
@@ -184,8 +188,8 @@ class Joint:
         if body.bend is None or shapes is None or not run.start:
             return
         slope = body.bend.shares(self.parameters.means[rows]).T @ by_mean
-        shapes.step(run, slope.astype(np.float64), far)
-        self.bodies[number] = replace(body, bend=replace(body.bend, moves=shapes.moves(body.bend)))
+        shapes.step(body.bend, run, slope.astype(np.float64), far)
+        self.bodies[number] = replace(body, bend=replace(body.bend, moves=shapes.moves))
 
     def _step_pose(self, number: int, t: int, turn: F64, shift: F64, far: float, wide: float) -> None:
         """A step of the pose of a body at a time by its gradient, or of its place on its line and of the line.

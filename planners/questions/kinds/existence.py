@@ -43,6 +43,7 @@ _PHRASES = f"""
     (does|do) {{x}} (appear|show up) [here|in here|in the room|anywhere]
     is one of the things [here|in the room] {{x}}
     where there (is|are) {{x}}
+    (is|are|was|were) {{lacks}} [already|still|now] (gone|missing|hidden|invisible|absent|out of sight)
 """.replace("|\n    to be", "|to be")
 
 

@@ -494,6 +494,18 @@ def test_what_changes_its_shape_does_so_at_other_times(
         torch.testing.assert_close(found[other], at(swaying, t).cloud.means[other], atol=1e-5, rtol=0)
 
 
+def test_shapes_have_a_place_in_an_order(swaying: Scene, context: Context) -> None:
+    both = {"groups": [CHAIR, VASE]}
+    made = done(swaying, {"op": "order", "target": both, "order": "kept", "gap": 0.5}, context).scene
+    own = swaying.cloud.group == VASE
+    for t in np.linspace(0.0, 4.0, 9):  # the vase began as the chair did; now half a second later
+        shown = at(swaying, float(max(t - 0.5, 0.0))).cloud.means[own]
+        first = at(swaying, float(t)).cloud.means[own]
+        found = at(made, float(t)).cloud.means[own]
+        assert min(float((found - shown).abs().max()), float((found - first).abs().max())) < 2e-3
+    assert not torch.equal(at(made, 1.2).cloud.means, at(swaying, 1.2).cloud.means)
+
+
 def test_a_shape_has_no_turn_to_be_another(swaying: Scene, context: Context) -> None:
     for change in ({"change": "mirror"}, {"change": "part", "share": 0.5}, {"change": "go_on"}):
         with pytest.raises(InstructionError, match="changes its shape"):

@@ -7,10 +7,12 @@ import itertools
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .....gaussians.language.field.group_index import index_groups
 from .....gaussians.motion.holding import Span, joined
 from .....gaussians.motion.motion import Look
+from ....grammar.tagging.words import bag
 from ...answer import Answer
 from ...candidates import is_plural
 from ...kind import Asked, Kind
@@ -21,60 +23,85 @@ from ...timeline.bodies import Body, Timeline
 
 _MOST = 0.5  # of a thing's Gaussians: when more than these look otherwise, it does
 _SOON = 1e-3  # seconds
+_BLINKS = 2  # times that something is hidden, at least, to blink
 
 _BLINK = "(blink|flash|flicker|wink|blinks|flashes|flickers)"
-_GONE = "(hidden|invisible|gone|away|out of sight|not there|not visible|not to be seen)"
-_BECOME = "(turn|become|go|get|change to|change into|turn to|turn into|change ITS to|switch to)"
+_BLINKING = "(blinking|flashing|flickering) [on and off]"
+_GONE = "(hidden|invisible|gone|away|missing|absent|out of sight|not there|not visible|not to be seen)"
+_VANISH = "(disappear|vanish|disappears|vanishes|go away|goes away)"
+_BECOME = "(turn|become|go|get|change|switch|turns|becomes|goes|gets|changes|switches) [back] [to|into] [being]"
 _EVER = "[ever|at any time|at some point|at some time]"
-_WHEN = "(when|at what time|at which time|at what second|at which second|what time)"
+_WHEN = "(when|at what time|at which time|at what second|at which second|what time|from what (time|moment|second) on)"
 _LONG = "(how long|for how long|how many seconds|for how many seconds|how much time)"
-_ALL = (
-    "(the whole time|all the time|throughout|all along|the entire time|from start to end|from beginning to end|always)"
-)
+_ALL = "(the whole time|all the time|throughout|all along|the entire time|from (start|beginning) to end|always)"
+_DO, _IS = "(do|does|did|will|would)", "(is|are|was|were)"
+_ONE = "(what|which thing|which things|which object|which objects|which one|which piece of furniture)"
+_NTH = "[for] the (first|second|third|fourth|fifth|last) time"
 
 _WHENS = f"""
-    {_WHEN} (do|does|did|will|would) {{x}} [first] (turn|become|go|get|change|switch) [to|into] {{c:color}} [again]
-    {_WHEN} (do|does|did|will) {{x}} change (its|their) (color|colors) to {{c:color}} [again]
-    {_WHEN} (is|are|was|were) {{x}} [first] {{c:color}} [again]
-    {_WHEN} (is|are|was|were) {{x}} (painted|colored|recolored) {{c:color}}
-    (until|till) (when|what time) (is|are|was|were) {{u}} {{c:color}}
-    {_WHEN} (do|does|did|will) {{u}} (stop being|cease to be) {{c:color}}
-    {_WHEN} (is|are|was|were) {{u}} no longer {{c:color}}
-    {_WHEN} (do|does|did|will) {{b}} [start to|begin to] {_BLINK}
-    {_WHEN} (is|are|was|were) {{g}} {_GONE}
+    {_WHEN} {_DO} {{x}} [first] {_BECOME} {{c:color}} [again]
+    {_WHEN} {{x}} [first] {_BECOME} {{c:color}} [again]
+    {_WHEN} {_DO} {{x}} change (its|their) (color|colors) to {{c:color}} [again]
+    {_WHEN} {_IS} {{x}} [first] {{c:color}} [again]
+    {_WHEN} {{x}} {_IS} {{c:color}} [again]
+    {_WHEN} {_IS} {{x}} (painted|colored|recolored) {{c:color}}
+    (until|till) (when|what time) {_IS} {{u}} {{c:color}}
+    {_WHEN} {_DO} {{u}} (stop being|cease to be) {{c:color}}
+    {_WHEN} {_IS} {{u}} no longer {{c:color}}
+    {_WHEN} {_IS} {{v}} (back|visible again|there again|to be seen again|back again)
+    {_WHEN} {_DO} {{v}} (come back|reappear|show up again|appear again)
+    (until|till) (when|what time) {_IS} {{v}} {_GONE}
+    {_WHEN} {_DO} {{b}} [start to|begin to] {_BLINK} [{_NTH}]
+    {_WHEN} {{b}} (blinks|flashes|flickers) [{_NTH}]
+    {_WHEN} {_IS} {{g}} {_GONE} [{_NTH}]
+    {_WHEN} {{g}} {_IS} {_GONE} [{_NTH}]
+    {_WHEN} {{g}} {_VANISH} [{_NTH}]
+    [{_WHEN} is] [what is] [the] time of {{b}} 's (first|second|third|fourth|fifth|last) (blink|flash|flicker)
+    {_WHEN} {_IS} {{b}} 's (first|second|third|fourth|fifth|last) (blink|flash|flicker)
 """
 _LONGS = f"""
-    {_LONG} (is|are|was|were) {{x}} {{c:color}}
-    {_LONG} (do|does|did|will) {{x}} (stay|remain|keep|look) {{c:color}}
-    {_LONG} (do|does|did|will) {{b}} {_BLINK}
-    {_LONG} (is|are|was|were) {{g}} {_GONE}
-    {_LONG} (do|does|did|will) {{g}} (stay|remain) {_GONE}
+    {_LONG} {_IS} {{x}} {{c:color}} [for]
+    {_LONG} {_DO} {{x}} (stay|remain|keep|look) {{c:color}} [for]
+    {_LONG} {_IS} {{e}} {_GONE} (each time [it {_BLINK}]|every time [it {_BLINK}]|at a time|per blink)
+    {_LONG} {_DO} {{e}} {_BLINK} (each time|every time|at a time)
+    {_LONG} (does|is) each (blink|flash|flicker) of {{e}} [last|take]
+    {_LONG} {_DO} {{b}} {_BLINK} [for]
+    {_LONG} {_IS} {{g}} {_GONE} [for] [in total|altogether]
+    {_LONG} {_DO} {{g}} (stay|remain) {_GONE} [for]
 """
 _OFTENS = f"""
-    how (often|many times) (do|does|did|will) {{x}} [turn|become|go] {{c:color}}
-    how (often|many times) (is|are|was|were) {{x}} {{c:color}}
-    how (often|many times) (do|does|did|will) {{b}} {_BLINK}
-    how (often|many times) (do|does|did|will) {{g}} (disappear|vanish)
-    how (often|many times) (is|are|was|were) {{g}} {_GONE}
-    how (often|many times) (do|does|did|will) {{r}} change [its|their] (color|colors|look)
+    how (often|many times) {_DO} {{x}} [turn|become|go] {{c:color}}
+    how (often|many times) {_IS} {{x}} {{c:color}}
+    how (often|many times) {_DO} {{b}} {_BLINK}
+    how (often|many times) {_DO} {{g}} {_VANISH}
+    how (often|many times) {_IS} {{g}} {_GONE}
+    how (often|many times) {_DO} {{r}} change [its|their] (color|colors|look)
+    how many (things|objects) (change|changes) [their|its] (color|colors|look)
+    how many (things|objects) {_BLINK}
+    how many (things|objects) (turn|become|go) {{c:color}}
 """
 _WHETHERS = f"""
-    (do|does|did|will) {{x}} {_EVER} (turn|become|go|get|change to|turn to) {{c:color}} {_EVER}
-    (is|are|was|were) {{x}} ever {{c:color}}
-    (is|are|was|were) {{a}} (always) {{c:color}}
-    (do|does|did|will) {{a}} (stay|remain|keep) {{c:color}} [{_ALL}]
-    (do|does|did|will) {{b}} {_EVER} {_BLINK} {_EVER}
-    (is|are|was|were) {{b}} {_EVER} (blinking|flashing|flickering) {_EVER}
-    (is|are|was|were) {{g}} ever {_GONE}
-    (do|does|did|will) {{r}} {_EVER} change [its|their] (color|colors|look) {_EVER}
+    {_DO} {{x}} {_EVER} {_BECOME} {{c:color}} {_EVER}
+    {_IS} {{x}} ever {{c:color}}
+    {_IS} {{a}} (always) {{c:color}}
+    {_DO} {{a}} (stay|remain|keep) {{c:color}} [{_ALL}]
+    {_DO} {{b}} {_EVER} {_BLINK} {_EVER}
+    {_IS} {{b}} {_EVER} {_BLINKING} {_EVER}
+    {_IS} {{g}} ever {_GONE}
+    {_DO} {{g}} ever {_VANISH}
+    {_DO} {{r}} {_EVER} change [its|their] (color|colors|look) {_EVER} [at all]
 """
 _WHATS = f"""
-    (what|which thing|which things|which object|which objects) (change|changes|changed) [its|their] (color|colors|look)
-    (what|which thing|which things|which object|which objects) ({_BLINK}|disappears|vanishes|disappear|vanish)
-    (what|which thing|which things|which object|which objects) (is|are|gets|get) {_GONE} [for a while|at some time|\
-        at some point|for a time]
-    (what|which thing|which things|which object|which objects) (turns|becomes|goes|turn|become|go) {{c:color}}
+    {_ONE} (change|changes|changed) [its|their] (color|colors|look) [first|last]
+    {_ONE} (is|was) [the] (first|last) [one|thing|object] to change [its] (color|look)
+    [what is] the (first|last) (thing|object|one) to change [its] (color|look)
+    {_ONE} ({_BLINK}|{_VANISH})
+    {_ONE} (is|keeps|are|keep) {_BLINKING}
+    {_ONE} (is|are|gets|get) {_GONE} [for a while|at some time|at some point|for a time]
+    {_ONE} (turns|becomes|goes|turn|become|go) {{c:color}}
 """
+_FLICKERS = bag("blink blinks blinking flash flashes flashing flicker flickers flickering wink")
+_PLACES = {"first": 0, "second": 1, "third": 2, "fourth": 3, "fifth": 4, "last": -1}
 
 
 def _when(asked: Asked, survey: Survey) -> Answer | None:
@@ -86,12 +113,18 @@ def _when(asked: Asked, survey: Survey) -> Answer | None:
         return nothing(cap(f"{body.name} is never {how}."), "number", [body])
     begun = [s for s in spans if s[0] > line.start + _SOON]
     again = "again" in asked.words
-    if "u" in asked.slots:
+    if {"u", "v"} & asked.slots.keys():
         ended = [s for s in spans if s[1] < line.stop - _SOON]
         if not ended:
             return nothing(cap(f"{body.name} is {how} to the end: {spoken(spans)}."), "number", [body])
         return number(ended[0][1], "s", cap(f"{body.name} is {how} {spoken(spans)}."), [body], ended[0][1])
-    changes = "is" not in asked.words and "are" not in asked.words
+    if {"b", "g"} & asked.slots.keys() and (place := next((_PLACES[w] for w in asked.words if w in _PLACES), 0)):
+        if place >= len(spans):
+            return nothing(cap(f"{body.name} is {how} {_times(spans)}."), "number", [body])
+        return number(spans[place][0], "s", cap(f"{body.name} is {how} {spoken(spans)}."), [body], spans[place][0])
+    changes = not {"is", "are", "was", "were"} & set(asked.words)
+    if changes and not begun:
+        return nothing(cap(f"{body.name} is {how} from the start on: {spoken(spans)}."), "number", [body])
     chosen = (begun if again or changes else spans) or spans
     if again and len(spans) < 2:
         return nothing(cap(f"{body.name} is {how} once only: {spoken(spans)}."), "number", [body])
@@ -106,6 +139,9 @@ def _long(asked: Asked, survey: Survey) -> Answer | None:
     body, how, spans = found
     if not spans:
         return nothing(cap(f"{body.name} is never {how}."), "number", [body])
+    if "e" in asked.slots:
+        seconds = sum(b - a for a, b in spans) / len(spans)
+        return number(seconds, "s", f"{at(seconds)}: {body.name} is {how} {spoken(spans)}.", [body], spans[0][0])
     if "b" in asked.slots:
         spans, how = [(spans[0][0], spans[-1][1])], "blinking"
     seconds = sum(b - a for a, b in spans)
@@ -116,6 +152,10 @@ def _often(asked: Asked, survey: Survey) -> Answer | None:
     line = asked.timeline
     if line is None:
         return None
+    if not asked.slots or set(asked.slots) == {"c"}:
+        each, done = _each(asked, survey, line)
+        told = f": {listed([b.name for b, _ in each])}" if each else ""
+        return number(float(len(each)), "", f"{len(each)} {done}{told}.", [b for b, _ in each])
     if "r" in asked.slots:
         body = line.one(asked.slots["r"], survey)
         changes = sum(line.start < t < line.stop for t in _edges(_looks(line, body, colors=True)))
@@ -124,9 +164,7 @@ def _often(asked: Asked, survey: Survey) -> Answer | None:
     if (found := _found(asked, survey, line)) is None:
         return None
     body, how, spans = found
-    times = f"{len(spans)} time{'' if len(spans) == 1 else 's'}"
-    told = f": {spoken(spans)}" if spans else ""
-    return number(float(len(spans)), "", cap(f"{body.name} is {how} {times}{told}."), [body])
+    return number(float(len(spans)), "", cap(f"{body.name} is {how} {_times(spans)}."), [body])
 
 
 def _whether(asked: Asked, survey: Survey) -> Answer | None:
@@ -154,8 +192,24 @@ def _what(asked: Asked, survey: Survey) -> Answer | None:
     line = asked.timeline
     if line is None:
         return None
+    found, done = _each(asked, survey, line)
+    if not found:
+        return nothing(f"Nothing {done}.", "label")
+    if (place := next((_PLACES[w] for w in asked.words if w in _PLACES), None)) is not None:
+        found = [sorted(found, key=lambda each: each[1][place][0])[place]]
+    told = "; ".join(f"{body.name} {done} {spoken(spans)}" for body, spans in found)
+    labels = tuple(body.label for body, _ in found)
+    return Answer(
+        answer=labels[0] if len(labels) == 1 else labels, answer_type="label" if len(labels) == 1 else "list",
+        text=cap(f"{told}."), confidence=0.95, evidence=evidence([body for body, _ in found], found[0][1][0][0]),
+    )  # fmt: skip
+
+
+def _each(asked: Asked, survey: Survey, line: Timeline) -> tuple[list[tuple[Body, list[Span]]], str]:
+    """The things that look so for a while, with when, and what they do in words."""
     color = asked.slots.get("c")
     hidden = color is None and not {"color", "colors", "look"} & set(asked.words)
+    done = "is hidden" if hidden else f"turns {color}" if color else "changes its colour"
     looks = line.scene.motion.looks if line.scene.motion is not None else ()
     found = list[tuple[Body, list[Span]]]()
     for thing in survey.things:
@@ -169,30 +223,28 @@ def _what(asked: Asked, survey: Survey) -> Answer | None:
         else:
             edges = _edges(_looks(line, body, colors=True))
             spans = [(t, t) for t in edges if line.start < t < line.stop]
-        if spans:
+        if len(spans) >= (_BLINKS if _FLICKERS & set(asked.words) else 1):
             found.append((body, spans))
-    done = "is hidden" if hidden else f"turns {color}" if color else "changes its colour"
-    if not found:
-        return nothing(f"Nothing {done}.", "label")
-    told = "; ".join(f"{body.name} {done} {spoken(spans)}" for body, spans in found)
-    names = tuple(body.label for body, _ in found)
-    bodies = [body for body, _ in found]
-    return Answer(
-        answer=names[0] if len(names) == 1 else names, answer_type="label" if len(names) == 1 else "list",
-        text=cap(f"{told}."), confidence=0.95, evidence=evidence(bodies, found[0][1][0][0]),
-    )  # fmt: skip
+    return found, done
+
+
+def _times(spans: Sequence[Span]) -> str:
+    """How often, and when: "2 times: from 1 s to 2 s and at 3 s"."""
+    told = f": {spoken(spans)}" if spans else ""
+    return f"{len(spans)} time{'' if len(spans) == 1 else 's'}{told}"
 
 
 def _found(asked: Asked, survey: Survey, line: Timeline) -> tuple[Body, str, list[Span]] | None:
     """What a question is about, how it looks then, and when it looks so; None if it is about several."""
     slots = asked.slots
-    query = next((slots[name] for name in "xuabg" if name in slots), None)
+    query = next((slots[name] for name in "xuabgve" if name in slots), None)
     if query is None or is_plural(query):
         return None
     body = line.one(query, survey)
     if "c" in slots:
         return body, slots["c"], _colored(line, body, survey, slots["c"])
-    return body, "hidden", _hidden(line, body)
+    spans = _hidden(line, body)
+    return body, "hidden", [] if "b" in slots and len(spans) < _BLINKS else spans
 
 
 def _colored(line: Timeline, body: Body, survey: Survey, color: str) -> list[Span]:
@@ -211,11 +263,12 @@ def _colored(line: Timeline, body: Body, survey: Survey, color: str) -> list[Spa
 
 def _hidden(line: Timeline, body: Body) -> list[Span]:
     """The spans in which a thing is hidden."""
-    spans = [
-        (max(look.start, line.start), min(look.stop, line.stop))
-        for look in _looks(line, body)
-        if look.opacities is not None and float((look.opacities == 0).float().mean()) > _MOST
-    ]
+    ids, spans = _ids(line, body), list[Span]()
+    for look in _looks(line, body):
+        gone = look.ids[:0] if look.opacities is None else look.ids[(look.opacities == 0).cpu().numpy()]
+        start, stop = max(look.start, line.start), min(look.stop, line.stop)
+        if start < stop and np.isin(ids, gone).mean() > _MOST:
+            spans.append((start, stop))
     return joined(sorted(spans), _SOON)
 
 
@@ -228,9 +281,15 @@ def _looks(line: Timeline, body: Body, colors: bool = False) -> list[Look]:
 
 def _worn(line: Timeline, body: Body, look: Look) -> bool:
     """Whether most of a thing has a look."""
-    assert line.scene.language is not None
-    ids = index_groups(line.scene.cloud).ids_of(line.scene.language.leaves(body.group.id)).cpu().numpy()
+    ids = _ids(line, body)
     return len(ids) > 0 and bool(np.isin(ids, look.ids).mean() > _MOST)
+
+
+def _ids(line: Timeline, body: Body) -> NDArray[np.int64]:
+    """Ids of the Gaussians of a thing."""
+    assert line.scene.language is not None
+    found = index_groups(line.scene.cloud).ids_of(line.scene.language.leaves(body.group.id)).cpu().numpy()
+    return np.asarray(found, np.int64)
 
 
 def _edges(looks: Sequence[Look]) -> list[float]:

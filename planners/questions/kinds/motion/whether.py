@@ -21,13 +21,16 @@ _SOME_TIME = re.compile(r"\b(?:finally|eventually|ultimately|afterwards?|at last
 _ROUND = 0.15  # seconds: what starts so soon after the start of the scene starts with it
 
 
+_GONE = re.compile(r"^(?:is|are|was|were|does|do) .*\bgone\b")
+
+
 def _whether(told: Told) -> Answer | None:
     what, when = told.frame.what, told.frame.when
     deed = what.deed
     if deed is None:
         return None
-    if what.subject is None:
-        return None
+    if what.subject is None or (deed.kind == "move" and _GONE.search(told.asked.said)):
+        return None  # "is the vase gone": the scene at that time tells it
     if told.frame.other is not None and told.frame.asks == "yesno":
         return _before(told)
     if (

@@ -127,7 +127,7 @@ reach - -: ~reach | ~hit | ~touch | ~contact | ~meet | ~strike | BUMP [up] (into
     (GO|COME) [all the way|back] [up|over] (to|into|against) | \
     (~make|made) it [all the way] [up|over] (to|into) | ~come into (contact|touch) with | (~make|~have) [first|its \
     first|the first] contact with | ~come up (to|against) | ~get as far as
-vanish - -: ~disappear | ~vanish | ~go away | gone
+vanish - -: ~disappear | ~vanish | ~go away
 appear - -: ~appear | ~reappear | ~show up | ~become visible | ~come into view
 recolor - -: ~change [ITS] (color|colors|look|looks|appearance) | TURN (another|a different) color
 move - straight: GO [on|along|in] [a] (straight [ahead|line|on])
