@@ -6,8 +6,9 @@ that no shadow stays behind where it stood.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 import torch
@@ -28,6 +29,7 @@ from ...tools.field_update import NewObject, append_objects, recount
 from . import paths, things
 
 I64 = NDArray[np.int64]
+T = TypeVar("T")
 
 SEED = 3  # of the rooms' paint and designs
 _GRAY = (0.5, 0.5, 0.5)
@@ -44,9 +46,21 @@ def moving_room(name: str, detail: float = 1.0) -> Scene:
     Raises:
         UserError: no room has this name.
     """
-    if name not in _ROOMS:
-        raise UserError(f"no moving room is called {name!r}; choose {', '.join(names())}")
-    return _ROOMS[name](detail)
+    return one_of(_ROOMS, name, "moving room")(detail)
+
+
+def one_of(rooms: Mapping[str, T], name: str, what: str) -> T:
+    """What makes a room, by its name.
+
+    Args:
+        what: a room of these is.
+
+    Raises:
+        UserError: none has this name.
+    """
+    if name not in rooms:
+        raise UserError(f"no {what} is called {name!r}; choose {', '.join(rooms)}")
+    return rooms[name]
 
 
 def names() -> tuple[str, ...]:

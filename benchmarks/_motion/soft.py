@@ -15,12 +15,11 @@ from ...gaussians.assets.modeling.materials import Material
 from ...gaussians.assets.modeling.round_shapes import rod
 from ...gaussians.assets.modeling.shapes import boxes, join
 from ...gaussians.color import parse
-from ...gaussians.errors import UserError
 from ...gaussians.motion.motion import Motion, Residual, Track
 from ...gaussians.motion.runs import ids_of
 from ...gaussians.scene import Scene
 from . import paths
-from .rooms import Node, Room
+from .rooms import Node, Room, one_of
 from .things import Parts
 
 F64 = NDArray[np.float64]
@@ -42,8 +41,7 @@ def soft_room(name: str, detail: float = 1.0) -> Scene:
     Raises:
         UserError: no room has this name.
     """
-    if name not in _ROOMS:
-        raise UserError(f"no soft room is called {name!r}; choose {', '.join(names())}")
+    furnished = one_of(_ROOMS, name, "soft room")
     room = Room.of(
         (4.0, 3.4, 2.6),
         (
@@ -53,7 +51,7 @@ def soft_room(name: str, detail: float = 1.0) -> Scene:
         ),
         detail,
     )
-    return _ROOMS[name](room)
+    return furnished(room)
 
 
 def names() -> tuple[str, ...]:

@@ -4,7 +4,7 @@ colour?", "is the vase ever hidden?"."""
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,13 +104,26 @@ _FLICKERS = bag("blink blinks blinking flash flashes flashing flicker flickers f
 _PLACES = {"first": 0, "second": 1, "third": 2, "fourth": 3, "fifth": 4, "last": -1}
 
 
-def _when(asked: Asked, survey: Survey) -> Answer | None:
-    line = asked.timeline
-    if line is None or (found := _found(asked, survey, line)) is None:
-        return None
-    body, how, spans = found
-    if not spans:
-        return nothing(cap(f"{body.name} is never {how}."), "number", [body])
+Tell = Callable[[Asked, Timeline, Body, str, list[Span]], Answer]
+
+
+def _of_spans(tell: Tell) -> Callable[[Asked, Survey], Answer | None]:
+    """An answer about the spans in which one thing looks so, of which there are some."""
+
+    def answer(asked: Asked, survey: Survey) -> Answer | None:
+        line = asked.timeline
+        if line is None or (found := _found(asked, survey, line)) is None:
+            return None
+        body, how, spans = found
+        if not spans:
+            return nothing(cap(f"{body.name} is never {how}."), "number", [body])
+        return tell(asked, line, body, how, spans)
+
+    return answer
+
+
+@_of_spans
+def _when(asked: Asked, line: Timeline, body: Body, how: str, spans: list[Span]) -> Answer:
     begun = [s for s in spans if s[0] > line.start + _SOON]
     again = "again" in asked.words
     if {"u", "v"} & asked.slots.keys():
@@ -132,13 +145,8 @@ def _when(asked: Asked, survey: Survey) -> Answer | None:
     return number(first[0], "s", cap(f"{body.name} is {how} {spoken(spans)}."), [body], first[0])
 
 
-def _long(asked: Asked, survey: Survey) -> Answer | None:
-    line = asked.timeline
-    if line is None or (found := _found(asked, survey, line)) is None:
-        return None
-    body, how, spans = found
-    if not spans:
-        return nothing(cap(f"{body.name} is never {how}."), "number", [body])
+@_of_spans
+def _long(asked: Asked, line: Timeline, body: Body, how: str, spans: list[Span]) -> Answer:
     if "e" in asked.slots:
         seconds = sum(b - a for a, b in spans) / len(spans)
         return number(seconds, "s", f"{at(seconds)}: {body.name} is {how} {spoken(spans)}.", [body], spans[0][0])
