@@ -54,6 +54,16 @@ def session() -> Session:
         ("Is the shelf ever invisible?", "yes"),
         ("Does the toy car change its colour?", "no"),
         ("What changes its colour?", "bed"),
+        ("When does the shelf disappear?", 1.0),
+        ("When does the shelf disappear for the second time?", 3.0),
+        ("When is the shelf back?", 1.5),
+        ("How long is the shelf gone each time it blinks?", 0.375),
+        ("What colour does the bed turn?", "red"),
+        ("Does the bed turn red at some point?", "yes"),
+        ("Is the shelf missing at 1.2 s?", "yes"),
+        ("Is the shelf missing at 2 s?", "no"),
+        ("Which object is the last one to change colour?", "bed"),
+        ("How many things change their colour?", 1.0),
         ("Which thing turns red?", "bed"),
         ("What disappears?", "shelf"),
         ("What blinks?", "shelf"),
@@ -76,3 +86,8 @@ def test_how_things_look_for_a_while_is_told(session: Session, question: str, wa
 def test_what_never_looks_so_has_no_time(session: Session, question: str, said: str) -> None:
     answer = session.ask(question)
     assert said in answer.text and answer.answer is None
+
+
+def test_a_colour_before_a_change_is_that_of_the_start(session: Session) -> None:
+    start = session.ask("what colour is the bed at 0.5 s?").answer
+    assert session.ask("what colour is the bed before it turns red?").answer == start != "red"

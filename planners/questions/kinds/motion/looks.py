@@ -23,6 +23,7 @@ from ...timeline.bodies import Body, Timeline
 
 _MOST = 0.5  # of a thing's Gaussians: when more than these look otherwise, it does
 _SOON = 1e-3  # seconds
+_SHORTLY = 0.05  # seconds before and after a change
 _BLINKS = 2  # times that something is hidden, at least, to blink
 
 _BLINK = "(blink|flash|flicker|wink|blinks|flashes|flickers)"
@@ -31,12 +32,16 @@ _GONE = "(hidden|invisible|gone|away|missing|absent|out of sight|not there|not v
 _VANISH = "(disappear|vanish|disappears|vanishes|go away|goes away)"
 _BECOME = "(turn|become|go|get|change|switch|turns|becomes|goes|gets|changes|switches) [back] [to|into] [being]"
 _EVER = "[ever|at any time|at some point|at some time]"
-_WHEN = "(when|at what time|at which time|at what second|at which second|what time|from what (time|moment|second) on)"
+_WHEN = "(when|(at|from) (what|which) (time|second|point|moment) [on]|what time)"
 _LONG = "(how long|for how long|how many seconds|for how many seconds|how much time)"
 _ALL = "(the whole time|all the time|throughout|all along|the entire time|from (start|beginning) to end|always)"
 _DO, _IS = "(do|does|did|will|would)", "(is|are|was|were)"
 _ONE = "(what|which thing|which things|which object|which objects|which one|which piece of furniture)"
 _NTH = "[for] the (first|second|third|fourth|fifth|last) time"
+
+_CHANGES = (
+    "(it|they) (goes|turns|turned|went|becomes|became|changes|changed|is|was) [to|into] [{c:color}|color|its color]"
+)
 
 _WHENS = f"""
     {_WHEN} {_DO} {{x}} [first] {_BECOME} {{c:color}} [again]
@@ -56,18 +61,21 @@ _WHENS = f"""
     {_WHEN} {_IS} {{g}} {_GONE} [{_NTH}]
     {_WHEN} {{g}} {_IS} {_GONE} [{_NTH}]
     {_WHEN} {{g}} {_VANISH} [{_NTH}]
+    {_WHEN} {_DO} {{g}} {_VANISH} [{_NTH}]
     [{_WHEN} is] [what is] [the] time of {{b}} 's (first|second|third|fourth|fifth|last) (blink|flash|flicker)
     {_WHEN} {_IS} {{b}} 's (first|second|third|fourth|fifth|last) (blink|flash|flicker)
 """
 _LONGS = f"""
     {_LONG} {_IS} {{x}} {{c:color}} [for]
     {_LONG} {_DO} {{x}} (stay|remain|keep|look) {{c:color}} [for]
+    {_LONG} {{x}} (is|are|stays|stay|remains|remain|keeps) {{c:color}} [for]
     {_LONG} {_IS} {{e}} {_GONE} (each time [it {_BLINK}]|every time [it {_BLINK}]|at a time|per blink)
     {_LONG} {_DO} {{e}} {_BLINK} (each time|every time|at a time)
     {_LONG} (does|is) each (blink|flash|flicker) of {{e}} [last|take]
     {_LONG} {_DO} {{b}} {_BLINK} [for]
     {_LONG} {_IS} {{g}} {_GONE} [for] [in total|altogether]
     {_LONG} {_DO} {{g}} (stay|remain) {_GONE} [for]
+    {_LONG} {{g}} (is|are|stays|stay|remains|remain) {_GONE} [for]
 """
 _OFTENS = f"""
     how (often|many times) {_DO} {{x}} [turn|become|go] {{c:color}}
@@ -96,10 +104,18 @@ _WHATS = f"""
     {_ONE} (is|was) [the] (first|last) [one|thing|object] to change [its] (color|look)
     [what is] the (first|last) (thing|object|one) to change [its] (color|look)
     {_ONE} ({_BLINK}|{_VANISH})
-    {_ONE} (is|keeps|are|keep) {_BLINKING}
+    {_ONE} (is|keeps|are|keep) {_BLINKING} [here|there|in (this|the) (scene|room|film|clip|video)]
     {_ONE} (is|are|gets|get) {_GONE} [for a while|at some time|at some point|for a time]
     {_ONE} (turns|becomes|goes|turn|become|go) {{c:color}}
 """
+_COLORS = f"""
+    (what|which) color {_DO} {{x}} (turn|become|go|get|change) [to|into]
+    (what|which) color {{x}} (turns|becomes|goes|gets|changes) [to|into]
+    (what|which) color {_IS} {{x}} before {_CHANGES}
+    (what|which) color {_IS} {{x}} after {_CHANGES}
+    (what|which) color {_DO} {{x}} have (before|after) {_CHANGES}
+"""
+_DOES = bag("do does did will would")
 _FLICKERS = bag("blink blinks blinking flash flashes flashing flicker flickers flickering wink")
 _PLACES = {"first": 0, "second": 1, "third": 2, "fourth": 3, "fifth": 4, "last": -1}
 
@@ -191,9 +207,30 @@ def _whether(asked: Asked, survey: Survey) -> Answer | None:
     if "a" in asked.slots:
         whole = bool(spans) and spans[0][0] <= line.start + _SOON and spans[0][1] >= line.stop - _SOON
         return yes_no(whole, told, [body])
-    if "c" in asked.slots and "ever" not in asked.words:
+    if "c" in asked.slots and asked.words[0] in _DOES:  # it becomes so
         return yes_no(any(s[0] > line.start + _SOON for s in spans), told, [body])
     return yes_no(bool(spans), told, [body])
+
+
+def _color(asked: Asked, survey: Survey) -> Answer | None:
+    """The colour that a thing has before its colour changes, or behind that."""
+    line = asked.timeline
+    if line is None or is_plural(asked.slots["x"]):
+        return None
+    body = line.one(asked.slots["x"], survey)
+    edges = [t for t in _edges(_looks(line, body, colors=True)) if line.start < t < line.stop]
+    if (color := asked.slots.get("c")) is not None:
+        edges = [s[0] for s in _colored(line, body, survey, color) if s[0] > line.start + _SOON]
+    if body.thing is None or not edges:
+        return nothing(cap(f"{body.name} does not change its colour{'' if color is None else ' so'}."), "label", [body])
+    time = edges[0] - _SHORTLY if "before" in asked.words else edges[0] + _SHORTLY
+    thing = next((t for t in line.survey_at(time).things if t.id == body.thing.id), None)
+    if thing is None or not thing.color:
+        return None
+    text = f"{body.name} is {thing.color} at {at(time)}; its colour changes at {at(edges[0])}."
+    return Answer(
+        answer=thing.color, answer_type="label", text=cap(text), confidence=0.9, evidence=evidence([body], time)
+    )  # fmt: skip
 
 
 def _what(asked: Asked, survey: Survey) -> Answer | None:
@@ -310,4 +347,5 @@ LONG_SEEN = Kind("how_long_it_looks", templates(_LONGS), _long)
 OFTEN_SEEN = Kind("how_often_it_looks", templates(_OFTENS), _often)
 WHETHER_SEEN = Kind("whether_it_looks", templates(_WHETHERS), _whether)
 WHAT_SEEN = Kind("what_looks", templates(_WHATS), _what)
-KINDS = (WHEN_SEEN, LONG_SEEN, OFTEN_SEEN, WHETHER_SEEN, WHAT_SEEN)
+COLOR_SEEN = Kind("what_color_then", templates(_COLORS), _color)
+KINDS = (COLOR_SEEN, WHEN_SEEN, LONG_SEEN, OFTEN_SEEN, WHETHER_SEEN, WHAT_SEEN)
