@@ -80,11 +80,8 @@ def times_of(paths: list[Path], fps: float) -> tuple[list[float], tuple[str, ...
         numbers = list(range(len(paths)))
     steps = [b - a for a, b in itertools.pairwise(numbers)]
     places = [(n - numbers[0]) / min(steps) for n in numbers]
-    wide = [
-        f"{a.name} and {b.name}"
-        for a, b, step in zip(paths, paths[1:], steps, strict=False)
-        if step >= 1.5 * min(steps)
-    ]
+    pairs = zip(itertools.pairwise(paths), steps, strict=True)
+    wide = [f"{a.name} and {b.name}" for (a, b), step in pairs if step >= 1.5 * min(steps)]
     notes = (f"files are missing between {', '.join(wide)}: what moves goes on evenly there",) if wide else ()
     return [place / fps for place in places], notes
 

@@ -179,9 +179,8 @@ def _fit_film(photos: Photos, settings: Settings, output: Path, report: Path | N
     if isinstance(done, Still):
         return done
     save(done.scene, output, force=force)
-    tracks, residuals = (
-        (done.scene.motion.tracks, done.scene.motion.residuals) if done.scene.motion is not None else ((), ())
-    )
+    motion = done.scene.motion
+    tracks, residuals = (motion.tracks, motion.residuals) if motion is not None else ((), ())
     data = {
         "path": str(output), "gaussians": len(done.scene.cloud), "bytes": output.stat().st_size,
         "psnr": round(done.quality.psnr, 4), "ssim": round(done.quality.ssim, 4), "times": len(times),

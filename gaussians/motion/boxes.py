@@ -16,6 +16,7 @@ import torch
 from numpy.typing import ArrayLike, NDArray
 
 from ..kept import Kept
+from ..language.field.language_field import LanguageField
 from ..rows import rows_where
 from ..scene import Scene
 from ..world.box import Box
@@ -74,11 +75,9 @@ def _outlines_of(scene: Scene, motion: Motion) -> dict[int, _Outline]:
     part = np.full(len(ids), -1)  # which set of tracks moves each row
     for number, (runs, _) in enumerate(together):
         part[held_by(runs, ids)] = number
-    touched = {int(g) for g in np.unique(column[part >= 0]) if 0 <= g < len(field.groups)}
-    touched |= {field.groups[g].parent for g in touched} - {-1}
     visible = (cloud.opacities > _VISIBLE).cpu().numpy()
     found = {}
-    for group in sorted(touched):
+    for group in sorted(groups_of(field, column[part >= 0])):
         leaves = torch.tensor(field.leaves(group), dtype=cloud.group.dtype, device=cloud.device)
         rows = rows_where(torch.isin(cloud.group, leaves)).cpu().numpy()
         rows = rows[visible[rows]] if visible[rows].any() else rows
@@ -90,6 +89,12 @@ def _outlines_of(scene: Scene, motion: Motion) -> dict[int, _Outline]:
             sizes.append(len(own))
         found[group] = _Outline(tuple(parts), int(np.argmax(sizes)))
     return found
+
+
+def groups_of(field: LanguageField, numbers: NDArray[np.integer]) -> set[int]:
+    """The groups that some Gaussians are of, by the numbers that these have, and what such groups are parts of."""
+    own = {int(g) for g in np.unique(numbers) if 0 <= g < len(field.groups)}
+    return own | ({field.groups[g].parent for g in own} - {-1})
 
 
 def _outermost(points: F64) -> F64:

@@ -18,9 +18,9 @@ from ..language.field.group_index import index_groups
 from ..scene import Scene
 from ..world.box import Box, Boxes
 from . import keys
-from .boxes import boxes_over
+from .boxes import boxes_over, groups_of
 from .holding import STEP, Span, grid
-from .motion import Motion, Track, chained, combinations
+from .motion import Motion, Residual, Track, chained, combinations
 from .runs import held_by
 
 F64 = NDArray[np.float64]
@@ -222,15 +222,17 @@ def _piece(scene: Scene, rows: NDArray[np.int64], tracks: tuple[Track, ...], cou
 
 def _bent(motion: Motion | None, ids: NDArray[np.int64]) -> Callable[[F64], F64] | None:
     """The displacements `[T, P, 3]` of some Gaussians at times; None: they have none."""
-    own = [r for r in (() if motion is None else motion.residuals) if np.isin(ids, r.ids).any()]
+    own = list[tuple[Residual, NDArray[np.int64], NDArray[np.float32]]]()
+    for residual in () if motion is None else motion.residuals:
+        held = np.flatnonzero(np.isin(ids, residual.ids))
+        if len(held):
+            own.append((residual, held, residual.weights[np.searchsorted(residual.ids, ids[held])]))
     if not own:
         return None
 
     def bent(times: F64) -> F64:
         found = np.zeros((len(times), len(ids), 3))
-        for residual in own:
-            held = np.flatnonzero(np.isin(ids, residual.ids))
-            weights = residual.weights[np.searchsorted(residual.ids, ids[held])]
+        for residual, held, weights in own:
             found[:, held] += np.einsum("tb,nbc->tnc", residual.at(times), weights)
         return found
 
@@ -243,7 +245,4 @@ def _bent_groups(scene: Scene) -> set[int]:
     if not scene.motion.residuals:
         return set()
     ids = torch.from_numpy(np.concatenate([residual.ids for residual in scene.motion.residuals]))
-    held = torch.unique(scene.cloud.group[torch.isin(scene.cloud.ids.cpu(), ids)]).tolist()
-    table = scene.language.groups
-    own = {int(g) for g in held if 0 <= g < len(table)}
-    return own | ({table[g].parent for g in own} - {-1})
+    return groups_of(scene.language, scene.cloud.group.cpu()[torch.isin(scene.cloud.ids.cpu(), ids)].numpy())

@@ -42,7 +42,6 @@ from ..transform import shift, turn
 
 _NO: dict[str, Any] = {"enum": [False]}
 _MOST_OF_IT = 0.8  # of the way to something: where a wall ends it after more, it is near enough
-
 _SHORT = 1e-4  # units: less is no way that a wall ends
 
 

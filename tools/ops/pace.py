@@ -152,9 +152,9 @@ class Pace(TargetedOp):
             held = [i for i, t in enumerate(tracks) if inside[i] and np.isin(t.ids, group).any()]
             own = [tracks[i] for i in held]
             shapes, waves = parted(waves, group)
-            residuals += shapes
             span = movement(own, motion.start, motion.stop, shapes)
             if span is None:
+                residuals += shapes
                 continue
             paced = True
             if (
@@ -183,11 +183,11 @@ class Pace(TargetedOp):
                 warp, end = self._warp(motion, own, span, spans)
             for i in held:
                 made[i] = playing(tracks[i], warp)
-            residuals[len(residuals) - len(shapes) :] = [waving(shape, warp) for shape in shapes]
+            residuals += [waving(shape, warp) for shape in shapes]
             stop = end if self._whole else max(stop, end)
         if not paced:
             raise InstructionError(f"{self.target.describe()} hardly moves: say what it is to do")
-        after = with_tracks(scene, made, stop, tuple(residuals))
+        after = with_tracks(scene, made, stop, (*residuals, *waves))
         moving = torch.from_numpy(ids)
         return Outcome(after, touched=moving, notes=self._notes(stop, motion))
 
@@ -275,9 +275,8 @@ class Pace(TargetedOp):
             first = max(spans[0][0], high + _NO_TIME)
             end = first + _NO_TIME + high - low
             until = whole if self.when is not None and self.when.stop == "end" else spans[0][1]
-            if (
-                first < until < end and own and all(map(is_turning, own))
-            ):  # what turns round and round may stop anywhere
+            turns = bool(own) and all(map(is_turning, own))
+            if turns and first < until < end:  # what turns round and round may stop anywhere
                 last = low + until - first - _NO_TIME
                 return Warp((low, high, first, first + _NO_TIME, until), (low, high, high, low, last), 0.0, 0.0), until
             return Warp((low, high, first, first + _NO_TIME, end), (low, high, high, low, high), 0.0, 0.0), end

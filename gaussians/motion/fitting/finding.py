@@ -10,8 +10,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...fit.parameters import Parameters
@@ -22,7 +20,7 @@ from .bodies import Body, Columns, Labelled
 from .budget import SEARCH_UNTIL, SEEDS_UNTIL, Budget, OutOfTime
 from .footage import Footage
 from .rolling import Ball
-from .seeds import LEAST, Flags, around, changing_partly, gone, halves, reach, seeds
+from .seeds import LEAST, Flags, around, changing_partly, gone, halves, reach, seeds, together
 from .sharing import shared
 from .smoothing import smoothed
 from .supposing import supposed
@@ -210,8 +208,7 @@ class Finder:
         rows = np.flatnonzero(labelled.labels > 0)
         labels, size = labelled.labels[rows], np.bincount(labelled.labels, minlength=len(bodies) + 1)
         pairs = cKDTree(labelled.means[rows]).query_pairs(reach(self._footage), output_type="ndarray")
-        graph = coo_matrix((np.ones(len(pairs)), labels[pairs].T), shape=(len(size), len(size)))
-        _, groups = connected_components(graph, directed=False)
+        groups = together(labels[pairs], len(size))
         free = [k for k in range(1, len(size)) if bodies[k - 1].bend is None and size[k]]
         each = [[k for k in free if groups[k] == group] for group in np.unique(groups[free])]
         return [sorted(group, key=lambda k: -int(size[k])) for group in each]

@@ -81,6 +81,12 @@ def reach(footage: Footage) -> float:
     return NEAR * footage.radius / footage.cameras[0].fx
 
 
+def together(pairs: NDArray[np.integer], count: int) -> NDArray[np.int32]:
+    """`[count]` the number of the part that each is of, where pairs `[P, 2]` are of one part."""
+    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1])
+
+
 def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.int64]]:
     """Rows of the start that may be of one moving thing each, the most evident first.
 
@@ -98,8 +104,7 @@ def seeds(columns: Columns, footage: Footage, flags: Flags) -> list[NDArray[np.i
     both = (own[pairs[:, 0]] * own[pairs[:, 1]]).sum(axis=1)
     either = np.maximum(own[pairs[:, 0]], own[pairs[:, 1]]).sum(axis=1)
     pairs = pairs[both >= ALIKE * either]
-    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(rows), len(rows)))
-    _, labels = connected_components(graph, directed=False)
+    labels = together(pairs, len(rows))
     found = [rows[labels == k] for k in np.flatnonzero(np.bincount(labels) >= LEAST)]
     return sorted(found, key=lambda r: -float(flags[r].sum()))
 
@@ -119,8 +124,7 @@ def around(
     some = np.flatnonzero(own | partly)
     means = columns[0]
     pairs = cKDTree(means[some]).query_pairs(reach(footage), output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(some), len(some)))
-    _, labels = connected_components(graph, directed=False)
+    labels = together(pairs, len(some))
     joined = some[np.isin(labels, labels[own[some]])]
     away, _ = cKDTree(means[joined]).query(means, distance_upper_bound=reach(footage))
     return np.flatnonzero((np.isfinite(away) & (columns[3] > FAINT)) | own)

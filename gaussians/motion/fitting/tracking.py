@@ -252,12 +252,8 @@ class Tracker:
 
     def area(self, body: Body, t: int) -> int:
         """Pixels at which the body makes a difference at a time, in the pictures that show it largest."""
-        placed, found = body.placed(t, *self._own[:2]), 0
-        for view in self.views(body, t):
-            both = _joined(view.rest, (*placed, *self._own[2:]))
-            seen, bare = (gradient.draw(columns, view.camera, BLACK).rgb for columns in (both, view.rest))
-            found += int((np.abs(seen - bare).max(axis=2) > MATTERS).sum())
-        return found
+        placed = body.placed(t, *self._own[:2])
+        return sum(int(self._made(view, *placed)[2].sum()) for view in self.views(body, t))
 
     @property
     def means(self) -> F32:
@@ -481,10 +477,9 @@ class Tracker:
         changed = area = 0
         if self._footage.at_first:
             for view in views:
-                both = _joined(view.rest, (*here, *self._own[2:]))
-                seen, bare = (gradient.draw(columns, view.camera, BLACK).rgb for columns in (both, view.rest))
+                seen, _, matters = self._made(view, *here)
                 off = differs(rounded(seen), rounded(view.photo))
-                changed, area = changed + int(off.sum()), area + int((np.abs(seen - bare).max(axis=2) > MATTERS).sum())
+                changed, area = changed + int(off.sum()), area + int(matters.sum())
             return area > 0 and changed <= STILL_DRAWN * area
         for view in views:
             before = self._footage.frames.get((view.number, since))
@@ -495,14 +490,18 @@ class Tracker:
             changed, area = changed + int(off.sum()), area + off.size
         return changed <= STILL * area
 
+    def _made(self, view: View, means: F32, quats: F32) -> tuple[F32, F32, NDArray[np.bool_]]:
+        """A picture `[H, W, 3]` with the body and without it, and where that makes a difference."""
+        both = _joined(view.rest, (means, quats, *self._own[2:]))
+        seen, bare = (gradient.draw(columns, view.camera, BLACK).rgb for columns in (both, view.rest))
+        return seen, bare, np.asarray(np.abs(seen - bare).max(axis=2) > MATTERS)
+
     def ratio(self, body: Body, t: int) -> float:
         """The difference to the pictures with the body, over that without it, where the body makes a difference."""
         with_it = without = 1e-6
         means, quats = body.placed(t, self._own[0], self._own[1])
         for view in self._views(means, t, 0.0):
-            both = _joined(view.rest, (means, quats, *self._own[2:]))
-            seen, bare = (gradient.draw(columns, view.camera, BLACK).rgb for columns in (both, view.rest))
-            matters = np.abs(seen - bare).max(axis=2) > MATTERS
+            seen, bare, matters = self._made(view, means, quats)
             with_it += float(((seen - view.photo) ** 2)[matters].sum())
             without += float(((bare - view.photo) ** 2)[matters].sum())
         return with_it / without

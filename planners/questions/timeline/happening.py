@@ -15,6 +15,7 @@ from ...grammar.vocabulary.nouns import is_opened
 from ..reading.time.deeds import Deed, Kind
 from ..survey import Survey, Thing
 from .bodies import Body, Timeline
+from .worn import hiding, recoloring
 
 F64 = NDArray[np.float64]
 TURNS = np.radians(20.0)  # a body that turns by less about the vertical while it goes makes no turn
@@ -401,18 +402,8 @@ def _nearing(closer: bool, body: Body, others: Sequence[Thing], timeline: Timeli
 
 def _seen(kind: str, body: Body, timeline: Timeline) -> list[Span]:
     """The times at which most of it disappears, appears again, or gets another colour."""
-    motion = timeline.scene.motion
-    assert motion is not None and timeline.scene.language is not None
-    from ....gaussians.language.field.group_index import index_groups
-
-    ids = index_groups(timeline.scene.cloud).ids_of(timeline.scene.language.leaves(body.group.id)).cpu().numpy()
     if kind == "recolor":
-        worn = [look for look in motion.looks if look.sh is not None and np.isin(ids, look.ids).mean() > 0.5]
+        worn = recoloring(timeline, body.group.id)
         return [(t, t) for look in worn for t in (look.start, look.stop) if timeline.start < t < timeline.stop]
-    hidden = [
-        (look.start, look.stop)
-        for look in motion.looks
-        if look.opacities is not None and np.isin(ids, look.ids[(look.opacities == 0).cpu().numpy()]).mean() > 0.5
-    ]
-    ends = [(a if kind == "vanish" else b) for a, b in hidden]
+    ends = [look.start if kind == "vanish" else look.stop for look in hiding(timeline, body.group.id)]
     return [(t, t) for t in sorted(ends) if timeline.start <= t < timeline.stop]

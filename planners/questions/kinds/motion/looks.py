@@ -6,10 +6,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
-from .....gaussians.language.field.group_index import index_groups
 from .....gaussians.motion.holding import Span, joined
 from .....gaussians.motion.motion import Look
 from ....grammar.tagging.words import bag
@@ -18,10 +14,10 @@ from ...candidates import is_plural
 from ...kind import Asked, Kind
 from ...reading.phrase_templates import templates
 from ...survey import Survey, listed
-from ...timeline.asked import at, cap, evidence, nothing, number, spoken, yes_no
+from ...timeline.asked import PLACES, at, cap, evidence, nothing, number, spoken, yes_no
 from ...timeline.bodies import Body, Timeline
+from ...timeline.worn import hiding, looks_of, recoloring
 
-_MOST = 0.5  # of a thing's Gaussians: when more than these look otherwise, it does
 _SOON = 1e-3  # seconds
 _SHORTLY = 0.05  # seconds before and after a change
 _BLINKS = 2  # times that something is hidden, at least, to blink
@@ -117,7 +113,7 @@ _COLORS = f"""
 """
 _DOES = bag("do does did will would")
 _FLICKERS = bag("blink blinks blinking flash flashes flashing flicker flickers flickering wink")
-_PLACES = {"first": 0, "second": 1, "third": 2, "fourth": 3, "fifth": 4, "last": -1}
+_PLACES = PLACES | {"fifth": 4}
 
 
 Tell = Callable[[Asked, Timeline, Body, str, list[Span]], Answer]
@@ -182,7 +178,7 @@ def _often(asked: Asked, survey: Survey) -> Answer | None:
         return number(float(len(each)), "", f"{len(each)} {done}{told}.", [b for b, _ in each])
     if "r" in asked.slots:
         body = line.one(asked.slots["r"], survey)
-        changes = sum(line.start < t < line.stop for t in _edges(_looks(line, body, colors=True)))
+        changes = len(_recolored(line, body))
         text = f"{body.name} changes its look {changes} time{'' if changes == 1 else 's'}."
         return number(float(changes), "", cap(text), [body])
     if (found := _found(asked, survey, line)) is None:
@@ -197,7 +193,7 @@ def _whether(asked: Asked, survey: Survey) -> Answer | None:
         return None
     if "r" in asked.slots:
         body = line.one(asked.slots["r"], survey)
-        edges = [t for t in _edges(_looks(line, body, colors=True)) if line.start < t < line.stop]
+        edges = _recolored(line, body)
         told = f"changes its look at {listed([at(t) for t in edges])}" if edges else "does not change its colour"
         return yes_no(bool(edges), f"{body.name} {told}.", [body])
     if (found := _found(asked, survey, line)) is None:
@@ -218,7 +214,7 @@ def _color(asked: Asked, survey: Survey) -> Answer | None:
     if line is None or is_plural(asked.slots["x"]):
         return None
     body = line.one(asked.slots["x"], survey)
-    edges = [t for t in _edges(_looks(line, body, colors=True)) if line.start < t < line.stop]
+    edges = _recolored(line, body)
     if (color := asked.slots.get("c")) is not None:
         edges = [s[0] for s in _colored(line, body, survey, color) if s[0] > line.start + _SOON]
     if body.thing is None or not edges:
@@ -255,19 +251,17 @@ def _each(asked: Asked, survey: Survey, line: Timeline) -> tuple[list[tuple[Body
     color = asked.slots.get("c")
     hidden = color is None and not {"color", "colors", "look"} & set(asked.words)
     done = "is hidden" if hidden else f"turns {color}" if color else "changes its colour"
-    looks = line.scene.motion.looks if line.scene.motion is not None else ()
     found = list[tuple[Body, list[Span]]]()
     for thing in survey.things:
-        body = line.body(thing, survey)
-        if not any(_worn(line, body, look) for look in looks):
+        if not looks_of(line, line.groups(thing)[0]):
             continue
+        body = line.body(thing, survey)
         if hidden:
             spans = _hidden(line, body)
         elif color is not None:
             spans = [s for s in _colored(line, body, survey, color) if s[0] > line.start + _SOON]
         else:
-            edges = _edges(_looks(line, body, colors=True))
-            spans = [(t, t) for t in edges if line.start < t < line.stop]
+            spans = [(t, t) for t in _recolored(line, body)]
         if len(spans) >= (_BLINKS if _FLICKERS & set(asked.words) else 1):
             found.append((body, spans))
     return found, done
@@ -296,7 +290,7 @@ def _colored(line: Timeline, body: Body, survey: Survey, color: str) -> list[Spa
     """The spans in which a thing has a colour."""
     if body.thing is None:
         return []
-    edges = sorted({line.start, line.stop, *(t for t in _edges(_looks(line, body)) if line.start < t < line.stop)})
+    edges = [line.start, *_edges(line, looks_of(line, body.group.id)), line.stop]
     found = list[Span]()
     for start, stop in itertools.pairwise(edges):
         there = line.survey_at((start + stop) / 2) if len(edges) > 2 else survey
@@ -308,38 +302,19 @@ def _colored(line: Timeline, body: Body, survey: Survey, color: str) -> list[Spa
 
 def _hidden(line: Timeline, body: Body) -> list[Span]:
     """The spans in which a thing is hidden."""
-    ids, spans = _ids(line, body), list[Span]()
-    for look in _looks(line, body):
-        gone = look.ids[:0] if look.opacities is None else look.ids[(look.opacities == 0).cpu().numpy()]
-        start, stop = max(look.start, line.start), min(look.stop, line.stop)
-        if start < stop and np.isin(ids, gone).mean() > _MOST:
-            spans.append((start, stop))
-    return joined(sorted(spans), _SOON)
+    looks = hiding(line, body.group.id)
+    spans = [(max(look.start, line.start), min(look.stop, line.stop)) for look in looks]
+    return joined(sorted(span for span in spans if span[0] < span[1]), _SOON)
 
 
-def _looks(line: Timeline, body: Body, colors: bool = False) -> list[Look]:
-    """The looks that most of a thing has at some time; of colours only, or all."""
-    motion = line.scene.motion
-    assert motion is not None
-    return [look for look in motion.looks if (look.sh is not None or not colors) and _worn(line, body, look)]
+def _recolored(line: Timeline, body: Body) -> list[float]:
+    """The times at which a thing gets other colours."""
+    return _edges(line, recoloring(line, body.group.id))
 
 
-def _worn(line: Timeline, body: Body, look: Look) -> bool:
-    """Whether most of a thing has a look."""
-    ids = _ids(line, body)
-    return len(ids) > 0 and bool(np.isin(ids, look.ids).mean() > _MOST)
-
-
-def _ids(line: Timeline, body: Body) -> NDArray[np.int64]:
-    """Ids of the Gaussians of a thing."""
-    assert line.scene.language is not None
-    found = index_groups(line.scene.cloud).ids_of(line.scene.language.leaves(body.group.id)).cpu().numpy()
-    return np.asarray(found, np.int64)
-
-
-def _edges(looks: Sequence[Look]) -> list[float]:
-    """The times at which looks begin or end, ascending."""
-    return sorted({t for look in looks for t in (look.start, look.stop)})
+def _edges(line: Timeline, looks: Sequence[Look]) -> list[float]:
+    """The times within the film at which looks begin or end, ascending."""
+    return sorted({t for look in looks for t in (look.start, look.stop) if line.start < t < line.stop})
 
 
 WHEN_SEEN = Kind("when_it_looks", templates(_WHENS), _when)
