@@ -25,7 +25,7 @@ _SAME = {  # one of the first unit in the second
     ("m", "cm"): 100.0, ("cm", "m"): 0.01, ("turns/s", "rpm"): 60.0, ("turns/s", "deg/s"): 360.0,
     ("m/s", "cm/s"): 100.0, ("rpm", "turns/s"): 1 / 60, ("deg/s", "turns/s"): 1 / 360,
 }  # fmt: skip
-_COUNTED = ("turns", "times", "things")  # units of answers that are plain numbers
+_COUNTED = ("turns", "times", "things", "steps")  # units of answers that are plain numbers
 _PLACING = {"at", "on", "in", "by", "the", "near", "next", "to", "beside", "of"}
 _ALIKE = 0.6  # of the words of an event in an order that must be told
 

@@ -1,8 +1,9 @@
 """Which Gaussians belong to which body (`shared`): each that is near one is put both where it stands and where the body
 goes, and the frames tell what share of it goes along.
 
-Poses, colours and shapes stay as they are; only shares are trained. Shares of neighbours are drawn together, so that
-those that no picture tells apart (white before white) follow the others.
+Poses, colours and shapes stay as they are; only shares are trained. Shares of neighbours of like colours are drawn
+together, so that what no picture tells apart (the middle of a turntable's even top, and of the table under it) follows
+what looks as it does.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...fit.loss import BLACK
+from ...harmonics import SH_C0
 from ...render.cpu import gradient
 from .bodies import Body, Columns, Labelled, placed
 from .footage import Footage
@@ -27,7 +29,8 @@ NEAR = 4.0  # pixels, at the distance of the cameras' radius: as near to a body 
 MEMBER, OTHER = 1.0, -1.0  # logits of the shares at the start: of what was taken for the body's, and of what is near
 STEPS = 160
 RATE = 0.12
-NEIGHBOURS = 6
+NEIGHBOURS = 8
+ALIKE = 0.1  # colours that differ by so much are as unlike as places that are `NEAR` apart
 DRAWN = 0.06  # how far a logit is drawn towards the mean of its neighbours at each step
 QUIET = 0.1  # of the typical gradient: smaller ones count less
 DENSEST = 0.98  # opacity beyond which a Gaussian is not divided more finely
@@ -36,8 +39,8 @@ MOVED = 1.0  # pixels: frames in which no body has gone so far tell nothing
 
 @dataclass(frozen=True, eq=False)
 class _Shares:
-    """Gaussians that may be of a body: `rows` of the columns, `body` number of each, `near` rows of their neighbours in
-    `rows`, `[n, NEIGHBOURS]`."""
+    """Gaussians that may be of a body: `rows` of the columns, `body` number of each, `near` their neighbours as places in
+    `rows`, `[n, NEIGHBOURS]`; `len(rows)` is one that stands still for certain."""
 
     rows: I64
     body: NDArray[np.int32]
@@ -62,7 +65,7 @@ def shared(
         first, second = 0.9 * first + 0.1 * slope, 0.99 * second + 0.01 * slope**2
         size = np.sqrt(second / (1 - 0.99**k))
         logits = logits - RATE * first / (1 - 0.9**k) / (size + QUIET * np.sqrt((size**2).mean()) + 1e-30)
-        logits = logits + DRAWN * (logits[candidates.near].mean(axis=1) - logits)
+        logits = logits + DRAWN * (np.append(logits, OTHER)[candidates.near].mean(axis=1) - logits)
     found = labels.copy()
     found[candidates.rows] = np.where(logits > 0, candidates.body, 0)
     return found
@@ -117,10 +120,14 @@ def _candidates(columns: Columns, labels: NDArray[np.int32], footage: Footage) -
     if not len(members):
         return _Shares(members, np.zeros(0, np.int32), np.zeros((0, 1), np.int64))
     away, nearest = cKDTree(columns[0][members]).query(columns[0])
-    rows = np.flatnonzero((labels > 0) | (away < NEAR * footage.radius / footage.cameras[0].fx))
+    reach = NEAR * footage.radius / footage.cameras[0].fx
+    rows = np.flatnonzero((labels > 0) | (away < reach))
     body = np.where(labels[rows] > 0, labels[rows], labels[members[nearest[rows]]]).astype(np.int32)
-    _, near = cKDTree(columns[0][rows]).query(columns[0][rows], k=min(NEIGHBOURS + 1, len(rows)))
-    return _Shares(rows, body, near.reshape(len(rows), -1)[:, 1:] if len(rows) > 1 else near.reshape(1, 1))
+    alike = np.concatenate([columns[0] / reach, columns[4][:, 0] * SH_C0 / ALIKE], axis=1)
+    _, near = cKDTree(alike).query(alike[rows], k=[*range(2, NEIGHBOURS + 2)])
+    place = np.full(len(labels) + 1, len(rows))  # the last is none: fewer Gaussians than neighbours
+    place[rows] = np.arange(len(rows))
+    return _Shares(rows, body, place[near])
 
 
 def _slope(

@@ -18,6 +18,7 @@ from scipy import ndimage
 
 from ...camera import Camera
 from ...fit.loss import BLACK
+from ...harmonics import SH_C0
 from ...render.cpu import gradient
 from .. import keys
 from .bodies import Body, Columns, multiplied, pose_gradient, turned
@@ -101,7 +102,7 @@ class Tracker:
         self.size = float(np.sqrt(np.average(((means - self.pivot) ** 2).sum(axis=1), weights=weight)))
         some = self._rng.choice(len(rows), min(SAMPLES, len(rows)), replace=False, p=weight / weight.sum())
         self._points = means[some].astype(np.float64) - self.pivot
-        self._colors = (self._own[4][some, 0] * 0.28209479177387814 + 0.5).clip(0, 1)
+        self._colors = (self._own[4][some, 0] * SH_C0 + 0.5).clip(0, 1)
         self._near = [_seen(self._rest, camera) for camera in footage.cameras]
         _, _, axes = np.linalg.svd((means - self.pivot) * np.sqrt(weight)[:, None], full_matrices=False)
         around = np.concatenate([np.outer(np.linspace(-TURN, TURN, 28), axis) for axis in axes])

@@ -66,7 +66,7 @@ def _is_another(kind: str, said: Said, plain: str) -> bool:
     deeds = _TWO_DEEDS.search(said.barred)
     if deeds is not None and deeds["deed"] not in _OWN_DEEDS.get(kind, ()):
         return True
-    return _NTH.search(said.time) is not None or _FROM_WHEN.search(plain) is not None
+    return any(found.search(told) for found, told in ((_NTH, said.time), (_FROM_WHEN, plain), (_A_CLAUSE, plain)))
 
 
 def _wants_another(kind: str, said: Said, rest: list[str]) -> bool:
@@ -133,10 +133,11 @@ _A_FULL_ONE = re.compile(r"\b(?:one|full|whole|complete)\b")
 _A_SHARE = re.compile(r"\b(?:fraction|share|part|percent\w*|portion)\b")
 _EACH_SECOND = re.compile(r" (?:per|a|each|every) (?:second|minute)(?= )")
 _FROM_WHEN = re.compile(r"\b(?:from|since|until|till|to) (?:when|the moment)\b")  # a time without a mark
+_A_CLAUSE = re.compile(r"\b(?:while|whilst|once (?:it|the|has|have|had|is|are|was))\b")  # the same, of what happens
 _CROSSED = re.compile(r"\b(?:cross\w*|passed|past|through|over|across)\b")
 _UNTIL_WHEN = re.compile(r"\b(?:until|till|up to) (?:what|which|when)\b")
 _WHICH_PLACE = re.compile(
-    r"\b(?:(?:up)?on|in|at|against|by|to|onto|over) (?:the )?(?:what|which) (?:(?:piece|bit|item|kind|sort) of )?"
+    r"\b(?:(?:up)?on|in|at|against|by|to|onto|over|next to|beside|near|close to) (?:the )?(?:what|which) (?:(?:piece|bit|item|kind|sort) of )?"
     r"(?:furniture|wall|surface|thing|object|place|spot)\b|"
     r"\b(?:what|which) (?:(?:piece|bit|item) of )?(?:furniture|wall|surface)\b|"
     r"\b(?:against|at|by|on|in|over) which (?:of the (?:walls|corners)|floor covering)\b"

@@ -87,6 +87,8 @@ def _plainly(
         if kind in _OF_ONE and _PRONOUN.isdisjoint(said.rest.split()):
             return
         said = replace(said, x="it")
+    if kind in _GROWS and _PERFECT.search(said.rest) and _AFTER_SO_LONG.match(said.time):
+        said = replace(said, times=(_AFTER_SO_LONG.sub("by ", said.time),))
     if leg:
         if (said.time and not UP_TO_THE_TURN.match(said.time)) or kind not in OF_A_LEG:
             return
@@ -120,6 +122,9 @@ def question_of(kind: str, x: str, y: str, rest: str = "") -> str | None:
 _WHEN_BEFORE = re.compile(
     r"^(?P<time>(?:once|when|after|as soon as|from when) [^,]+?)(?: 's)? , how (?:many|much|long)\b"
 )
+_GROWS = bag("far far_turns far_opens turns often")
+_PERFECT = re.compile(r"\b(?:has|have|had)\b")  # "how far has it gone after two seconds"
+_AFTER_SO_LONG = re.compile(r"^after (?=\d[\d.]* ?s(?:ec(?:ond)?s?)?$)")
 _OF_EVENTS = bag("does order happens")
 _OF_ALL = bag(
     "what_moves what_still how_many first last order fastest happens film_long gap if_moves if_still if_together "

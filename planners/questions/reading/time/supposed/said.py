@@ -16,6 +16,7 @@ from .phrases import PRONOUNS
 
 _DETERMINED = re.compile(r"^(?:the|a|an|this|that|these|those|my|our|your|his|her|its|their|all|both|any|every)\b")
 
+_COUNTED = re.compile(r"\d")  # "like 90 degrees" is no unit
 _EACH = re.compile(r"(?:per|a|each|every) (?:second|minute)$")  # so many turns
 _IN_UNIT = re.compile(rf"\b(?:{UNIT}|rpm|revs? (?:a|per) minute)\b")
 
@@ -57,6 +58,7 @@ def said_of(words: tuple[str, ...], spans: Collection[Span], names: Collection[s
     found: dict[str, list[str]] = {tag: [] for tag in ("x", "y", "t", "u", "off")}
     before = ("", *words)  # the word before each
     spans = [(tag, a - (tag == "t" and before[a] in _CONJUNCTIONS), b) for tag, a, b in spans]
+    spans = [span for span in spans if span[0] != "u" or not _COUNTED.search(" ".join(words[span[1] : span[2]]))]
     inside = held_by(spans)
     for tag, start, stop in spans:
         found[tag].append(" ".join(words[start:stop]).strip(" ,.?"))

@@ -35,7 +35,7 @@ _IT_ENDS = (
     r"scene|shot|show|story|picture) "
     r"(?:ends?|concludes?|runs out|is (?:over|done|finished)|finish(?:es)?|stops|cuts out|closes)"
 )
-_END = r"(?:last frame|(?:very )?end|(?:film|clip|video|movie|footage|recording|scene|shot) 's end)"
+_END = r"(?:last frame|(?:very )?end(?! of (?:it|its|his|her|that))|(?:film|clip|video|movie|footage|recording|scene|shot) 's end)"
 _LEFT = re.compile(
     r"\b(?:how (?:much|long|many)|what)\b.*\b(?:left|remain\w*|still to (?:come|go)|"
     rf"{_IT_ENDS}|(?:to|until|till) the {_END})\b|"
@@ -143,7 +143,8 @@ _TOLD = 0.54  # probability of an event from which another one is counted
 
 def times_of(kind: str, said: tuple[str, ...]) -> Iterator[str]:
     """The words for a time, as they are said and by what happens at it; those that both are read agree in it."""
-    if kind in _OF_A_WAY and all(_ON_ITS_WAY.match(one) for one in said):
+    both = f"from {_AFTER.sub('', said[0])} to {_BEFORE.sub('', said[1])}" if len(said) == 2 else ""
+    if kind in _OF_A_WAY and (all(_ON_ITS_WAY.match(one) for one in said) or _ALL_OF_IT.match(both)):
         yield ""
         return
     plain = " ".join(filter(None, (_plain_time(kind, one) for one in said)))
@@ -157,6 +158,8 @@ def times_of(kind: str, said: tuple[str, ...]) -> Iterator[str]:
 
 
 _OF_A_WAY = bag("fast fast_most far long_moves turns")
+_AFTER = re.compile(r"^(?:after|from|since|once|following) ")
+_BEFORE = re.compile(r"^(?:before|until|till|til|to|up to) ")
 _ON_ITS_WAY = re.compile(  # that says nothing more of a movement
     r"^(?:on|during|along|over|in) (?:its|his|her|the) (?:whole |entire )?"
     r"(?:way|trip|journey|roll|run|course|path|route)\b|"
@@ -168,7 +171,7 @@ _WHOLE_FILM = re.compile(  # a time that is all of the film
     r"^(?:(?:during|in|over|throughout|within|for|across|through) (?:the|this|these|all(?: of)? the|its|his|her) "
     r"(?:(?:whole|entire|full|complete) )?(?:(?:five|5) seconds|(?:\w+ )?"
     r"(?:(?:five|5) ?s(?:ec(?:ond)?s?)? )?(?:film|clip|video|scene|time|movie|"
-    r"footage|recording|shot|proceedings|events|"
+    r"footage|recording|shot|proceedings|events?|incident|episode|"
     r"sequence|interval of motion|motion|movement|run|journey|trip))(?: is to be| long)?|throughout|ever|overall|"
     r"in total|altogether|in all|"
     r"at any (?:point|time|moment)|at all|all told|at some (?:point|time|moment)|from (?:start|beginning|"
@@ -240,12 +243,14 @@ _EDGES = ("", "at the start", "at the end")
 _BEGUN = (  # of a movement
     r"(?:very )?(?:first |initial )?(?:start(?:ing)?(?: off| point| gate)?|beginning|push ?off|crack|shut|closed|"
     r"stirrings?|motion|movement|move|push|"
-    r"departure|release|launch|take ?off|kick ?off|setting (?:off|out)|set ?off|leaving(?: (?:the |its )?\w+){0,2}|"
+    r"departure|release|launch|take ?off|kick(?: ?off)?|shove|nudge|setting (?:off|out)|set ?off|leaving(?: (?:the |its )?\w+){0,2}|"
     r"parting|go|opening)"
 )
 _OVER = (
     r"(?:very )?(?:final |last |full |complete |dead |eventual )?(?:(?:wide |fully |full )?open|finish line|"
     r"stop(?:ping)?(?: point)?|halt|rest|end|standstill|"
+    r"(?:moment |point |instant |time )?(?:when |where |at which )?(?:it|he|she) (?:stops|halts|rests|stands|settles|"
+    r"(?:comes|gets) to (?:a |its )?(?:\w+ )?(?:rest|stop|halt|standstill))|"
     r"finish(?:ing)?|arrival(?: (?:at|by|in) (?:the |its )?(?:\w+ )?\w+)?|last|coming to (?:a |its )?\w+|closing)"
 )
 _ALL_OF_IT = re.compile(
