@@ -45,6 +45,7 @@ from .timing.judging import Judge, wording_of
 from .timing.keeping import Kept, held, without_kept
 from .timing.marked.kinds import SURE
 from .timing.reading import TimeReader, is_misread, may_be_timed
+from .timing.sending import sent
 from .timing.spoken import written
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
@@ -181,7 +182,9 @@ def _understand(cleaned: str, previous: str | None, scene: Observation | None = 
     Args, raises: as `_read_whole`.
     """
     outcome = _read_whole(cleaned, previous, scene)
-    return outcome if scene is None else replace(outcome, ops=tuple(named_there(outcome.ops, scene.lacks)))
+    if scene is None:
+        return outcome
+    return replace(outcome, ops=sent(cleaned, tuple(named_there(outcome.ops, scene.lacks)), scene.moves))
 
 
 def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -> _Outcome:

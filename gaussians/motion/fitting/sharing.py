@@ -29,8 +29,9 @@ NEAR = 4.0  # pixels, at the distance of the cameras' radius: as near to a body 
 MEMBER, OTHER = 1.0, -1.0  # logits of the shares at the start: of what was taken for the body's, and of what is near
 STEPS = 160
 RATE = 0.12
-NEIGHBOURS = 8
-ALIKE = 0.1  # colours that differ by so much are as unlike as places that are `NEAR` apart
+NEIGHBOURS = 12
+ALIKE = 0.1  # difference of colours from which neighbours hardly count
+_LEAST = 1e-3  # how much they count then
 DRAWN = 0.06  # how far a logit is drawn towards the mean of its neighbours at each step
 QUIET = 0.1  # of the typical gradient: smaller ones count less
 DENSEST = 0.98  # opacity beyond which a Gaussian is not divided more finely
@@ -39,12 +40,13 @@ MOVED = 1.0  # pixels: frames in which no body has gone so far tell nothing
 
 @dataclass(frozen=True, eq=False)
 class _Shares:
-    """Gaussians that may be of a body: `rows` of the columns, `body` number of each, `near` their neighbours as places in
-    `rows`, `[n, NEIGHBOURS]`; `len(rows)` is one that stands still for certain."""
+    """Gaussians that may be of a body: `rows` of the columns, `body` number of each, `near` rows of their neighbours in
+    `rows`, `[n, NEIGHBOURS]`, `alike` how much each of these counts, by its colour; they sum to one."""
 
     rows: I64
     body: NDArray[np.int32]
     near: I64
+    alike: F64
 
 
 def shared(
@@ -65,7 +67,7 @@ def shared(
         first, second = 0.9 * first + 0.1 * slope, 0.99 * second + 0.01 * slope**2
         size = np.sqrt(second / (1 - 0.99**k))
         logits = logits - RATE * first / (1 - 0.9**k) / (size + QUIET * np.sqrt((size**2).mean()) + 1e-30)
-        logits = logits + DRAWN * (np.append(logits, OTHER)[candidates.near].mean(axis=1) - logits)
+        logits = logits + DRAWN * ((logits[candidates.near] * candidates.alike).sum(axis=1) - logits)
     found = labels.copy()
     found[candidates.rows] = np.where(logits > 0, candidates.body, 0)
     return found
@@ -118,16 +120,16 @@ def _candidates(columns: Columns, labels: NDArray[np.int32], footage: Footage) -
     """What belongs to a body, or is near it at the start."""
     members = np.flatnonzero(labels > 0)
     if not len(members):
-        return _Shares(members, np.zeros(0, np.int32), np.zeros((0, 1), np.int64))
+        return _Shares(members, np.zeros(0, np.int32), np.zeros((0, 1), np.int64), np.zeros((0, 1)))
     away, nearest = cKDTree(columns[0][members]).query(columns[0])
-    reach = NEAR * footage.radius / footage.cameras[0].fx
-    rows = np.flatnonzero((labels > 0) | (away < reach))
+    rows = np.flatnonzero((labels > 0) | (away < NEAR * footage.radius / footage.cameras[0].fx))
     body = np.where(labels[rows] > 0, labels[rows], labels[members[nearest[rows]]]).astype(np.int32)
-    alike = np.concatenate([columns[0] / reach, columns[4][:, 0] * SH_C0 / ALIKE], axis=1)
-    _, near = cKDTree(alike).query(alike[rows], k=[*range(2, NEIGHBOURS + 2)])
-    place = np.full(len(labels) + 1, len(rows))  # the last is none: fewer Gaussians than neighbours
-    place[rows] = np.arange(len(rows))
-    return _Shares(rows, body, place[near])
+    _, near = cKDTree(columns[0][rows]).query(columns[0][rows], k=min(NEIGHBOURS + 1, len(rows)))
+    near = near.reshape(len(rows), -1)[:, 1:] if len(rows) > 1 else near.reshape(1, 1)
+    colors = columns[4][rows, 0].astype(np.float64) * SH_C0
+    apart = np.linalg.norm(colors[near] - colors[:, None], axis=2)
+    alike = np.exp(-((apart / ALIKE) ** 2)) + _LEAST
+    return _Shares(rows, body, near, alike / alike.sum(axis=1, keepdims=True))
 
 
 def _slope(

@@ -272,7 +272,9 @@ def _state(clause: Clause, manner: Manner) -> tuple[str, _Course] | None:
         if manner.at in ("off", "out of", "away from"):
             return "on", _ENDED
     if place is not None and only_place and sense in ("be", "stay", *MOTION, "stop"):
-        if sense == "stop" or ended:
+        if sense == "stop":
+            return "moving", _ENDED  # "when it stops next to the bed"
+        if ended:
             return place, _COMES
         if manner.at in ("onto", "on to", "into"):
             return place, _COMES

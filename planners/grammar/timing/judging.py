@@ -96,7 +96,10 @@ _BOTH_WAYS = re.compile(  # "completely shut and simultaneously extended"
 )
 _NEVER_LEAVES = re.compile(  # "walks all the way to the bed without ever leaving its spot"
     r"\b(?:walks?|rolls?|drives?|goes|moves?|slides?|travels?|runs?)\b.*\bwithout (?:ever |once |even )?"
-    r"(?:leaving (?:its|his|her|the) (?:spot|place|position)|moving|budging|stirring)\b"
+    r"(?:leaving (?:its|his|her|the) (?:spot|place|position)|moving|budging|stirring)\b|"
+    r"\b(?:never|not once) (?:leaves?|budges?|moves?|quits?|stirs?)\b.{0,40}\b(?:and|but|yet)\b.{0,15}"
+    r"\b(?:ends? up|finish(?:es)?|arrives?|gets? to|reach(?:es)?|comes? to rest|lands?)\b|"
+    r"\b(?P<how>open|shut|closed)\b.{0,60}\b(?:and|but|yet)\b.{0,40}\bnever (?:\w+ )?(?P=how)\b"
 )
 _FIRST_AND_LAST = re.compile(
     r"\bbefore (?P<who>(?:the )?\w+) (?:does|do|sets|leaves|starts|moves|goes)\b.*"

@@ -133,9 +133,11 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"reveals?|visible": "hide recolor repeat",
     r"shut|shuts|close|closes": "close stay still open begin order together speed reverse",
     r"(?:turn|turned|switch|switched) (?:\| )?off": "halt longer still",
+    r"(?:keeps?(?: on)?|goes on) (?:going|moving|rolling|walking)|straight (?:on|ahead)": "longer repeat move amount",
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
 }
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
+_OPENS = re.compile(r"\b(?:opens|starts? (?:to )?open(?:ing)?|let (?:it|\||the \w+) open)\b")  # before it closes
 _WHY_NOT = re.compile(r"\bwhy (?:not|do not we|do not you)\b")
 ASKED_AS_NOT = re.compile(  # "couldn't we see it fall again?"
     r"^(?:\W*\w+ ){0,2}?\W*(?:why not\b|(?:can|could|will|would|should|might) not "
@@ -220,6 +222,8 @@ def says_more(kind: str, slots: Slots) -> bool:
         left = _HALF_OF_IT.sub(" ", left)
         left = _AS_IT_DOES.sub(" ", NO_MORE.sub(" ", left))
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY):
+        return True
+    if kind == "close" and _OPENS.search(f"{left} {idle}"):
         return True
     if _WISHED.search(f"{slots.asked} {idle}") or _TWO_ORDERS.search(left):
         return True

@@ -80,6 +80,9 @@ _UNSEEN = re.compile(
     r"\bnot (?:to )?be seen\b",
     re.IGNORECASE,
 )
+_SO_LONG = re.compile(
+    r"\b(?:times|twice) (?:as (?:long|slow|slowly)\b|longer\b|slower\b|the (?:time|duration|length)\b)", re.IGNORECASE
+)
 _TO_TAKE = re.compile(  # "the cart should take half a second", which is wished
     r"\b(?:should|must|shall|has to|needs to|ought to|is to|are to|have to|let \w+(?: \w+)?) (?:only |just )?take "
     r"(?:\w+ ){0,3}(?:seconds?|secs?|s)\b",
@@ -100,6 +103,8 @@ def likely(said: str, still: bool = False) -> list[tuple[str, float]]:
         chances["duration"] += chances.pop(NO_WISH)
     if _UNSEEN.search(said) is not None:  # is asked of no course of a motion
         chances["hide"] += sum(chances.pop(kind, 0.0) for kind in COURSES)
+    if _SO_LONG.search(said) is not None:  # and not so often
+        chances["speed"] += chances.pop("repeat", 0.0)
     known = sorted(chances.items(), key=lambda own: -own[1])
     if still:
         rest = 1.0 - sum(chance for kind, chance in known if kind in COURSES)

@@ -18,7 +18,13 @@ _OTHER_WAY = re.compile(
     r"sense|clockwise|anti ?clockwise|counter ?clockwise|counter|turns? (?:left|right))\b"
 )
 
-_BACKWARDS = re.compile(r"\b(?:backwards?|in reverse|rewind|rewound|from (?:the )?(?:end|back) to|end to start)\b")
+_BACKWARDS = re.compile(
+    r"\b(?:backwards?|in reverse|rewind|rewound|back to front|from (?:the )?(?:end|back) to|end to start)\b"
+)
+_THE_FILM = re.compile(  # "run the whole shot backwards, books fly up onto the board"
+    r"\b(?:the|this|that|my|our) (?:(?:whole|entire|full|complete) )?"
+    r"(?:film|clip|video|movie|shot|footage|recording|scene|take|animation)\b(?! (?:ends?|is over|stops))"
+)
 
 _TRAVELS = re.compile(
     r"\b(?:travel|roll|walk|driv|slid|march|fall|run|ris)(?:e?s|e|ing|ling)?\b|\bsetting (?:off|out)\b"
@@ -58,7 +64,8 @@ def reverse(slots: Slots) -> Iterator[Wanted]:
     if not back and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
         yield now(slots, f"let {slots.whom} turn the other way round")
         return
-    reverse = Wanted(pace(ALL_OF_IT if whose.text == "everything" else whose_of(slots), "reverse"), Moment(), None)
+    every = whose.text == "everything" or (not moment.told and slots.tell(_THE_FILM))
+    reverse = Wanted(pace(ALL_OF_IT if every else whose_of(slots), "reverse"), Moment(), None)
     if (
         moves is not None
         and moment.told

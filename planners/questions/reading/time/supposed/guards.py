@@ -137,7 +137,8 @@ _A_CLAUSE = re.compile(r"\b(?:while|whilst|once (?:it|the|has|have|had|is|are|wa
 _CROSSED = re.compile(r"\b(?:cross\w*|passed|past|through|over|across)\b")
 _UNTIL_WHEN = re.compile(r"\b(?:until|till|up to) (?:what|which|when)\b")
 _WHICH_PLACE = re.compile(
-    r"\b(?:(?:up)?on|in|at|against|by|to|onto|over|next to|beside|near|close to) (?:the )?(?:what|which) (?:(?:piece|bit|item|kind|sort) of )?"
+    r"\b(?:(?:up)?on|in|at|against|by|to|onto|over|next to|beside|near|close to) (?:the )?(?:what|which) "
+    r"(?:(?:piece|bit|item|kind|sort) of )?"
     r"(?:furniture|wall|surface|thing|object|place|spot)\b|"
     r"\b(?:what|which) (?:(?:piece|bit|item) of )?(?:furniture|wall|surface)\b|"
     r"\b(?:against|at|by|on|in|over) which (?:of the (?:walls|corners)|floor covering)\b"

@@ -35,7 +35,10 @@ _IT_ENDS = (
     r"scene|shot|show|story|picture) "
     r"(?:ends?|concludes?|runs out|is (?:over|done|finished)|finish(?:es)?|stops|cuts out|closes)"
 )
-_END = r"(?:last frame|(?:very )?end(?! of (?:it|its|his|her|that))|(?:film|clip|video|movie|footage|recording|scene|shot) 's end)"
+_END = (
+    r"(?:last frame|(?:very )?end(?! of (?:it|its|his|her|that))|"
+    r"(?:film|clip|video|movie|footage|recording|scene|shot) 's end)"
+)
 _LEFT = re.compile(
     r"\b(?:how (?:much|long|many)|what)\b.*\b(?:left|remain\w*|still to (?:come|go)|"
     rf"{_IT_ENDS}|(?:to|until|till) the {_END})\b|"
@@ -231,7 +234,8 @@ BEFORE_BACK = re.compile(
 
 
 UP_TO_THE_TURN = re.compile(
-    r"^(?:before|until|till|up to|after|from) (?:the |its |his |her )?(?:corner|turn|bend)(?: to the \w+)?$"
+    r"^(?:before|until|till|up to|after|from) (?:(?:the |its |his |her )?(?:corner|turn|bend)(?: to the \w+)?|"
+    r"(?:it|he|she) turns)$"
 )
 _MIDWAY = re.compile(r"^(?:half ?way|mid ?way|in the middle)\b")
 _ONCE_OUT = re.compile(
@@ -243,7 +247,8 @@ _EDGES = ("", "at the start", "at the end")
 _BEGUN = (  # of a movement
     r"(?:very )?(?:first |initial )?(?:start(?:ing)?(?: off| point| gate)?|beginning|push ?off|crack|shut|closed|"
     r"stirrings?|motion|movement|move|push|"
-    r"departure|release|launch|take ?off|kick(?: ?off)?|shove|nudge|setting (?:off|out)|set ?off|leaving(?: (?:the |its )?\w+){0,2}|"
+    r"departure|release|launch|take ?off|kick(?: ?off)?|shove|nudge|"
+    r"setting (?:off|out)|set ?off|leaving(?: (?:the |its )?\w+){0,2}|"
     r"parting|go|opening)"
 )
 _OVER = (
