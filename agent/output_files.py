@@ -71,7 +71,7 @@ def write_whole(paths: Sequence[Path], make: Callable[[int, Path], None], force:
     """Make files of one folder in a hidden one, and move them to their places after the last: all of them or none.
 
     Args:
-        make: writes the i-th file to a path.
+        make: writes the i-th file to a path; what it writes beside that goes along.
 
     Raises:
         UserError: a file was made by others in the meantime and `force` is not set.
@@ -89,8 +89,8 @@ def write_whole(paths: Sequence[Path], make: Callable[[int, Path], None], force:
         if fresh and not folder.exists():
             os.rename(staged, folder)
             return
-        for path in paths:
-            os.replace(staged / path.name, path)
+        for made in sorted(staged.iterdir()):
+            os.replace(made, folder / made.name)
     except OSError as error:
         raise FileError(f"cannot write into {folder}: {error.strerror or error}") from error
     finally:

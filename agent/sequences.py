@@ -12,6 +12,8 @@ from ..gaussians.errors import FileError, UserError
 from .pictures.film import PATTERN
 from .pictures.times import times_within
 
+MOST_RATE = 10_000  # files a second
+
 if TYPE_CHECKING:
     from ..gaussians.files import Report
     from ..gaussians.motion.sequence import Found
@@ -47,25 +49,39 @@ def _numbers(name: str) -> list[tuple[int, str]]:
 
 
 def read(pattern: Path, fps: float | None) -> tuple[Scene, Report, int]:
-    """The scene of a sequence with the motion found in it, the report of its first file and of the motion, and the
-    bytes of all.
+    """The scene of a sequence with the motion found in it and the names of its first file; the report of that file and
+    of the motion; and the bytes of all.
 
     Raises:
-        UserError: no rate is given, or the files hold different Gaussians.
+        UserError: no usable rate is given, or the files hold different Gaussians.
         FileError: they are fewer than two, or one cannot be read.
     """
     from ..gaussians.files import load, load_with_report
+    from ..gaussians.language.field.store import load_field
     from ..gaussians.motion.sequence import motion_of
 
-    if fps is None or not 0 < fps < 1e4:
-        raise UserError(f"{pattern} is a sequence; say how many of its files make a second: --fps 10")
+    rate = _rate(fps, f"{pattern} is a sequence; say how many of its files make a second: --fps 10")
     paths = files_of(pattern)
     first, report = load_with_report(paths[0])
+    first = load_field(first, paths[0]) or first
     frames = [lambda: first.cloud, *(lambda path=path: load(path).cloud for path in paths[1:])]
-    times, gaps = times_of(paths, fps)
+    times, gaps = times_of(paths, rate)
     found = motion_of(frames, times)
     report = replace(report, notes=(*report.notes, *gaps, *told(found, len(paths))))
     return first.replace(motion=found.motion), report, sum(path.stat().st_size for path in paths)
+
+
+def _rate(fps: float | None, without: str) -> float:
+    """Files a second, as given; `without` is the message where nothing is given.
+
+    Raises:
+        UserError: it is not given, or no rate.
+    """
+    if fps is None:
+        raise UserError(without)
+    if not 0 < fps < MOST_RATE:
+        raise UserError(f"--fps is a number of files a second above 0 and below {MOST_RATE:,}, not {fps:g}")
+    return fps
 
 
 def times_of(paths: list[Path], fps: float) -> tuple[list[float], tuple[str, ...]]:
@@ -109,22 +125,21 @@ def _bodies(found: Found) -> str:
 
 
 def write(scene: Scene, pattern: Path, span: tuple[float, float], fps: float | None, force: bool) -> dict[str, Any]:
-    """Write a scene at times from the start of a span to its stop, one file each; all of them or none. Every file has
-    all Gaussians, those that are hidden then with opacity 0.
+    """Write a scene at times from the start of a span to its stop, one file each with the names of its things beside
+    it; all of them or none. Every file has all Gaussians, those that are hidden then with opacity 0.
 
     Raises:
-        UserError: no rate is given, there would be too many files, or one exists and `force` is not set.
+        UserError: no usable rate is given, there would be too many files, or one exists and `force` is not set.
         FileError: they cannot be written.
     """
-    from ..gaussians.files import save
+    from ..gaussians.language.field.saving import save
     from .output_files import refuse_existing, write_whole
     from .terminal.output import terminal
 
-    if fps is None or not 0 < fps < 1e4:
-        raise UserError(f"{pattern.name} is a sequence; say how many files make a second: --fps 10")
+    rate = _rate(fps, f"{pattern.name} is a sequence; say how many files make a second: --fps 10")
     if pattern.name.count("%") != 1 or "*" in pattern.name:
         raise UserError(f"{pattern.name} is not a pattern for files; write for example %04d{pattern.suffix or '.ply'}")
-    times = times_within(span, fps)
+    times = times_within(span, rate)
     paths = [pattern.with_name(pattern.name % i) for i in range(len(times))]
     refuse_existing(paths, force)
 
@@ -136,7 +151,7 @@ def write(scene: Scene, pattern: Path, span: tuple[float, float], fps: float | N
         write_whole(paths, make, force)
     terminal.clear()
     size = sum(path.stat().st_size for path in paths)
-    return {"path": str(pattern), "files": len(paths), "bytes": size, "time": list(span), "fps": fps}
+    return {"path": str(pattern), "files": len(paths), "bytes": size, "time": list(span), "fps": rate}
 
 
 def _whole(scene: Scene, time: float) -> Scene:

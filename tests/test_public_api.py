@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+import pytest
 import torch
 
 import scenewright as sw
@@ -18,18 +20,35 @@ def _scene() -> sw.Scene:
     return sw.Scene(cloud.replace(group=torch.full((len(cloud),), -1, dtype=torch.int32)))
 
 
-def test_load_takes_the_saved_field_of_exactly_this_file(tmp_path: Path) -> None:
-    import numpy as np
+def _field() -> LanguageField:
+    """A field of no groups."""
+    return LanguageField((), np.zeros((0, 2), np.float32), "test:1")
 
+
+def test_load_takes_the_saved_field_of_exactly_this_file(tmp_path: Path) -> None:
     scene = _scene()
     sw.save(scene, tmp_path / "a.ply")
     assert sw.load(tmp_path / "a.ply").language is None
-    field = LanguageField((), np.zeros((0, 2), np.float32), "test:1")
-    save_field(scene.replace(language=field), tmp_path / "a.ply")
+    save_field(scene.replace(language=_field()), tmp_path / "a.ply")
     loaded = sw.load(str(tmp_path / "a.ply"))
     assert loaded.language is not None and loaded.language.encoder == "test:1"
     sw.save(scene.replace(cloud=scene.cloud[5:]), tmp_path / "a.ply", force=True)  # the field is of another file now
     assert sw.load(tmp_path / "a.ply").language is None
+
+
+def test_what_is_saved_with_names_is_loaded_with_them(tmp_path: Path) -> None:
+    scene = _scene().replace(language=_field())
+    assert sw.save(scene, tmp_path / "a.ply") == tmp_path / "a.ply.field.safetensors"
+    loaded = sw.load(tmp_path / "a.ply")
+    assert loaded.language is not None and loaded.language.encoder == "test:1"
+
+
+def test_groups_that_the_field_does_not_have_are_refused_before_anything_is_written(tmp_path: Path) -> None:
+    scene = _scene()
+    other = scene.cloud.replace(group=torch.full((len(scene.cloud),), 3, dtype=torch.int32))
+    with pytest.raises(sw.UserError, match="language=None"):
+        sw.save(sw.Scene(other, language=_field()), tmp_path / "a.ply")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_scene_is_drawn_as_its_cloud_is() -> None:

@@ -78,12 +78,13 @@ def command(
     A .lod folder (or a lod-meta.json in it) is PlayCanvas' Streamed SOG: levels of detail, each with a quarter of the
     Gaussians of the one before, merged, not dropped; the finest level is the scene that other verbs read.
 
+    The names of things (the language field beside SCENE) go along, into a file beside OUT; levels of detail hold none.
     A scene with motion keeps it, in a file beside OUT. With --time it is written as it is at that time, or as one file
     for each time of a range; a sequence of files of the same Gaussians ('frames/*.ply' or frames/%04d.ply) becomes a
     scene with motion.
 
-    A scene in tiles is written to a .ply as a stream, without loss, if nothing else is asked for; the names of its
-    things go into a language field beside it. Where it does not fit into the memory, a .lod is written part by part.
+    A scene in tiles is written to a .ply as a stream, without loss, if nothing else is asked for. Where it does not fit
+    into the memory, a .lod is written part by part.
     """
     from ...gaussians.errors import UserError
     from ...gaussians.files import writer
@@ -124,15 +125,15 @@ def command(
     cameras = _views(cut, views) if views and not streamed else ()
     smaller = _smaller(cut, sh_degree, max_gaussians, cameras)
     if streamed:
-        left_out = () if smaller.motion is None else ("levels of detail hold no motion: it is left out",)
-        for note in (*report.notes, *left_out):
+        for note in (*report.notes, *_not_in_levels(smaller)):
             terminal.say(f"note: {note}")
         write_levels(smaller, cut.cloud, output, (levels, chunk), views, force)
         return
     start = time.perf_counter()
-    _save(smaller, output, force, spz_version)
+    names = _save(_counted_again(smaller, loaded), output, force, spz_version)
     wrote = time.perf_counter() - start
-    done = _Report(output, report.format, (report.rows, size), (len(smaller.cloud), _size(output)), (read, wrote))
+    after = len(smaller.cloud), _size(output)
+    done = _Report(output, report.format, (report.rows, size), after, (read, wrote), names)
     done.notes += report.notes
     done.measure(cut, smaller, cameras)
     for note in done.notes:
@@ -158,18 +159,17 @@ def _stream(scene: Path, output: Path, force: bool) -> None:
     start = time.perf_counter()
     tiles, size = Tiles.open(scene), _size(scene)
     write_ply(tiles, output, force, terminal.progress)
-    field = write_field(tiles, output)
+    path = write_field(tiles, output)
     terminal.clear()
     counts = (len(tiles), size), (len(tiles), _size(output))
-    done = _Report(output, "tiles", *counts, (0.0, time.perf_counter() - start))
-    named = [] if field is None else [f"names: of {len(tiles.field.groups) if tiles.field else 0:,} groups, in {field}"]
-    terminal.result("\n".join([done.text(), *named]), done.data() | {"field": str(field) if field else None})
+    names = None if path is None or tiles.field is None else (path, len(tiles.field.groups))
+    done = _Report(output, "tiles", *counts, (0.0, time.perf_counter() - start), names)
+    terminal.result(done.text(), done.data())
 
 
 def _load(scene: Path, fps: float | None, at_time: str | None) -> tuple[Scene, Report, int]:
     """The scene to convert, the report of reading it, and its bytes: a file, or a sequence of them."""
     from ...gaussians.errors import UserError
-    from ...gaussians.files import load_with_report
     from ...gaussians.motion.at import at
     from .. import sequences
     from ..pictures.times import time_span
@@ -179,7 +179,7 @@ def _load(scene: Path, fps: float | None, at_time: str | None) -> tuple[Scene, R
     elif fps is not None:
         raise UserError("--fps is for sequences of files; leave it out, or write OUT as a pattern such as %04d.ply")
     else:
-        loaded, report = load_with_report(scene)
+        loaded, report = _named(scene)
         size = _size(scene)
     if at_time is not None:
         start, stop = time_span(at_time, loaded.motion, scene.name)
@@ -189,14 +189,28 @@ def _load(scene: Path, fps: float | None, at_time: str | None) -> tuple[Scene, R
     return loaded, report, size
 
 
+def _named(scene: Path) -> tuple[Scene, Report]:
+    """The scene in a file with the language field beside it, and the report of reading it."""
+    from dataclasses import replace
+
+    from ...gaussians.files import load_with_report
+    from ...gaussians.language.field.store import load_field, mismatch
+
+    loaded, report = load_with_report(scene)
+    named = load_field(loaded, scene)
+    if named is None and (why := mismatch(scene)) is not None:
+        report = replace(report, notes=(*report.notes, f"the language field beside {scene} {why}: it is left out"))
+    return named or loaded, report
+
+
 def _sequence(scene: Path, output: Path, at_time: str | None, fps: float | None, force: bool) -> None:
     """Write a scene with motion as one file for each time."""
-    from ...gaussians.files import load_with_report, writer
+    from ...gaussians.files import writer
     from .. import sequences
     from ..pictures.times import time_span
 
     writer(output)
-    loaded, report = load_with_report(scene)
+    loaded, report = _named(scene)
     for note in report.notes:
         terminal.say(f"note: {note}")
     span = time_span(at_time or ":", loaded.motion, scene.name)
@@ -207,26 +221,30 @@ def _sequence(scene: Path, output: Path, at_time: str | None, fps: float | None,
 
 @dataclass
 class _Report:
-    """The report of a conversion: `before` and `after` as (Gaussians, bytes), `seconds` of reading and writing."""
+    """The report of a conversion: `before` and `after` as (Gaussians, bytes), `seconds` of reading and writing, `names`
+    as (path of the language field, its groups) if there are any."""
 
     output: Path
     format: str
     before: tuple[int, int]
     after: tuple[int, int]
     seconds: tuple[float, float]
+    names: tuple[Path, int] | None = None
     notes: list[str] = field(default_factory=list)
     psnr: tuple[float, ...] = ()
 
     def measure(self, truth: Scene, written: Scene, cameras: tuple[Camera, ...]) -> None:
         """Read the written file, compare rendered views, and note what the format cannot store."""
-        from ...gaussians.files import load
+        from ...gaussians.language.field.loading import load
         from ...gaussians.reduce import psnr
 
         back = load(self.output)
         if back.cloud.degree < written.cloud.degree:
             self.notes.append(f"harmonics of degree {written.cloud.degree} were cut to {back.cloud.degree}")
-        if back.frame != written.frame or len(back.cameras) < len(written.cameras):
+        if back.frame != written.frame:
             self.notes.append("up, scale and cameras of the scene were left out: only .ply files hold them")
+        elif len(back.cameras) < len(written.cameras):
+            self.notes.append("cameras of the scene were left out: only .ply files hold them")
         self.psnr = psnr(truth.cloud, back.cloud, cameras)
 
     def data(self) -> dict[str, Any]:
@@ -242,6 +260,7 @@ class _Report:
             "views": len(self.psnr),
             "read_seconds": self.seconds[0],
             "write_seconds": self.seconds[1],
+            "field": str(self.names[0]) if self.names else None,
             "notes": self.notes,
         }
 
@@ -257,6 +276,8 @@ class _Report:
             lines.append(
                 f"pictures: {mean:.1f} dB PSNR to the original over {views} views, {min(self.psnr):.1f} dB at worst"
             )
+        if self.names:
+            lines.append(f"names: of {self.names[1]:,} groups, in {self.names[0]}")
         return "\n".join([*lines, f"time: read {self.seconds[0]:.2f} s, written {self.seconds[1]:.2f} s"])
 
 
@@ -322,19 +343,42 @@ def _smaller(scene: Scene, degree: int | None, max_gaussians: int | None, measur
     return scene
 
 
-def _save(scene: Scene, output: Path, force: bool, spz_version: int) -> None:
-    from ...gaussians.files import save, writing
-    from ...gaussians.files.formats import spz
-    from ...gaussians.files.formats.morton import morton_sorted
-    from ...gaussians.files.motion_file import save_motion
+def _not_in_levels(scene: Scene) -> tuple[str, ...]:
+    """Notes on what levels of detail leave out."""
+    left_out = () if scene.motion is None else ("levels of detail hold no motion: it is left out",)
+    if scene.language is None:
+        return left_out
+    return (*left_out, "levels of detail hold no names: embed what was written, or ask the scene that it was made from")
 
+
+def _counted_again(scene: Scene, before: Scene) -> Scene:
+    """The scene, which is `before` without some Gaussians, with the groups of its language field measured again."""
+    from ...gaussians.rows import mask_of_ids
+    from ...tools.field_update import after_removal
+
+    if scene.language is None or len(scene.cloud) == len(before.cloud):
+        return scene
+    gone = ~mask_of_ids(before.cloud.ids, scene.cloud.ids)
+    return scene.replace(language=after_removal(before, scene.cloud, before.cloud.ids[gone]))
+
+
+def _save(scene: Scene, output: Path, force: bool, spz_version: int) -> tuple[Path, int] | None:
+    """Write the scene with what is beside it; the path of its language field and its groups, None without one."""
+    from ...gaussians.files import stored_order, writing
+    from ...gaussians.files.formats import spz
+    from ...gaussians.files.motion_file import save_motion
+    from ...gaussians.language.field.saving import save
+    from ...gaussians.language.field.store import save_field
+
+    ordered = stored_order(scene, output)
     if output.suffix.lower() == ".spz" and spz_version != spz.LATEST:
-        ordered = morton_sorted(scene)
         with writing(output, force) as file:
             spz.write(ordered, file, spz_version)
         save_motion(ordered, output)
+        path = None if ordered.language is None else save_field(ordered, output)
     else:
-        save(scene, output, force)
+        path = save(ordered, output, force)
+    return None if path is None or ordered.language is None else (path, len(ordered.language.groups))
 
 
 def _size(path: Path) -> int:

@@ -323,13 +323,11 @@ def _lines(result: Result, dry_run: bool) -> list[str]:
 
 def _write(session: Session, results: Sequence[Result], targets: _Targets, data: dict[str, Any]) -> None:
     """Write the requested files, and add their paths to `data`."""
-    from ...gaussians.language.field.store import save_field
-
     if targets.output is not None:
-        session.save(targets.output, force=targets.force)
+        field = session.save(targets.output, force=targets.force, names=targets.keep_field)
         data["output"] = str(targets.output)
-        if targets.keep_field and session.scene.language is not None:
-            data["field"] = str(save_field(session.scene, targets.output))
+        if field is not None:
+            data["field"] = str(field)
     if targets.pictures is not None:
         data["pictures"] = _draw(session, results, targets.pictures, targets.force)
     if targets.preview is not None:

@@ -779,17 +779,27 @@ class Session:
 
     # -- files ------------------------------------------------------------------------------------------------------
 
-    def save(self, path: str | Path, force: bool = False) -> None:
+    def save(self, path: str | Path, force: bool = False, names: bool = True) -> Path | None:
         """Write the scene to a file; an existing one only with `force`.
+
+        Args:
+            names: write its language field beside it, if it has one.
+
+        Returns:
+            The path of the language field that was written, or None.
 
         Raises:
             UserError: the file exists, or its suffix is of no format that can be written.
             FileError: it cannot be written.
         """
-        from ...gaussians.files import save
+        from ...gaussians import files
+        from ...gaussians.language.field import saving
 
-        save(self.scene, path, force=force)
+        field = saving.save(self.scene, path, force=force) if names else None
+        if not names:
+            files.save(self.scene, path, force=force)
         self._record("save", session_log.save_fields, path, self._history.present)
+        return field
 
     def close(self) -> None:
         """Close the log; closing twice is harmless."""

@@ -179,20 +179,26 @@ class TiledSession(Session):
         self._look(self._things)
         return super().survey()
 
-    def save(self, path: str | Path, force: bool = False) -> None:
-        """Write the whole scene to another file: a .ply tile by tile, others if it fits into the memory.
+    def save(self, path: str | Path, force: bool = False, names: bool = True) -> Path | None:
+        """Write the whole scene to another file: a .ply tile by tile, others if it fits into the memory; see
+        `Session.save`.
 
         Raises:
             UserError: it does not fit, or as `Session.save`.
             FileError: as `Session.save`.
         """
-        from ...gaussians.files import save
-        from ...gaussians.tiles.exporting import is_streamed, write_ply
+        from ...gaussians import files
+        from ...gaussians.language.field import saving
+        from ...gaussians.tiles.exporting import is_streamed, write_field, write_ply
 
         if is_streamed(Path(path)):
             write_ply(self.tiles, Path(path), force)
-        else:
-            save(window.everything(self.tiles, self.memory).scene, path, force=force)
+            return write_field(self.tiles, Path(path)) if names else None
+        whole = window.everything(self.tiles, self.memory).scene
+        if names:
+            return saving.save(whole, path, force=force)
+        files.save(whole, path, force=force)
+        return None
 
     def undo(self) -> Result:
         """Undo the last edit of the folder.

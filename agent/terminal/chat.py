@@ -81,9 +81,9 @@ class Chat:
 
     def save(self, name: str, force: bool) -> str:
         """Write the scene to a file; returns what is told of it."""
-        self.session.save(name, force=force)
+        field = self.session.save(name, force=force)
         self._kept = self.session.scene
-        return f"wrote {name}"
+        return f"wrote {name}" if field is None else f"wrote {name}, and the names of its things to {field.name}"
 
     def _leave(self) -> bool:
         """Whether the chat may end although the scene is not saved. A person is asked for a file; a pipe is told."""

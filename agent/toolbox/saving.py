@@ -24,7 +24,7 @@ class SaveArguments(Arguments):
 
 def save_scene(desk: Desk, said: SaveArguments) -> Reply:
     """Write the scene to a file in its own folder, completely or not at all; an existing file only with `force`."""
-    from ...gaussians.language.field.store import field_path, save_field
+    from ...gaussians.language.field.store import field_path
 
     if desk.folder is None:
         raise UserError("there is no folder to save to here")
@@ -34,12 +34,12 @@ def save_scene(desk: Desk, said: SaveArguments) -> Reply:
     keep = desk.keep_field and desk.session.scene.language is not None
     if keep:
         desk.folder.file(str(field_path(path).relative_to(desk.folder.root)))  # a link must not lead out of the folder
-    desk.session.save(path, force=said.force)
+    field = desk.session.save(path, force=said.force, names=keep)
     with open(path, "rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
     data = {"verdict": "ok", "file": said.file, "bytes": path.stat().st_size, "sha256": digest}
-    if keep:
-        data["field"] = save_field(desk.session.scene, path).name
+    if field is not None:
+        data["field"] = field.name
     return Reply(f"saved as {said.file} ({data['bytes']:,} bytes)", data)
 
 

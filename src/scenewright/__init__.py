@@ -30,10 +30,10 @@ if TYPE_CHECKING:
         UnconfirmedError,
         UserError,
     )
-    from .gaussians.files import save
     from .gaussians.language.field.embed import embed
     from .gaussians.language.field.language_field import LanguageField
     from .gaussians.language.field.loading import load
+    from .gaussians.language.field.saving import save
     from .gaussians.language.query.query import Query, Relation
     from .gaussians.language.query.selection import Selection
     from .gaussians.meshing import Mesh, mesh
@@ -58,7 +58,7 @@ _HOME = {
     "Result": ".agent.session.result",
     "Toolbox": ".agent.toolbox.toolbox",
     "load": ".gaussians.language.field.loading",
-    "save": ".gaussians.files",
+    "save": ".gaussians.language.field.saving",
     "show": ".agent.view.show",
     "render": ".gaussians.render",
     "embed": ".gaussians.language.field.embed",

@@ -11,6 +11,9 @@ from typing import Any
 import pytest
 
 from scenewright.gaussians import files
+from scenewright.gaussians.language.field.loading import load
+from scenewright.gaussians.language.field.saving import save
+from scenewright.gaussians.language.field.store import field_path
 from scenewright.gaussians.reduce import MAX_PSNR
 from scenewright.gaussians.scene import Scene
 
@@ -22,6 +25,12 @@ COUNT = 3 * 343 + 144  # Gaussians of the boxes
 def room(boxes: Scene, tmp_path: Path) -> Path:
     files.save(boxes.replace(language=None), tmp_path / "room.ply")
     return tmp_path / "room.ply"
+
+
+@pytest.fixture
+def named_room(boxes: Scene, tmp_path: Path) -> Path:
+    save(boxes, tmp_path / "named.ply")
+    return tmp_path / "named.ply"
 
 
 def told(answer: tuple[int, str, str]) -> dict[str, Any]:
@@ -120,3 +129,46 @@ def test_older_spz(call: Any, room: Path, tmp_path: Path, version: int) -> None:
     found = told(call("convert", room, tmp_path / "b.spz", "--spz-version", version, "--json"))
     assert found["psnr"] > 35
     assert files.load_with_report(tmp_path / "b.spz")[1].format == f"Niantic SPZ {version}"
+
+
+def labels_of(scene: Scene) -> list[str]:
+    """The label of each row's group."""
+    assert scene.language is not None
+    return [scene.language.groups[i].label for i in scene.cloud.group.tolist()]
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_the_names_go_along_row_for_row(call: Any, named_room: Path, tmp_path: Path, suffix: str) -> None:
+    out = tmp_path / f"b{suffix}"
+    found = told(call("convert", named_room, out, "--views", 0, "--json"))
+    assert found["field"] == str(field_path(out))
+    scene, before = load(out), load(named_room)
+    assert scene.language is not None and before.language is not None
+    assert scene.language.groups == before.language.groups and scene.frame == before.frame
+    for group in before.language.groups:  # rows may be in another order, and positions rounded
+        own, was = (s.cloud.means[s.cloud.group == group.id].mean(dim=0) for s in (scene, before))
+        assert (own - was).abs().max() < 0.02
+    assert len(files.load(out).cloud) == COUNT
+
+
+def test_an_older_spz_keeps_the_names(call: Any, named_room: Path, tmp_path: Path) -> None:
+    out = tmp_path / "b.spz"
+    told(call("convert", named_room, out, "--spz-version", 2, "--views", 0, "--json"))
+    assert sorted(labels_of(load(out))) == sorted(labels_of(load(named_room)))
+
+
+def test_a_part_of_a_scene_has_its_things_measured_again(call: Any, named_room: Path, tmp_path: Path) -> None:
+    told(call("convert", named_room, tmp_path / "b.ply", "--crop=-3,-1,0.05,-1,1,2", "--views", 0, "--json"))
+    part = load(tmp_path / "b.ply")
+    assert part.language is not None and set(labels_of(part)) == {"box"}
+    assert [g.count for g in part.language.groups] == [len(part.cloud), 0, 0, 0]
+
+
+def test_names_that_cannot_go_along_are_told(call: Any, named_room: Path, tmp_path: Path) -> None:
+    answer = call("convert", named_room, tmp_path / "b.lod", "--levels", 1, "--views", 0)
+    assert answer.code == 0 and "levels of detail hold no names" in answer.err
+    scene = files.load(named_room)
+    files.save(scene.replace(cloud=scene.cloud[10:]), named_room, force=True)
+    answer = call("convert", named_room, tmp_path / "c.ply", "--views", 0)
+    assert "was made for another version of this file: it is left out" in answer.err
+    assert not field_path(tmp_path / "c.ply").exists()

@@ -14,6 +14,8 @@ from PIL import Image
 from scenewright.agent import sequences
 from scenewright.gaussians import files
 from scenewright.gaussians.files.motion_file import motion_path
+from scenewright.gaussians.language.field.loading import load
+from scenewright.gaussians.language.field.saving import save
 from scenewright.gaussians.motion.at import at
 from scenewright.gaussians.motion.motion import Look, Motion, Track
 from scenewright.gaussians.scene import Scene
@@ -101,6 +103,22 @@ def test_a_sequence_is_written_and_read_as_the_motion_that_it_was(call: Any, sli
     assert motion_path(folder / "again.ply").stat().st_size == motion_path(folder / "back.ply").stat().st_size
 
 
+def test_names_go_along_to_a_time_into_a_sequence_and_back(call: Any, slid: Scene, boxes: Scene, room: Path) -> None:
+    folder = room.parent
+    save(slid.replace(language=boxes.language), folder / "named.ply")
+    assert call("convert", folder / "named.ply", folder / "at.ply", "--time", "2", "--views", 0).code == 0
+    raised = load(folder / "at.ply").language
+    assert raised is not None and boxes.language is not None
+    assert raised.groups[0].box.center[2] == pytest.approx(boxes.language.groups[0].box.center[2] + 2, abs=1e-4)
+    assert raised.groups[1:] == boxes.language.groups[1:]
+    assert call("convert", folder / "named.ply", folder / "frames" / "%d.ply", "--time", "0:2", "--fps", 2).code == 0
+    assert load(folder / "frames" / "4.ply").language is not None
+    assert call("convert", folder / "frames" / "*.ply", folder / "back.ply", "--fps", 2, "--views", 0).code == 0
+    back = load(folder / "back.ply")
+    assert back.motion is not None and back.language is not None
+    assert [g.label for g in back.language.groups] == [g.label for g in boxes.language.groups]
+
+
 def test_a_file_that_is_missing_leaves_its_time_in_a_sequence(call: Any, slid: Scene, room: Path) -> None:
     folder = room.parent
     assert call("convert", room, folder / "frames" / "%03d.ply", "--time", "0:2", "--fps", 4).code == 0
@@ -158,6 +176,8 @@ def test_one_time_is_one_file_and_other_formats_keep_the_motion(call: Any, slid:
         (("room.ply", "%d.ply"), 2, "how many files make a second: --fps 10"),
         (("room.ply", "a.ply", "--time", "0:1"), 2, "write OUT as a pattern"),
         (("room.ply", "a.ply", "--fps", "4"), 2, "--fps is for sequences"),
+        *[(("r*.ply", "a.ply", "--fps", fps), 2, "above 0 and below 10,000, not") for fps in ("0", "nan", "-5")],
+        (("room.ply", "%d.ply", "--fps", "0"), 2, "above 0 and below 10,000, not 0"),
         (("none*.ply", "a.ply", "--fps", "4"), 4, "a sequence needs two or more"),
         (("r*m.ply", "a.ply", "--fps", "4"), 4, "names 1 files"),
         (("room.ply", "*.ply", "--fps", "4"), 2, "write for example %04d.ply"),

@@ -20,6 +20,7 @@ from scenewright.gaussians.errors import (
     ScenewrightError,
     UserError,
 )
+from scenewright.gaussians.language.field.loading import load
 from scenewright.gaussians.scene import Scene
 
 
@@ -253,6 +254,13 @@ def test_save_refuses_to_overwrite(session: Session, tmp_path: Path) -> None:
     with pytest.raises(UserError, match="--force"):
         session.save(tmp_path / "a.ply")
     session.save(tmp_path / "a.ply", force=True)
+
+
+def test_save_keeps_the_names_unless_told_otherwise(session: Session, boxes: Scene, tmp_path: Path) -> None:
+    assert session.save(tmp_path / "a.ply") == tmp_path / "a.ply.field.safetensors"
+    saved = load(tmp_path / "a.ply").language
+    assert saved is not None and boxes.language is not None and saved.groups == boxes.language.groups
+    assert session.save(tmp_path / "b.ply", names=False) is None and load(tmp_path / "b.ply").language is None
 
 
 def test_an_unknown_planner_is_refused_by_name(boxes: Scene) -> None:

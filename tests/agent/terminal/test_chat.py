@@ -20,6 +20,7 @@ from scenewright.agent.terminal.chat import COMMANDS, Chat
 from scenewright.agent.terminal.completion import ChatCompleter
 from scenewright.agent.terminal.input_lines import InputLines
 from scenewright.agent.terminal.output import Terminal
+from scenewright.gaussians.language.field.loading import load
 from scenewright.gaussians.scene import Scene
 
 
@@ -103,6 +104,7 @@ def test_commands(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
     assert "  1. make the green thing blue" in out
     assert "there is no command /nonsense" in out
     assert target.is_file() and "not saved" not in err
+    assert "and the names of its things to out.ply.field.safetensors" in out and load(target).language is not None
     assert session.done == ("make the green thing blue",)
 
 
