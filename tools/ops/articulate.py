@@ -27,7 +27,7 @@ from ..placement.bodies import Body, bodies_of
 from ..receipt import Check, at_most
 from ..timing.hinges import Opening, opening_of
 from ..timing.retiming import angles_at, moved, movement, playing, with_tracks
-from ..timing.spans import length_of, spans_of
+from ..timing.spans import length_of, longer_notes, spans_of
 from ..transform import turn
 from ..when import When
 
@@ -88,10 +88,22 @@ class Articulate(TargetedOp):
     def _own_track(self, scene: Scene, ids: NDArray[np.int64]) -> Track | None:
         """The track on which most of a body opens by itself."""
         for track in scene.motion.tracks if scene.motion is not None else ():
-            opens = track.kind in ("hinge", "slide") and track.angles is not None
+            opens = track.kind in ("hinge", "slide") and not track.still
             if opens and 2 * int(np.isin(ids, track.ids).sum()) > len(ids):
                 return track
         return None
+
+    def begins_shut(self, scene: Scene, selection: Selection) -> bool:
+        """Whether the one thing that is meant opens by itself, and from its shape is shut at the start of its scene."""
+        bodies = bodies_of(scene, selection)
+        own = self._own_track(scene, scene.cloud.ids[bodies[0].rows].cpu().numpy()) if len(bodies) == 1 else None
+        if own is None or own.axis is None:
+            return False
+        try:
+            found = self._opening(scene, bodies[0])
+        except InstructionError:
+            return False
+        return float(found.axis @ own.axis) * _widest(own) > 0
 
     def _goal(self, most: float, slides: bool, scene: Scene) -> float:
         """Radians or scene units at which it shall be; `most` is wide open, with its sign."""
@@ -107,48 +119,91 @@ class Articulate(TargetedOp):
         self, scene: Scene, own: Track, selection: Selection, context: Context
     ) -> tuple[Scene, tuple[str, ...]]:
         """What opens by itself: as far as was said, or from a time on otherwise."""
-        assert scene.motion is not None and own.angles is not None
-        motion, slides = scene.motion, own.kind == "slide"
-        most = float(own.angles[int(np.argmax(np.abs(own.angles)))])
-        stop = motion.stop
+        assert scene.motion is not None
+        whole = length_of(scene)
         if self.when is None:
-            goal = self._goal(most, slides, scene)
-            asked = self.share is not None or self.degrees is not None or self.distance is not None
-            if asked and self.change == "open":
-                made = replace(own, angles=own.angles * (goal / most))
-                told = f"it opens by itself, now by {_told(goal, slides, scene)}"
-            else:
-                made = replace(own, times=np.array([motion.start]), angles=np.array([goal]))
-                told = "it does not move any more"
+            made, told = self._at_all_times(scene, own)
+            end = whole.stop
         else:
-            start, end = self._time(spans_of(self.when, scene, selection, context)[0], motion.start, context)
-            if self.change == "close" and self.when == When(stop=self.when.stop):
-                start = max(end - _taken(own), motion.start)  # as fast as it opens, and shut then
-            if self._only_lasts and self.change == "open" and (span := movement([own], motion.start, stop)) is not None:
-                start, end = span[0], span[0] + end - start  # it opens by itself, and this is how long it takes
-            now = float(angles_at(own, np.array([start]))[0])
-            goal = self._goal(most, slides, scene)
-            opens = self.change == "open" and abs(goal - now) < _OPEN * abs(most) and self.when.start is not None
-            shuts = self.change == "close" and abs(goal) < _OPEN * abs(most) and not self._has_end
-            if opens:
-                made, end = _opening_at(own, motion, most, start)
-                told = f"it opens by itself, now from {start:.3g} s"
-            elif shuts and (later := _closing_at(own, motion, start)) is not None:
-                made, end = later
-                told = f"it closes by itself, now from {start:.3g} s"
-            else:
-                if not self._has_end:  # as fast as it opens by itself
-                    end = start + max(_taken(own) * abs(goal - now) / abs(most), _LEAST)
-                before = [t for t in own.times if t < start - _SAME]
-                dense = np.unique(np.round([*before, *np.arange(before[-1], start, 1 / 30)], 9)) if before else _NONE
-                dense = dense[dense < start - _SAME]
-                times = np.array([*dense, start, end])
-                angles = np.array([*angles_at(own, dense), now, goal])
-                made = replace(own, times=times, angles=angles)
-                told = f"{start:.3g} to {end:.3g} s: from {_told(now, slides, scene)} to {_told(goal, slides, scene)}"
-            stop = max(stop, end)
-        tracks = [made if t is own else t for t in motion.tracks]
-        return with_tracks(scene, tracks, stop), (told,)
+            made, told, end = self._timed(scene, own, selection, context)
+        stop = max(whole.stop, end)
+        tracks = [made if t is own else t for t in scene.motion.tracks]
+        return with_tracks(scene, tracks, stop), (told, *longer_notes(whole, stop))
+
+    def _at_all_times(self, scene: Scene, own: Track) -> tuple[Track, str]:
+        """The track of what opens by itself, and a note: it opens as far as was said, or does not move any more."""
+        assert scene.motion is not None and own.angles is not None
+        slides, most = own.kind == "slide", _widest(own)
+        goal = self._goal(most, slides, scene)
+        asked = self.share is not None or self.degrees is not None or self.distance is not None
+        if asked and self.change == "open":
+            told = f"it opens by itself, now by {_told(goal, slides, scene)}"
+            return replace(own, angles=own.angles * (goal / most)), told
+        return replace(own, times=np.array([scene.motion.start]), angles=np.array([goal])), "it does not move any more"
+
+    def _timed(
+        self, scene: Scene, own: Track, selection: Selection, context: Context
+    ) -> tuple[Track, str, float]:  # fmt: skip
+        """The track of what opens by itself that moves otherwise from a time on, a note, and when that ends.
+
+        Raises:
+            InstructionError: it is shut then, or as far open as it is to be.
+        """
+        assert scene.motion is not None and self.when is not None
+        motion, slides, most = scene.motion, own.kind == "slide", _widest(own)
+        start, end = self._from_to(scene, own, selection, context)
+        now = float(angles_at(own, np.array([start]))[0])
+        goal = self._goal(most, slides, scene)
+        if not self._has_end and self.change == "open" and self.when.start is not None and _near(goal, now, most):
+            made, end = _opening_at(own, motion, most, start)
+            return made, f"it opens by itself, now from {start:.3g} s", end
+        shuts = self.change == "close" and _near(goal, 0.0, most) and not self._has_end
+        if shuts and (later := _closing_at(own, motion, start)) is not None:
+            return later[0], f"it closes by itself, now from {start:.3g} s", later[1]
+        self._require_movable(now, goal, most, start)
+        if not self._has_end:  # as fast as it opens by itself
+            end = start + max(_taken(own) * abs(goal - now) / abs(most), _LEAST)
+        before = [t for t in own.times if t < start - _SAME]
+        dense = np.unique(np.round([*before, *np.arange(before[-1], start, 1 / 30)], 9)) if before else _NONE
+        dense = dense[dense < start - _SAME]
+        made = replace(own, times=np.array([*dense, start, end]), angles=np.array([*angles_at(own, dense), now, goal]))
+        told = f"{start:.3g} to {end:.3g} s: from {_told(now, slides, scene)} to {_told(goal, slides, scene)}"
+        return made, told, end
+
+    def _from_to(self, scene: Scene, own: Track, selection: Selection, context: Context) -> tuple[float, float]:
+        """From when to when what opens by itself is to move, seconds."""
+        assert scene.motion is not None
+        first = scene.motion.start
+        start, end = self._time(spans_of(self.when, scene, selection, context, onward=True)[0], first, context)
+        if self.change == "close" and self.when is not None and self.when == When(stop=self.when.stop):
+            return max(end - _taken(own), first), end  # as fast as it opens, and shut then
+        span = movement([own], first, scene.motion.stop) if self._only_lasts else None
+        if span is None:
+            return start, end
+        if self.change == "open":  # it opens by itself, and this is how long it takes
+            return span[0], span[0] + end - start
+        now, last = angles_at(own, np.array([start, span[1]]))
+        late = span[1] if _near(now, 0.0, _widest(own)) and not _near(last, 0.0, _widest(own)) else start
+        return late, late + end - start  # what is shut closes when it has opened
+
+    def _require_movable(self, now: float, goal: float, most: float, start: float) -> None:
+        """Nothing, if what opens by itself can be opened or closed from a time on.
+
+        Args:
+            now, goal: how far it is open then, and is to be; radians or scene units.
+            most: of wide open.
+            start: seconds.
+
+        Raises:
+            InstructionError: it is shut then, or as far open as it is to be.
+        """
+        name = self.target.describe()
+        if self.change == "close" and abs(now) - abs(goal) < _OPEN * abs(most):
+            how = "shut" if _near(now, 0.0, most) else "no further open"
+            raise InstructionError(f"{name} is {how} at {start:.3g} s: say a time at which it is open")
+        if self.change == "open" and _near(goal, now, most):
+            how = "open" if _near(now, most, most) else "as far open"
+            raise InstructionError(f"{name} is {how} already at {start:.3g} s: say an earlier time, or close it first")
 
     @property
     def _has_end(self) -> bool:
@@ -172,7 +227,7 @@ class Articulate(TargetedOp):
         """What does not open by itself yet: from closed, or for "close" from how it is told to be open."""
         assert self.when is not None
         whole = length_of(scene)
-        start, end = self._time(spans_of(self.when, scene, selection, context)[0], whole.start, context)
+        start, end = self._time(spans_of(self.when, scene, selection, context, onward=True)[0], whole.start, context)
         then = at(scene, start)  # other rows, if something is hidden then
         there = [b for b in bodies_of(then, selection) if bool(torch.isin(then.cloud.ids[b.rows], ids).any())]
         if not there:
@@ -187,7 +242,7 @@ class Articulate(TargetedOp):
         else:
             made = Track.hinge(names, (start, end), (0.0, goal), found.axis, found.pivot)
         tracks = [*(scene.motion.tracks if scene.motion is not None else ()), made]
-        return with_tracks(scene, tracks, max(whole.stop, end)), (found.told,)
+        return with_tracks(scene, tracks, max(whole.stop, end)), (found.told, *longer_notes(whole, end))
 
     def _opening(self, scene: Scene, body: Body) -> Opening:
         return opening_of(scene, body, self.target.text or body.label)
@@ -241,7 +296,7 @@ def _opening_at(own: Track, motion: Motion, most: float, start: float) -> tuple[
         most: angle or distance of wide open.
         start: seconds.
     """
-    times = _grid(motion)
+    times = _grid(motion, own)
     share = angles_at(own, times) / most
     moves = np.flatnonzero(np.abs(np.diff(share)) > _SAME)
     low, high = float(times[moves[0]]), float(times[int(np.argmax(share > 1 - _OPEN / 2))])
@@ -258,7 +313,7 @@ def _closing_at(own: Track, motion: Motion, start: float) -> tuple[Track, float]
 
     None if it does not close wholly, or opens again before.
     """
-    times = _grid(motion)
+    times = _grid(motion, own)
     angles = np.abs(angles_at(own, times))
     steps = np.diff(angles) / max(float(angles.max()), 1e-12)
     closes = steps < -_SAME
@@ -276,9 +331,21 @@ def _closing_at(own: Track, motion: Motion, start: float) -> tuple[Track, float]
     return playing(own, moved((low, high), (start, end), -math.inf, behind)), end
 
 
-def _grid(motion: Motion) -> F64:
-    """Times at which it is looked whether something moves."""
-    return np.linspace(motion.start, motion.stop, max(round((motion.stop - motion.start) * _GRID), 2))
+def _grid(motion: Motion, own: Track) -> F64:
+    """Times at which it is looked whether something moves, to its last key if the scene ends before."""
+    stop = max(motion.stop, float(own.times[-1]))
+    return np.linspace(motion.start, stop, max(round((stop - motion.start) * _GRID), 2))
+
+
+def _near(angle: float, other: float, most: float) -> bool:
+    """Whether two angles, or distances, are the same but for a trifle of wide open."""
+    return abs(angle - other) < _OPEN * abs(most)
+
+
+def _widest(own: Track) -> float:
+    """The angle, or distance, at which a track is the farthest from its start, with its sign."""
+    assert own.angles is not None
+    return float(own.angles[int(np.argmax(np.abs(own.angles)))])
 
 
 def _taken(own: Track) -> float:

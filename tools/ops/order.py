@@ -109,7 +109,7 @@ class Order(TargetedOp):
         """When the first, second, ... of them begins, seconds."""
         first = was[0]
         if self.when is not None:
-            first = max(spans_of(self.when, scene, selection, context)[0][0], 0.0)
+            first = max(spans_of(self.when, scene, selection, context, onward=True)[0][0], 0.0)
         if self.order == "together":
             return [first] * len(was)
         if self.gap is not None:

@@ -26,6 +26,7 @@ from ..timing.bending import bent, upright_turns
 from ..timing.retiming import Warp, divided, moved, movement, parted, playing, waving, with_tracks
 from ..timing.spans import Span, spans_of
 from ..when import During, When
+from .articulate import Articulate
 
 I64 = NDArray[np.int64]
 F64 = NDArray[np.float64]
@@ -135,6 +136,8 @@ class Pace(TargetedOp):
             raise InstructionError(
                 f"{self.target.describe()} does not move: say what it is to do, as 'move it to the sofa in 3 seconds'"
             )
+        if (closing := self._closing(scene, selection, context)) is not None:
+            return closing.apply(scene, selection, context)
         waves, residuals = parted(motion.residuals, ids)
         if waves and self.change in ("part", "mirror", "turn", "go_on"):
             raise InstructionError(
@@ -142,7 +145,8 @@ class Pace(TargetedOp):
                 "one: say when it is to move, or how fast"
             )
         when = When(during=self.when.during) if self.when is not None and self._of_one_movement else self.when
-        spans = spans_of(when, scene, selection, context) if when is not None else []
+        onward = self.change in ("begin", "return", "repeat")
+        spans = spans_of(when, scene, selection, context, onward) if when is not None else []
         movements = spans_of(_WHILE_MOVING, scene, selection, context) if self._of_one_movement else []
         tracks, inside = divided(motion, ids)
         stop = motion.stop
@@ -191,6 +195,26 @@ class Pace(TargetedOp):
         moving = torch.from_numpy(ids)
         return Outcome(after, touched=moving, notes=self._notes(stop, motion))
 
+    def _closing(self, scene: Scene, selection: Selection, context: Context) -> Articulate | None:
+        """What is meant by "close the door 2 s later" of a door that opens and does not close yet: it closes 2 s after
+        it has opened. None if it closes, or nothing tells that it opens."""
+        told = self.when.during if self.when is not None else None
+        later = self.change == "later" and self.seconds is not None and self.seconds >= 0
+        if not later or told is None or told.state != "closing" or not self._of_one_movement:
+            return None
+        opens, closes = (During(state=state) for state in ("opening", "closing"))
+        try:
+            spans = [spans_of(When(during=during), scene, selection, context)[-1] for during in (closes, opens)]
+        except InstructionError:
+            return None
+        op = Articulate(
+            target=self.target,
+            change="close",
+            when=When(start=self.seconds, during=opens.model_copy(update={"part": "after"})),
+        )
+        overlap = spans[0][0] < spans[1][1] and spans[1][0] < spans[0][1]  # one movement, both opening and closing
+        return op if overlap and op.begins_shut(scene, selection) else None
+
     def _notes(self, stop: float, motion: Motion) -> tuple[str, ...]:
         return (f"the scene lasts {stop - motion.start:g} s now",) if abs(stop - motion.stop) > _NO_TIME else ()
 
@@ -237,6 +261,8 @@ class Pace(TargetedOp):
         last = math.inf if stop is None else stop
         if math.isinf(last):
             return Warp((first,), (first,), 1.0, self.factor), first + (high - first) / self.factor
+        if last - first < _NO_TIME:
+            raise InstructionError(f"it only begins to move at {first:.3g} s, and {last:.3g} s is no later than that")
         gained = first + (last - first) * self.factor
         return Warp((first, last), (first, gained), 1.0, 1.0), high + last - gained
 
@@ -252,10 +278,15 @@ class Pace(TargetedOp):
         """Which old time is shown when, where one movement gets another time; those behind it keep theirs if they
         can."""
         assert self.when is not None
-        low, high = part
+        low, high = (
+            max(part[0], span[0]),
+            min(part[1], span[1]),
+        )  # an end may be open
         before = max((b for _, b in movements if b <= low + _BESIDE), default=-math.inf)
         behind = min((a for a, b in movements if b > high + _BESIDE), default=math.inf)
         begin, lasting = low, high - low
+        if lasting < _NO_TIME:
+            raise InstructionError(f"{self.target.describe()} does not move then")
         if self.change == "later":
             assert self.seconds is not None
             begin = max(low + self.seconds, before + _NO_TIME)
@@ -265,7 +296,7 @@ class Pace(TargetedOp):
             lasting /= self.factor
         end = begin + lasting
         stop = max(span[1], end) if end < behind < math.inf else span[1] + end - high
-        return moved(part, (begin, end), before, behind), stop
+        return moved((low, high), (begin, end), before, behind), stop
 
     def _again(self, scene: Scene, own: list[Track], group: I64, span: Span, spans: list[Span]) -> tuple[Warp, float]:
         """Which old time is shown when, of what goes a part of its way or goes it several times."""

@@ -23,11 +23,11 @@ from ..operation import Context, Outcome, TargetedOp
 from ..placement.bodies import bodies_of, heading
 from ..receipt import Check, at_most
 from ..timing.retiming import angles_at, divided, with_tracks
-from ..timing.spans import length_of, spans_of
+from ..timing.spans import SHORTEST, length_of, longer_notes, spans_of
 
 F64 = NDArray[np.float64]
 
-_LASTS = 5.0  # seconds of a scene that stood still before something turns in it without an end
+_LASTS = 5.0  # seconds for which something turns without an end in a scene that stood still before it, or has ended
 _STEP = 1 / 30  # seconds between the keys of what a thing did before it is told to turn otherwise
 _ONE = 1.0  # turns a second, where nothing is said
 
@@ -66,7 +66,7 @@ class Spin(TargetedOp):
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         whole = length_of(scene)
-        spans = spans_of(self.when, scene, selection, context) if self.when is not None else []
+        spans = spans_of(self.when, scene, selection, context, onward=True) if self.when is not None else []
         start, stop = spans[0] if spans else (-math.inf, math.inf)
         begin = start if math.isfinite(start) else whole.start
         now = at(scene, begin)
@@ -97,11 +97,10 @@ class Spin(TargetedOp):
                 made = self._new(names, axis, pivot, begin, stop)
             tracks.insert(place, made)
             inside.insert(place, True)
-            end = max(
-                end, float(made.times[-1]) if made.kind == "hinge" else begin + (_LASTS if not whole.known else 0.0)
-            )
+            lasts = _LASTS if not whole.known or begin >= whole.stop - SHORTEST else 0.0
+            end = max(end, float(made.times[-1]) if made.kind == "hinge" else begin + lasts)
         after = with_tracks(scene, tracks, end)
-        told = () if whole.known else (f"the scene lasts {end:g} s now",)
+        told = longer_notes(whole, end) if whole.known else (f"the scene lasts {end:g} s now",)
         return Outcome(after, touched=torch.cat(touched).sort().values, notes=told)
 
     def _rate(self, lasting: float) -> float:

@@ -51,7 +51,7 @@ def with_movement(
         move: the track of one body, in the world of the time at which it begins.
     """
     whole = length_of(scene)
-    spans = spans_of(when, scene, selection, context) if when is not None else [(-math.inf, math.inf)]
+    spans = spans_of(when, scene, selection, context, onward=True) if when is not None else [(-math.inf, math.inf)]
     first = whole.start if context.time is None else context.time
     span = (spans[0][0] if math.isfinite(spans[0][0]) else first, spans[0][1])
     still = at(scene, span[0])

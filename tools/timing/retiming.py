@@ -10,6 +10,7 @@ import numpy as np
 import torch
 from numpy.typing import ArrayLike, NDArray
 
+from ...gaussians.errors import InstructionError
 from ...gaussians.motion.motion import Motion, Residual, Track, carried, poses
 from ...gaussians.motion.runs import runs_of
 from ...gaussians.rows import rows_of_ids
@@ -36,12 +37,20 @@ class Warp:
     Attributes:
         new, old: `[M]` seconds, M > 0; `new` ascends.
         before, after: rates before the first and after the last knot, old seconds a new second.
+
+    Raises:
+        InstructionError: its new times do not ascend, or a time is not finite: the words leave no time for it.
     """
 
     new: tuple[float, ...]
     old: tuple[float, ...]
     before: float = 1.0
     after: float = 1.0
+
+    def __post_init__(self) -> None:
+        new, old = np.array(self.new), np.array(self.old)
+        if not (np.isfinite(new).all() and np.isfinite(old).all() and (np.diff(new) > 0).all()):
+            raise InstructionError("no time is left for how it moves: say another time, or how long it is to take")
 
     def __call__(self, times: ArrayLike) -> F64:
         now = np.asarray(times, dtype=np.float64)

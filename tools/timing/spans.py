@@ -41,8 +41,24 @@ def length_of(scene: Scene) -> Length:
     return Length(0.0, 0.0, False) if motion is None else Length(motion.start, motion.stop, True)
 
 
-def spans_of(when: When | None, scene: Scene, target: Selection, context: Context) -> list[Span]:
+def longer_notes(whole: Length, stop: float) -> tuple[str, ...]:
+    """A note that a scene with motion has become longer, if it has.
+
+    Args:
+        whole: its time before.
+        stop: its end now, seconds.
+    """
+    longer = whole.known and stop > whole.stop + SHORTEST
+    return (f"the scene lasts {stop - whole.start:g} s now",) if longer else ()
+
+
+def spans_of(
+    when: When | None, scene: Scene, target: Selection, context: Context, onward: bool = False
+) -> list[Span]:  # fmt: skip
     """The spans that are meant, in order, seconds; open ends are infinite. At all times without a `When`.
+
+    Args:
+        onward: whether they may begin later than the scene ends, as what moves then makes it longer.
 
     Raises:
         AbsentError, AmbiguousError: a thing by which the time is told is not in the scene, or not unique.
@@ -67,10 +83,20 @@ def spans_of(when: When | None, scene: Scene, target: Selection, context: Contex
         raise InstructionError(f"no time is left {when.describe()}: it would end before it starts")
     if when.every is not None:
         found = _in_turns(found, when.every, whole)
-    first = found[0][0]
+    if not onward:
+        require_within(found, scene)
+    return found
+
+
+def require_within(spans: list[Span], scene: Scene) -> None:
+    """Nothing, if the first span begins before a scene with motion ends, or as it does.
+
+    Raises:
+        InstructionError: it begins later.
+    """
+    whole, first = length_of(scene), spans[0][0]
     if whole.known and first > whole.stop:
         raise InstructionError(f"the scene lasts until {whole.stop:g} s, and {first:g} s is later: say an earlier time")
-    return found
 
 
 _BLINKS = 5.0  # seconds for which something comes and goes in a scene without an end
@@ -122,10 +148,11 @@ def _told(when: When, during: During, scene: Scene, target: Selection, context: 
         begun = next((a for a, _ in found if a > whole.start + SHORTEST), first[0])
         return [(begun + delay, math.inf)]
     if during.part == "after":
-        if first[1] >= whole.stop - SHORTEST:
+        latest = _latest_end(during, scene, target, context)
+        if first[1] > latest:
             raise InstructionError(f"that does not end in this scene: {during.describe().split(' ', 1)[1]}")
         ended = first[1] if during.state not in ("moving", "falling") else last[1]
-        return [(ended + delay, math.inf)] if ended < whole.stop - SHORTEST else [(first[1] + delay, math.inf)]
+        return [(ended + delay, math.inf)] if ended <= latest else [(first[1] + delay, math.inf)]
     if during.part == "until":
         begun = next((a for a, _ in found if a > whole.start + SHORTEST), first[0])
         return [(-math.inf, begun - delay)]
@@ -136,16 +163,33 @@ def _ended(spans: list[Span], until: During, scene: Scene, target: Selection, co
     """The spans, each at most until something happens for the first time after its start."""
     happens = _happening(until, scene, target, context)
     ends = [b if until.part == "until_end" else a for a, b in happens]
-    last = length_of(scene).stop
+    latest = _latest_end(until, scene, target, context)
     ended = list[Span]()
     for start, stop in spans:
-        end = next((t for t in ends if t > start + SHORTEST and t < last - SHORTEST), None)
+        end = next((t for t in ends if t > start + SHORTEST and t <= latest), None)
         if end is None:
             told = until.model_copy(update={"part": "while"}).describe().removeprefix("while ")
             how = "end" if until.part == "until_end" else "happen"
             raise InstructionError(f"that does not {how} after {start:.3g} s: {told}")
         ended.append((start, min(stop, end)))
     return ended
+
+
+_MOVING = ("moving", "falling", "turning", "opening", "closing", "halfway")  # which a movement begins and ends
+
+
+def _latest_end(during: During, scene: Scene, target: Selection, context: Context) -> float:
+    """Until when what happens may have ended, seconds: before the end of the scene, but with it where it is a movement
+    whose last key is then, as what begins behind that makes the scene longer."""
+    whole = length_of(scene)
+    if during.state in _MOVING and scene.motion is not None:
+        ids = _ids_of(scene, _groups(target if during.of is None else _meant(scene, during.of, context), scene))
+        own = [track for track in scene.motion.tracks if np.isin(ids, track.ids).any()]
+        ends = all(track.kind != "spin" and float(track.times[-1]) <= whole.stop + SHORTEST for track in own)
+        waves = [r for r in scene.motion.residuals if np.isin(ids, r.ids).any()]
+        if ends and all(float(r.times[-1]) <= whole.stop + SHORTEST for r in waves):
+            return whole.stop + SHORTEST
+    return whole.stop - SHORTEST
 
 
 def _delay(when: When) -> float:
@@ -213,10 +257,16 @@ _REACHED = 0.35  # metres: what comes this near and no nearer has reached it
 
 def _edges(scene: Scene, groups: tuple[int, ...]) -> list[float]:
     """The times of the keys of the tracks that hold groups."""
-    assert scene.motion is not None and scene.language is not None
-    leaves = torch.tensor([i for g in groups for i in scene.language.leaves(g)], dtype=torch.int32)
-    ids = scene.cloud.ids[torch.isin(scene.cloud.group.cpu(), leaves)].cpu().numpy()
+    assert scene.motion is not None
+    ids = _ids_of(scene, groups)
     return sorted({float(t) for track in scene.motion.tracks if np.isin(ids, track.ids).any() for t in track.times})
+
+
+def _ids_of(scene: Scene, groups: tuple[int, ...]) -> NDArray[np.int64]:
+    """The ids `[M]` of the Gaussians of groups."""
+    assert scene.language is not None
+    leaves = torch.tensor([i for g in groups for i in scene.language.leaves(g)], dtype=torch.int32)
+    return np.asarray(scene.cloud.ids[torch.isin(scene.cloud.group.cpu(), leaves)].cpu().numpy())
 
 
 def _snapped(time: float, edges: list[float]) -> float:

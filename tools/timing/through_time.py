@@ -37,7 +37,7 @@ from ..receipt import Receipt
 from ..when import When
 from .measured import measured_through_time
 from .retiming import Warp, divided, movement, playing
-from .spans import Span, comes_to, length_of, moving_one, spans_of
+from .spans import SHORTEST, Length, Span, comes_to, length_of, longer_notes, moving_one, require_within, spans_of
 from .ways import path_of
 
 CarryOut = Callable[..., Done]  # carry_out(scene, op, context, selection=None)
@@ -194,7 +194,7 @@ def _for_a_while(scene: Scene, op: EditOp, context: Context, chosen: Selection, 
     """The result of an operation that holds for a while, or of a movement that takes a time."""
     when = op.time()
     assert when is not None
-    spans = spans_of(when, scene, chosen, context)
+    spans = spans_of(when, scene, chosen, context, onward=True)
     whole = length_of(scene)
     begin = max(spans[0][0], whole.start) if math.isfinite(spans[0][0]) else whole.start
     still = at(scene, begin)
@@ -223,11 +223,12 @@ def _for_a_while(scene: Scene, op: EditOp, context: Context, chosen: Selection, 
             notes += [note] if note and note not in notes else []
         look_spans: Sequence[Span] = [(float(min(t.times[0] for t in tracks)), math.inf)]
     else:
+        require_within(spans, scene)
         look_spans = spans
     looks = _looks(scene, still, done.scene, changes, placed, begin, look_spans, when.gradual and not moved)
     if looks and not tracks:
-        ends = [t for look in looks for t in (look.start, look.stop) if math.isfinite(t)]
-        stop = max(stop, max(ends, default=0.0) + (0.0 if whole.known else _LINGER))
+        stop = max(stop, _last_seen(looks, whole))
+    notes += longer_notes(whole, stop)
     added = done.scene.cloud[changes.added] if len(changes.added) else None
     cloud, language = scene.cloud, scene.language
     if added is not None:
@@ -356,6 +357,14 @@ def _worn(ids: np.ndarray, start: dict[str, Tensor], goal: dict[str, Tensor], sp
         until = math.inf if step == _STEPS else float(edges[step + 1])
         made.append(Look(ids, float(edges[step]), until, mixed.get("sh"), mixed.get("opacities")))
     return made
+
+
+def _last_seen(looks: Sequence[Look], whole: Length) -> float:
+    """Until when a scene lasts at least, seconds, so that all looks are seen: what begins as it ends, for a while."""
+    ends = [t for look in looks for t in (look.start, look.stop) if math.isfinite(t)]
+    last = max(ends, default=0.0)
+    begins_last = last >= whole.stop - SHORTEST and not any(look.stop == last for look in looks)
+    return last + (_LINGER if begins_last or not whole.known else 0.0)
 
 
 def _is_finite(span: Span) -> bool:
