@@ -16,12 +16,12 @@ from torch import Tensor
 from ..gaussians.errors import ScenewrightError
 from ..gaussians.language.field.language_field import LanguageField
 from ..gaussians.language.query.selection import mask_of
-from ..gaussians.rows import mask_of_ids
+from ..gaussians.rows import mask_of_ids, rows_of_ids
 from ..gaussians.scene import Scene
 from ..gaussians.timing import timed
-from .cloud_diff import joined
+from .cloud_diff import Draft, joined, without
 from .execute import Done
-from .field_update import after_recolor, recount
+from .field_update import after_recolor, after_removal, recount
 from .operation import Context, EditOp
 from .receipt import Filled, Lifted, Vec3
 
@@ -43,15 +43,57 @@ def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
     Raises:
         FileError: a photograph cannot be read.
     """
+    return with_shadows(before, op, context, done.scene, revealed(before, op, context, done))
+
+
+def revealed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
+    """The result of `completed` before anything casts its shadow where it was put; arguments and errors are the
+    same."""
     if op.op == "restyle" and context.restyler is not None:
         return _unless_it_fails(done, before.cloud.ids[:0], lambda now, _: _restyled(before, op, context, now))[0]
-    plain = done
     done, new = _filled(before, op, context, done)
     if context.inpainter is not None and _may_fill(before, op, context, done):
         done, new = _unless_it_fails(done, new, lambda now, ids: _inpainted(before, op, context, now, ids))
     if context.photographs is not None and len(new):
-        done, new = _unless_it_fails(done, new, lambda now, ids: _photographed(context, now, ids))
-    return _with_shadows(before, op, context, plain.scene, done)
+        done, _ = _unless_it_fails(done, new, lambda now, ids: _photographed(context, now, ids))
+    return done
+
+
+def unshadowed(before: Scene, op: EditOp, context: Context, done: Done, hidden: Tensor) -> Done:
+    """The result of an operation that hides things with their contact shadows taken off, as where they are deleted;
+    nothing is filled behind them.
+
+    Args:
+        before: the scene before the operation.
+        done: its result, in which they still are.
+        hidden: ids, ascending.
+    """
+    query = op.query()
+    if not context.infill or query is None or query.spatial or not len(hidden):
+        return done
+    cloud = without(done.scene.cloud, mask_of(done.scene.cloud, hidden))
+    if not len(cloud):
+        return done
+    gone = done.scene.replace(cloud=cloud, language=after_removal(done.scene, cloud, hidden))
+    try:
+        lit = filled(before, gone)[0].cloud
+    except Exception:  # the edit itself is done and checked: it stays
+        log.warning("contact shadows could not be taken off", exc_info=True)
+        return done
+    rows = rows_of_ids(lit.ids, cloud.ids)
+    lighter = (lit.sh[rows] != cloud.sh).flatten(1).any(dim=1)
+    if not bool(lighter.any()):
+        return done
+    draft = Draft(done.scene.cloud)
+    draft.write("sh", rows_of_ids(done.scene.cloud.ids, cloud.ids[lighter]), lit.sh[rows[lighter]])
+    after = done.scene.replace(cloud=draft.done())
+    after = after.replace(language=after_recolor(after, cloud.ids[lighter]))
+    count = int(lighter.sum())
+    note = f"took its contact shadow off: {count} Gaussians are lighter"
+    receipt = done.receipt.model_copy(
+        update={"changed": done.receipt.changed + count, "notes": (*done.receipt.notes, note)}
+    )
+    return done._replace(scene=after, receipt=receipt)
 
 
 def _unless_it_fails(
@@ -140,7 +182,7 @@ def _may_fill(before: Scene, op: EditOp, context: Context, done: Done) -> bool:
     return bool(wanted) and query is not None and not query.spatial
 
 
-def _with_shadows(before: Scene, op: EditOp, context: Context, placed: Scene, done: Done) -> Done:
+def with_shadows(before: Scene, op: EditOp, context: Context, placed: Scene, done: Done) -> Done:
     """The result with the contact shadows of what an operation put somewhere.
 
     Args:

@@ -25,13 +25,13 @@ from ...gaussians.rotations import from_matrix, multiply, normalize
 from ...gaussians.rows import mask_of_ids, rows_of_ids, rows_where
 from ...gaussians.scene import Scene
 from ..cloud_diff import Draft, joined
-from ..completing import completed
+from ..completing import completed, revealed, unshadowed, with_shadows
 from ..execute import Done, target_of
 from ..field_update import recount, with_measures
 from ..judging.changes import Changes, changes_between
 from ..operation import Context, EditOp
 from ..ops.move import Move
-from ..ops.opacity import HIDDEN
+from ..ops.opacity import HIDDEN, Opacity
 from ..ops.pace import Pace
 from ..receipt import Receipt
 from ..when import When
@@ -204,8 +204,11 @@ def _for_a_while(scene: Scene, op: EditOp, context: Context, chosen: Selection, 
     asked = mask_of_ids(done.scene.cloud.ids, still.cloud.ids)
     new = done.scene.cloud.ids[~asked]  # what the operation itself makes; what fills holes is there at all times
     moved = [(done.scene.cloud.ids[m.rows].cpu().numpy(), m) for m in done.moved if len(m.source)]
-    done = completed(still, plain, context, done)
-    changes = changes_between(still.cloud, done.scene.cloud)
+    left = revealed(still, plain, context, done)
+    if isinstance(op, Opacity) and op.value == 0:
+        left = unshadowed(still, plain, context, left, given.ids)
+    done = with_shadows(still, plain, context, done.scene, left)
+    changes = changes_between(still.cloud, left.scene.cloud if moved else done.scene.cloud)
     unlike = changes.placed.clone()
     placed = np.concatenate([ids for ids, _ in moved]) if moved else np.zeros(0, dtype=np.int64)
     unlike &= ~mask_of_ids(still.cloud.ids, torch.from_numpy(placed))
@@ -225,16 +228,21 @@ def _for_a_while(scene: Scene, op: EditOp, context: Context, chosen: Selection, 
     else:
         require_within(spans, scene)
         look_spans = spans
-    looks = _looks(scene, still, done.scene, changes, placed, begin, look_spans, when.gradual and not moved)
+    shown = left.scene if moved else done.scene
+    looks = _looks(scene, still, shown, changes, placed, begin, look_spans, when.gradual and not moved)
+    cast = still.cloud.ids[:0]
+    if moved:  # what it leaves where it was changes when it sets out, what it casts where it goes when it arrives
+        cast = _cast_ids(left.scene.cloud, done.scene.cloud)
+        looks += _cast(scene, done.scene, cast, begin, max(float(t.times[-1]) for t in tracks))
     if looks and not tracks:
         stop = max(stop, _last_seen(looks, whole))
     notes += longer_notes(whole, stop)
-    added = done.scene.cloud[changes.added] if len(changes.added) else None
+    added = shown.cloud[changes.added] if len(changes.added) else None
     cloud, language = scene.cloud, scene.language
     if added is not None:
-        shown = mask_of_ids(added.ids, new)
-        looks += _shown(added[shown], look_spans) if bool(shown.any()) else []
-        opacities = torch.where(shown, torch.full_like(added.opacities, HIDDEN), added.opacities)
+        made_now = mask_of_ids(added.ids, new)
+        looks += _shown(added[made_now], look_spans) if bool(made_now.any()) else []
+        opacities = torch.where(made_now, torch.full_like(added.opacities, HIDDEN), added.opacities)
         cloud = joined(cloud, None, [added.replace(opacities=opacities)])
         if language is not None and done.scene.language is not None:
             more = done.scene.language
@@ -249,7 +257,7 @@ def _for_a_while(scene: Scene, op: EditOp, context: Context, chosen: Selection, 
     receipt = _receipt(op, done.receipt, after, notes)
     selection = done.selection if done.selection is not given else chosen
     made = Done(after, receipt, selection)
-    touched = still.cloud.ids[changes.any]
+    touched = torch.cat([still.cloud.ids[changes.any], cast])
     seen = [(a, math.inf) if when.gradual and _is_finite((a, b)) else (a, b) for a, b in look_spans]  # it stays faded
     return measured_through_time(scene, made, torch.cat([chosen.ids, touched]), () if moved else seen, moved, since)
 
@@ -343,6 +351,27 @@ def _looks(
         for span in spans:
             looks += _worn(names, start, goal, span, gradual)
     return looks
+
+
+def _cast_ids(before: GaussianCloud, after: GaussianCloud) -> Tensor:
+    """Ids `[m]`, ascending, of the Gaussians whose colours differ between two clouds of the same ids."""
+    ids = before.ids[changes_between(before, after).shaded]
+    return ids.sort().values
+
+
+def _cast(scene: Scene, after: Scene, ids: Tensor, begin: float, arrives: float) -> list[Look]:
+    """The look of what lies in the shadow of a thing that has arrived.
+
+    Args:
+        after: static, with that shadow.
+        ids: `[m]` ascending, of what lies in it.
+        begin: the time of `after`, seconds.
+        arrives: seconds.
+    """
+    if not len(ids):
+        return []
+    colors = _unturned(after.cloud[rows_of_ids(after.cloud.ids, ids)], scene.motion, begin)
+    return [Look(ids.cpu().numpy(), arrives, math.inf, sh=colors)]
 
 
 def _worn(ids: np.ndarray, start: dict[str, Tensor], goal: dict[str, Tensor], span: Span, gradual: bool) -> list[Look]:
