@@ -38,6 +38,18 @@ def time_span(text: str, motion: Motion | None, what: str) -> tuple[float, float
     return first, last
 
 
+def one_time(text: str, motion: Motion | None, what: str) -> float:
+    """The time that a text means, seconds; see `time_span`.
+
+    Raises:
+        UserError: the text is no single time, or nothing changes with time in the scene.
+    """
+    start, stop = time_span(text, motion, what)
+    if stop > start:
+        raise UserError(f"--time {text} is many times; give one, as in --time {start:g}")
+    return start
+
+
 def times_within(span: tuple[float, float], rate: float, stretched: float | None = None) -> tuple[float, ...]:
     """Times from the start of a span to its stop, both included, at `rate` pictures a second.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -46,7 +46,9 @@ class SessionOptions:
         dial: chooses settings of the session, or None.
         tiled: read a scene in tiles by windows and edit it where it lies; else it is read whole.
         outline: Gaussians that are seen of a scene in tiles between instructions; None: few.
-        up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
+        up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used,
+            unless `saved_names`.
+        saved_names: take a saved field in whatever frame it was made; only a scale that is given replaces its own.
     """
 
     path: Path
@@ -74,6 +76,7 @@ class SessionOptions:
     dial: Dial | None = None
     tiled: bool = False
     outline: int | None = None
+    saved_names: bool = False
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -164,7 +167,8 @@ def _on_tiles(tiles: Tiles, options: SessionOptions) -> Made:
 
 def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> tuple[Scene, str | Encoder]:
     """The scene with its saved field, named anew if that was made with another encoder; and the encoder, loaded only if
-    needed. `scene` is `loaded` in the frame that the user gave; a field that was made in another frame is not used."""
+    needed. `scene` is `loaded` in the frame that the user gave; a field that was made in another frame is not used, but
+    with `saved_names`."""
     from ...gaussians.language import encoders
     from ...gaussians.language.field.store import load_field, mismatch
 
@@ -175,7 +179,13 @@ def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> t
             terminal.say(f"note: the language field beside {options.path} {why}: {again}")
         return scene, options.encoder
     encoder = encoders.load(options.encoder)
-    if not _agrees(scene.frame, embedded.frame):
+    if options.saved_names:
+        embedded = embedded.replace(frame=_scaled(embedded.frame, scene.frame))
+    elif not _agrees(scene.frame, embedded.frame):
+        again = (
+            f"embedding again when words need it; `scenewright embed {options.path}` with the same options saves that"
+        )
+        terminal.say(f"note: the language field beside {options.path} was made with another up or scale: {again}")
         return scene, encoder
     if embedded.language.encoder == encoder.fingerprint:
         return embedded, encoder
@@ -183,6 +193,13 @@ def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> t
     terminal.say(f"note: {told_anew(embedded.language)} {again}")
     startup.end()  # this renders, and may take long
     return embedded_by(encoder, embedded, terminal.progress), encoder
+
+
+def _scaled(frame: Frame, said: Frame) -> Frame:
+    """A frame with the scale of another one, if the user gave that."""
+    if said.scale_source != "given":
+        return frame
+    return replace(frame, metres_per_unit=said.metres_per_unit, scale_source="given")
 
 
 def _agrees(said: Frame, saved: Frame) -> bool:
