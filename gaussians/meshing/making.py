@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from torch import Tensor
 
 from ..camera import Camera
@@ -17,6 +17,7 @@ from ..cloud import GaussianCloud
 from ..errors import UserError
 from ..files import writing
 from ..rotations import to_matrix
+from ..rows import mask_of_ids
 from ..scene import Frame, Scene
 from . import glb, outlines, texturing
 from .shaping import Grid, Shape, shape_of, sphere_cameras
@@ -123,7 +124,7 @@ def check(path: Path | None, faces: int | None, texture: int, cells: int | None)
 
 def mesh(
     scene: Scene | GaussianCloud,
-    ids: Tensor | None = None,
+    ids: Tensor | ArrayLike | None = None,
     *,
     faces: int | None = None,
     texture: int = TEXTURE,
@@ -139,7 +140,7 @@ def mesh(
     an inside, as a wall or a leaf, becomes a sheet of about a cell's thickness. The same input gives the same bytes.
 
     Args:
-        ids: `[M]` int64, of the Gaussians, as `Selection.ids`; None: all.
+        ids: `[M]` whole numbers, of the Gaussians, as `Selection.ids`; None: all.
         faces: triangles at most; None: as many as the shape needs.
         texture: texels per side of the texture, which needs the extra "mesh"; 0: colours of the vertices instead.
         watertight: keep the faces that no view sees, so that every edge has two faces.
@@ -148,13 +149,14 @@ def mesh(
         progress: called with what is done and the share that is.
 
     Raises:
-        UserError: nothing is selected, it is too faint, or an argument is out of range.
+        UserError: nothing is selected, the ids are none, it is too faint, or an argument is out of range.
         BackendError: a texture is asked for and xatlas is not installed.
     """
     check(None, faces, texture, cells)
+    named = None if ids is None else _whole(ids)
     told = progress or (lambda text, share: None)
     whole = scene if isinstance(scene, Scene) else Scene(scene)
-    cloud = whole.cloud if ids is None else whole.cloud[torch.isin(whole.cloud.ids, ids.to(whole.cloud.ids.device))]
+    cloud = whole.cloud if named is None else whole.cloud[mask_of_ids(whole.cloud.ids, named)]
     if not len(cloud):
         raise UserError("nothing is selected, so there is nothing to make a mesh of")
     part = near_middle(cloud.to("cpu"))
@@ -175,6 +177,21 @@ def mesh(
     picture = texturing.texture_of(shape, atlas, part, cameras, texture)
     vertices = shape.vertices[atlas.source]
     return Mesh(vertices, atlas.faces, atlas.uv, picture, None, to_file, watertight, grid.step, len(cloud), name)
+
+
+def _whole(ids: Tensor | ArrayLike) -> Tensor:
+    """Ids `[M]` int64. Raises UserError if they are no whole numbers."""
+    try:
+        found = ids if isinstance(ids, Tensor) else torch.from_numpy(np.array(ids))
+    except (TypeError, ValueError):
+        found = torch.zeros(0, dtype=torch.bool)
+    if not found.numel() and found.dtype != torch.bool:
+        return found.reshape(-1).long()
+    if found.dtype == torch.bool or found.is_floating_point() or found.is_complex():
+        raise UserError(
+            "the ids of a mesh are whole numbers, as `session.select(...).ids`; of a mask take scene.cloud.ids[mask]"
+        )
+    return found.reshape(-1).long()
 
 
 def near_middle(cloud: GaussianCloud) -> GaussianCloud:

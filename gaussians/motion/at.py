@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import torch
@@ -58,8 +59,9 @@ def at(scene: Scene, time: float) -> Scene:
     is returned itself.
 
     Raises:
-        UserError: the time is not finite.
+        UserError: the time is no finite number.
     """
+    time = _finite(time)
     motion = scene.motion
     if motion is None:
         return scene
@@ -72,8 +74,9 @@ def cloud_at(scene: Scene, time: float) -> GaussianCloud:
     """The cloud of `at` alone, as a picture needs it.
 
     Raises:
-        UserError: the time is not finite.
+        UserError: the time is no finite number.
     """
+    time = _finite(time)
     return scene.cloud if scene.motion is None else _moved(scene.cloud, scene.motion, time)[0]
 
 
@@ -93,8 +96,7 @@ def rows_at(cloud: GaussianCloud, motion: Motion, time: float) -> tuple[Gaussian
     Raises:
         UserError: the time is not finite.
     """
-    if not math.isfinite(time):
-        raise UserError(f"a time must be a finite number of seconds, not {time}")
+    time = _finite(time)
     draft = _Draft(cloud)
     _displace(draft, cloud, motion, time)
     seen = tuple(look for look in motion.looks if look.lasts_at(time))
@@ -103,6 +105,17 @@ def rows_at(cloud: GaussianCloud, motion: Motion, time: float) -> tuple[Gaussian
         turns, shifts = chained([motion.tracks[i] for i in body.tracks], (time,))
         draft.carry(body.rows, turns[0], shifts[0])
     return draft.done(), gone
+
+
+def _finite(time: Any) -> float:
+    """A time in seconds, given as a number of any kind. Raises UserError if it is no finite one."""
+    try:
+        found = math.nan if isinstance(time, (str, bytes)) else float(time)
+    except (TypeError, ValueError):
+        found = math.nan
+    if not math.isfinite(found):
+        raise UserError(f"a time must be a finite number of seconds, as in 2.5, not {time!r}")
+    return found
 
 
 def bodies(cloud: GaussianCloud, motion: Motion) -> tuple[_Body, ...]:

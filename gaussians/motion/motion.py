@@ -22,7 +22,7 @@ from torch import Tensor
 from ..errors import UserError
 from ..rotations import IDENTITY
 from . import keys
-from .runs import checked_runs, held_by, ids_of, runs_of
+from .runs import checked_runs, held_by, ids_of, runs_of, whole_numbers
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -223,7 +223,7 @@ _NONE = np.zeros(0)
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """How some Gaussians look during a time.
+    """How some Gaussians look during a time. Arrays of any kind are taken.
 
     Attributes:
         ids: `[n]` stable ids, ascending.
@@ -239,21 +239,23 @@ class Look:
     opacities: Tensor | None = None
 
     def __post_init__(self) -> None:
-        ids = np.asarray(self.ids, dtype=np.int64).reshape(-1)
-        if len(ids) and (ids[0] < 0 or not (np.diff(ids) > 0).all()):
-            raise UserError("the ids of a look must ascend, from 0 on")
-        if math.isnan(self.start) or math.isnan(self.stop) or not self.start < self.stop:
+        ids = _ids(self.ids, "look")
+        start, stop = _seconds(self.start), _seconds(self.stop)
+        if not start < stop:
             raise UserError(f"a look must begin before it ends, not last from {self.start} to {self.stop} s")
-        if self.sh is not None and (self.sh.ndim != 3 or self.sh.shape[0] != len(ids) or self.sh.shape[2] != 3):
+        sh, opacities = _tensor(self.sh, "harmonics"), _tensor(self.opacities, "opacities")
+        if sh is not None and (sh.ndim != 3 or sh.shape[0] != len(ids) or sh.shape[2] != 3):
             raise UserError(f"the harmonics of a look of {len(ids)} Gaussians must be [n, K, 3]")
-        if self.sh is not None and not bool(self.sh.isfinite().all()):
+        if sh is not None and not bool(sh.isfinite().all()):
             raise UserError("the harmonics of a look must be finite")
-        if self.opacities is not None:
-            if tuple(self.opacities.shape) != (len(ids),):
+        if opacities is not None:
+            if tuple(opacities.shape) != (len(ids),):
                 raise UserError(f"the opacities of a look of {len(ids)} Gaussians must be [n]")
-            if not bool(((self.opacities >= 0) & (self.opacities < 1)).all()):
+            if not bool(((opacities >= 0) & (opacities < 1)).all()):
                 raise UserError("the opacities of a look must be from 0 to below 1")
-        object.__setattr__(self, "ids", ids)
+        made = {"ids": ids, "start": start, "stop": stop, "sh": sh, "opacities": opacities}
+        for name, value in made.items():
+            object.__setattr__(self, name, value)
 
     def lasts_at(self, time: float) -> bool:
         """Whether Gaussians look like this at a time, seconds."""
@@ -279,10 +281,8 @@ class Residual:
     weights: NDArray[np.float32]
 
     def __post_init__(self) -> None:
-        ids = np.asarray(self.ids, dtype=np.int64).reshape(-1)
+        ids = _ids(self.ids, "residual")
         times = _array(self.times, "times", (-1,))
-        if len(ids) and (ids[0] < 0 or not (np.diff(ids) > 0).all()):
-            raise UserError("the ids of a residual must ascend, from 0 on")
         if not len(times) or not (np.diff(times) > 0).all():
             raise UserError("a residual needs at least one key, and the times of its keys must ascend")
         basis = _array(self.basis, "basis", (len(times), -1))
@@ -619,7 +619,10 @@ def chained(tracks: Sequence[Track], times: ArrayLike) -> tuple[F64, F64]:
 
 def _array(values: Any, name: str, shape: tuple[int, ...]) -> F64:
     """Finite numbers of a shape, -1 for any length. Raises UserError otherwise."""
-    found = np.asarray(values, dtype=np.float64)
+    try:
+        found = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise UserError(f"{name} of a motion must be numbers, not {values!r:.60}") from error
     fits = found.ndim == len(shape) and all(want in (-1, have) for want, have in zip(shape, found.shape, strict=True))
     if not np.isfinite(found).all():
         where = np.argwhere(~np.isfinite(found))[0].tolist()
@@ -628,6 +631,36 @@ def _array(values: Any, name: str, shape: tuple[int, ...]) -> F64:
         wanted = ", ".join("any" if n < 0 else str(n) for n in shape)
         raise UserError(f"{name} of a motion must be numbers of shape [{wanted}], got {list(found.shape)}")
     return found
+
+
+def _ids(values: ArrayLike, what: str) -> I64:
+    """The ids of a look or a residual, which stand in the order of its other arrays.
+
+    Raises:
+        UserError: they are no whole numbers from 0 on, or do not ascend.
+    """
+    whole_numbers(values)
+    found: I64 = np.asarray(values).astype(np.int64).reshape(-1)
+    if len(found) and (found[0] < 0 or not (np.diff(found) > 0).all()):
+        raise UserError(f"the ids of a {what} must ascend, from 0 on")
+    return found
+
+
+def _seconds(value: Any) -> float:
+    """A time, also an infinite one. Raises UserError if it is no number."""
+    if isinstance(value, (int, float, np.number)) and not math.isnan(value):
+        return float(value)
+    raise UserError(f"a look begins and ends at numbers of seconds, not {value!r:.60}; use math.inf for ever")
+
+
+def _tensor(values: Any, name: str) -> Tensor | None:
+    """float32 values of a look, of any kind of array; None stays. Raises UserError if they are no numbers."""
+    if values is None or isinstance(values, Tensor):
+        return values if values is None or values.dtype == torch.float32 else values.float()
+    try:
+        return torch.from_numpy(np.array(values, dtype=np.float32))
+    except (TypeError, ValueError) as error:
+        raise UserError(f"the {name} of a look must be numbers, not {values!r:.60}") from error
 
 
 def _unit(values: Any, name: str, shape: tuple[int, ...]) -> F64:

@@ -11,16 +11,21 @@ from ..errors import UserError
 I64 = NDArray[np.int64]
 
 
+def whole_numbers(ids: ArrayLike) -> None:
+    """Check the ids of a motion; raises UserError if they are no whole numbers."""
+    given = np.asarray(ids)
+    if given.size and (given.dtype.kind not in "iuf" or (given != np.floor(given)).any()):
+        raise UserError("the ids of a motion must be whole numbers, as those of `session.select(...)` are")
+
+
 def runs_of(ids: ArrayLike) -> I64:
     """The intervals `[R, 2]` of some ids, in any order.
 
     Raises:
         UserError: they are no whole numbers.
     """
-    given = np.asarray(ids)
-    if given.size and (given.dtype.kind not in "iuf" or (given != np.floor(given)).any()):
-        raise UserError("the ids of a motion must be whole numbers, as those of `session.select(...)` are")
-    ordered = np.unique(given.astype(np.int64).reshape(-1))
+    whole_numbers(ids)
+    ordered = np.unique(np.asarray(ids).astype(np.int64).reshape(-1))
     if not len(ordered):
         return np.zeros((0, 2), dtype=np.int64)
     breaks = np.flatnonzero(np.diff(ordered) > 1)

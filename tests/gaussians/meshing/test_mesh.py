@@ -196,6 +196,11 @@ def test_arguments_out_of_range_are_refused(letter: Scene, change: dict[str, int
 def test_nothing_faint_and_broken_are_told(letter: Scene) -> None:
     with pytest.raises(UserError, match="nothing is selected"):
         mesh(letter, torch.tensor([], dtype=torch.int64), texture=0)
+    with pytest.raises(UserError, match="nothing is selected"):
+        mesh(letter, [], texture=0)
+    for wrong in ([0.5], letter.cloud.ids > 3, "the chair", [None], np.ones(3, bool)):
+        with pytest.raises(UserError, match="whole numbers"):
+            mesh(letter, wrong, texture=0)  # type: ignore[arg-type]
     faint = box((0, 0, 0), (1, 1, 1), RED, opacity=0.05)
     with pytest.raises(UserError, match="too faint"):
         mesh(Scene(faint), faint.ids, texture=0, cells=CELLS)

@@ -115,8 +115,11 @@ def test_a_moment_that_is_held_stays_as_it_is_and_one_that_is_not_is_written_aga
 
 
 def test_a_time_must_be_finite() -> None:
-    with pytest.raises(UserError, match="finite number of seconds"):
-        at(moving(), math.inf)
+    for wrong in (math.inf, math.nan, "1", None, [1, 2]):
+        for scene in (moving(), moving().replace(motion=None)):
+            with pytest.raises(UserError, match="finite number of seconds"):
+                at(scene, wrong)  # type: ignore[arg-type]
+    assert torch.equal(at(moving(), np.float32(1)).cloud.means, at(moving(), 1).cloud.means)
 
 
 def measured(scene: Scene) -> Scene:

@@ -272,3 +272,20 @@ def test_bad_motions_are_refused() -> None:
         Look(np.array([1]), 0.0, 1.0, opacities=torch.tensor([1.0]))
     with pytest.raises(UserError, match="finite number of seconds"):
         pose(Track.along([1], [0], [[0, 0, 0]]), math.nan)
+    with pytest.raises(UserError, match="numbers of seconds"):
+        Look([1], "now", 1.0)  # type: ignore[arg-type]
+    with pytest.raises(UserError, match="harmonics of a look must be numbers"):
+        Look([1], 0.0, 1.0, "red")  # type: ignore[arg-type]
+    with pytest.raises(UserError, match="whole numbers"):
+        Look([0.5], 0.0, 1.0)  # type: ignore[arg-type]
+    with pytest.raises(UserError, match="times of a motion must be numbers"):
+        Track.along([1], ["a"], [[0, 0, 0]])
+
+
+def test_a_look_takes_arrays_of_any_kind() -> None:
+    look = Look([3, 5], 0, 1, np.ones((2, 1, 3)), [0.0, 0.5])  # type: ignore[arg-type]
+    assert look.ids.dtype == np.int64
+    assert look.sh is not None and look.sh.dtype == torch.float32 and torch.equal(look.sh, torch.ones(2, 1, 3))
+    assert look.opacities is not None and torch.equal(look.opacities, torch.tensor([0.0, 0.5]))
+    double = Look([3], 0, 1, torch.ones(1, 1, 3, dtype=torch.float64))  # type: ignore[arg-type]
+    assert double.sh is not None and double.sh.dtype == torch.float32  # as motion files hold it
