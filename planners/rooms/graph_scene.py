@@ -23,6 +23,7 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.language.query.terms import STRUCTURE
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Box, distance
+from ...gaussians.world.compounds import is_part
 from ...gaussians.world.person import EYE_HEIGHT
 from ...gaussians.world.relation_geometry import Stand
 from ...gaussians.world.support import SHELL
@@ -210,7 +211,8 @@ def _otherwise(query: Query, verdict: str) -> Iterator[Query]:
     In terms of boxes a plant in a pot and a part of a sofa are "on" it, and the chairs of a table are "next to" it.
     "The cushion on the armchair" may be said where there are two armchairs and only one of them has a cushion.
     """
-    for loose in ({"inside": "on", "part_of": "on"}, {"part_of": "next_to"}):
+    beside = () if is_part(query.text) else ({"part_of": "next_to"},)  # the door by a wardrobe is not that of it
+    for loose in ({"inside": "on", "part_of": "on"}, *beside):
         if verdict == "absent" and any(r.name in loose for r in query.relations):
             onto = tuple(r.model_copy(update={"name": loose.get(r.name, r.name)}) for r in query.relations)
             yield query.model_copy(update={"relations": onto})

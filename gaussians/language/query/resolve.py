@@ -18,20 +18,21 @@ import torch
 from ...camera import Camera
 from ...errors import BackendError
 from ...scene import Scene
-from ...world import kinds, relations
+from ...world import compounds, kinds, relations
 from ...world.facing import Facing, facing_in
 from ...world.relation_geometry import HOLDS, Stand, object_stand, viewer_stand
 from ..encoders.probability import why_unknown
 from ..field.group_index import GroupIndex, difference, index_groups, union
 from ..field.language_field import Group, LanguageField
 from ..field.measure import box_of
-from . import wholes
+from . import owned, wholes
 from .attributes import COLOR_HOLDS, color_scores
 from .background import background
 from .color.fallback import PARTS, by_color, by_hue, is_reliable
 from .floaters import floaters
 from .keeping import without_strays
 from .moving import begins, moving_groups
+from .owned import Whole
 from .part_query import Piece, pieces_of
 from .parts import NAMED
 from .picking import by_distance, pick
@@ -222,18 +223,28 @@ class Resolver:
         owner = next((r for r in query.relations if r.name == "part_of"), None)
         if owner is not None and is_name(query.text):
             return self._part(query, owner)
+        whole = self._whole(query)
         ranks = [rank.without(out) for rank in self.readings(query)]
         rank = _first_matching(ranks)
-        matches = rank.matches()
+        if whole is not None and whole.part in NAMED and whole.groups and not rank.matches():
+            shaped = replace(self._part(*_by_shape(query, whole)), query=query)
+            return _doubted(shaped, whole.found) if shaped.chosen else shaped
         if (
             query.colors
             and query.text not in STRUCTURE
             and (found := self._by_its_color(query, ranks, rank)) is not None
         ):
             return found
-        if not matches:
+        if not rank.matches():
+            if whole is not None and not rank.named:
+                return self._absent_part(query, whole, rank)
             near = tuple(rank.candidate(i) for i in rank.nearest()[:3])
             return nothing(query, self._why_absent(query, near), near)
+        found = self._picked(query, rank)
+        return found if whole is None else _doubted(found, whole.found)
+
+    def _picked(self, query: Query, rank: Scored) -> Selection:
+        """What a query picks of the candidates that match it, of which there is one at least."""
         order = next((r for r in query.relations if r.name in ORDERING), None)
         if order is not None:
             near_what = [a.group for a in self.anchors(order)]
@@ -345,8 +356,18 @@ class Resolver:
 
     def readings(self, query: Query) -> list[Scored]:
         """The candidates of a query with their terms under each reading of its noun, the closest first."""
-        placed = [(r, self.anchors(r)) for r in query.relations if r.name not in ORDERING]
-        return list(scored(query, self.field, self.encoder, self.scene.frame.metres_per_unit, placed))
+        whole = self._whole(query)
+        placed = [
+            (r, self.anchors(r))
+            for r in query.relations
+            if r.name not in ORDERING and (whole is None or r.name != "part_of")
+        ]
+        metres = self.scene.frame.metres_per_unit
+        if whole is None:
+            return list(scored(query, self.field, self.encoder, metres, placed))
+        part, beside = query.model_copy(update={"text": whole.part}), owned.named_parts(self.field, whole)
+        ranks = scored(part, self.field, self.encoder, metres, placed, beside)
+        return [owned.restricted(rank, whole, self.field) for rank in ranks]
 
     def anchors(self, relation: Relation) -> list[Anchor]:
         """The anchors of a relation, each with its frame of reference.
@@ -425,6 +446,48 @@ class Resolver:
 
     # -- parts of things --------------------------------------------------------------------------------------------
 
+    def _whole(self, query: Query) -> Whole | None:
+        """The things of which a query names a part, by one name ("wardrobe door") or by a relation ("door of the
+        wardrobe"); None if it names no part, or the encoder knows its name as that of a kind.
+
+        Raises:
+            Unresolved: the thing that a relation names is absent or ambiguous.
+        """
+        owner = next((r for r in query.relations if r.name == "part_of"), None)
+        if owner is not None:
+            if not compounds.is_part(query.text):
+                return None
+            groups = tuple(a.group for a in self.anchors(owner) if a.group.id >= 0)
+            return Whole(owner.anchors[0].text, query.text, groups, self._anchored_at(owner.anchors[0]))
+        named = compounds.split(query.text)
+        known = self.encoder.vocabulary if self.encoder is not None else None
+        if named is None or (known is not None and len(known.head(query.text)[0]) > 1):
+            return None
+        found = self._anchored_at(Query(text=named.whole, pick="all"))
+        if named.place and not found.chosen:
+            return None
+        return Whole(named.whole, named.part, tuple(self.field.groups[i] for i in found.groups), found)
+
+    def _belonging(self, query: Query) -> Selection | None:
+        """The things that have the name of a part and belong to the thing that a relation names; None if none do."""
+        if self.encoder is None or self._whole(query) is None:
+            return None
+        rank = _first_matching(self.readings(query))
+        return self._picked(query, rank) if rank.matches() else None
+
+    def _absent_part(self, query: Query, whole: Whole, rank: Scored) -> Selection:
+        """That no such part is there: the thing itself, and what has the name of the part and belongs to others."""
+        things = [candidate_of(g) for g in whole.groups[:2]]
+        stray = rank.likely - whole.ids
+        others = [rank.candidate(i) for i in rank.nearest() if rank.groups[i].id in stray][:2]
+        near = (*things, *others)
+        if not things:
+            why = f"{query.describe()} is not in this scene, nor is any {whole.name}"
+            return nothing(query, f"{why}; the nearest match is {near[0].describe()}" if near else why, near)
+        why = f"{query.describe()} is not in this scene: no {whole.part} of {_listed(things)} is a thing of its own"
+        theirs = f"{_listed(others)} {'are no parts' if len(others) > 1 else 'is no part'} of it"
+        return nothing(query, f"{why}, and {theirs}" if others else why, near)
+
     def _part(self, query: Query, owner: Relation) -> Selection:
         """A named part of an object: pieces recognised by shape, else things of that name on the object."""
         anchors = [a.group.id for a in self.anchors(owner) if a.group.id >= 0]
@@ -446,7 +509,8 @@ class Resolver:
             refusals += [refusal] if refusal else []
         if not made:
             why = refusals[0] if refusals else "its shape is not known"
-            return self._lying_on(query, owner) or nothing(query, f"{query.describe()}: {why}")
+            found_there = self._belonging(query) or self._lying_on(query, owner)
+            return found_there or nothing(query, f"{query.describe()}: {why}")
         kept = [piece for piece in made if self._fits(query, piece.group)]
         if not kept:
             return nothing(query, f"{query.describe()} is not there; the {query.text} is otherwise")
@@ -604,6 +668,16 @@ def _joined(a: Selection, b: Selection) -> Selection:
 def _without(a: Selection, b: Selection) -> Selection:
     return replace(a, ids=difference(a.ids, b.ids), groups=tuple(g for g in a.groups if g not in b.groups),
                    candidates=tuple(c for c in a.candidates if c.group not in b.groups))  # fmt: skip
+
+
+def _by_shape(query: Query, whole: Whole) -> tuple[Query, Relation]:
+    """A query for a part by one name as that for a part of the things, and the relation to them: "chair leg"."""
+    owner = Relation(name="part_of", anchors=(Query(text=whole.name, pick="all"),))
+    return query.model_copy(update={"text": whole.part, "relations": (*query.relations, owner)}), owner
+
+
+def _listed(things: Sequence[Candidate]) -> str:
+    return " and ".join(f"the {t.describe()}" for t in things)
 
 
 def _is_spot(relation: Relation) -> bool:

@@ -46,6 +46,7 @@ LOOSE = frozenset({"on", "inside", "under", "below", "above", "next_to"})
 ORDERING = frozenset(k.name for k in relations.KINDS if k.orders)
 MAX_CACHED = 4096  # phrases and colours whose scores a field caches
 MIN_LABEL_SCORE = 0.25  # labels less probable than this are not shown
+OWNED = "part_of"  # the term whether a candidate is a part of the thing that is named
 OWN_COLOR = 0.5  # colour score from which no other basic colour is nearer
 
 
@@ -98,7 +99,13 @@ class Scored:
 
     @cached_property
     def named(self) -> frozenset[int]:
-        """Groups whose name term holds, whatever the other terms; none without a name term."""
+        """Groups that are what the noun names, whatever the other terms; none without a name term."""
+        owned = self.terms.get(OWNED, np.ones(len(self.groups))) >= HOLDS
+        return frozenset(g.id for g, own in zip(self.groups, owned, strict=True) if own) & self.likely
+
+    @cached_property
+    def likely(self) -> frozenset[int]:
+        """Groups whose name term holds, also where they are parts of other things; none without a name term."""
         if "text" not in self.terms:
             return frozenset()
         held = self.terms["text"] >= self.limits["text"]
@@ -223,12 +230,14 @@ def scored(
     encoder: Encoder | None,
     metres_per_unit: float | None,
     placed: Sequence[tuple[Relation, Sequence[Anchor]]],
+    beside: Sequence[Group] = (),
 ) -> Iterator[Scored]:
     """The candidates of a query with their terms, under each reading of its noun, the closest first; at least one.
 
     Args:
         metres_per_unit: of the scene, None if unknown.
         placed: the query's relations, except orderings, each with its anchors.
+        beside: further candidates beside the objects that the noun may refer to.
 
     Raises:
         BackendError: the name needs an encoder and there is none.
@@ -236,16 +245,20 @@ def scored(
     """
     if is_name(query.text) and candidate_groups(field, query.text):
         for reading in name_readings(field, encoder, query.text, metres_per_unit):
-            yield _scored(query, field, placed, reading)
+            yield _scored(query, field, placed, reading, beside)
     else:
-        yield _scored(query, field, placed, None)
+        yield _scored(query, field, placed, None, beside)
 
 
 def _scored(
-    query: Query, field: LanguageField, placed: Sequence[tuple[Relation, Sequence[Anchor]]], reading: Reading | None
+    query: Query,
+    field: LanguageField,
+    placed: Sequence[tuple[Relation, Sequence[Anchor]]],
+    reading: Reading | None,
+    beside: Sequence[Group],
 ) -> Scored:
     """The candidates of a query with their terms under one reading of its noun."""
-    groups = candidate_groups(field, query.text)
+    groups = (*candidate_groups(field, query.text), *beside)
     rows = np.array([g.id for g in groups], dtype=np.intp)
     terms: dict[str, F64] = {}
     limits: dict[str, float] = {}
