@@ -23,7 +23,7 @@ from ..operation import Context, Length, Outcome, TargetedOp
 from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_most
 from ..timing.bending import bent, upright_turns
-from ..timing.retiming import Warp, divided, moved, movement, parted, playing, waving, with_tracks
+from ..timing.retiming import Warp, divided, moved, movement, parted, playing, shown, waving, with_tracks
 from ..timing.spans import Span, spans_of
 from ..when import During, When
 from .articulate import Articulate
@@ -41,6 +41,7 @@ _NO_TURN = 0.1  # radians
 _STRAIGHT = 0.05  # of its way: what strays less to its sides goes straight on
 
 
+_PLAYED = ("stop", "begin", "speed", "later", "reverse", "return", "repeat", "back_and_forth")  # which looks follow
 _HOW_MUCH = ("factor", "seconds", "share", "distance", "times", "degrees")
 
 
@@ -60,7 +61,7 @@ class Pace(TargetedOp):
     only a `share` of its way, or a `distance`, and stands still there. "repeat": it does the same again and again,
     "back_and_forth": there and back, `times` times or until the end of the scene. "mirror": it turns right where it
     turned left. "turn": on its way it turns by `degrees` in all, to the side to which it does, and goes on from there.
-    Everything is the whole scene, which then gets longer or shorter.
+    Everything is the whole scene, with its looks, which then gets longer or shorter.
     """
 
     model_config = ConfigDict(
@@ -119,8 +120,10 @@ class Pace(TargetedOp):
         return None if self.seconds is None else self.model_copy(update={"seconds": self.seconds * times})
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
-        """All of the moving things that the target is: their place at the start may be another."""
-        return mask_of(scene.cloud, torch.from_numpy(self._ids(scene, selection)))
+        """All of the moving things that the target is: their place at the start may be another; of everything, also
+        what looks otherwise for a while."""
+        ids = self._ids(scene, selection)
+        return mask_of(scene.cloud, torch.from_numpy(self._with_looks(scene.motion, ids)))
 
     def _ids(self, scene: Scene, selection: Selection) -> I64:
         moving = moving_ids(scene.motion)
@@ -130,9 +133,15 @@ class Pace(TargetedOp):
     def _whole(self) -> bool:
         return self.target.text in ALL and not self.target.exclude and self.target.region is None
 
+    def _with_looks(self, motion: Motion | None, ids: I64) -> I64:
+        """Ids, and if the whole scene is played otherwise those of its looks, too; ascending."""
+        looks = motion.looks if motion is not None and self._plays_looks(motion) else ()
+        return np.unique(np.concatenate([ids, *(look.ids for look in looks)]))
+
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         motion, ids = scene.motion, self._ids(scene, selection)
-        if motion is None or not len(ids):
+        every = self._with_looks(motion, ids)
+        if motion is None or not len(every):
             raise InstructionError(
                 f"{self.target.describe()} does not move: say what it is to do, as 'move it to the sofa in 3 seconds'"
             )
@@ -150,13 +159,17 @@ class Pace(TargetedOp):
         movements = spans_of(_WHILE_MOVING, scene, selection, context) if self._of_one_movement else []
         tracks, inside = divided(motion, ids)
         stop = motion.stop
-        made = list(tracks)
-        paced = False
+        made, paced, played = list(tracks), False, None
         for group in _things(scene, selection, ids, self._whole):
             held = [i for i, t in enumerate(tracks) if inside[i] and np.isin(t.ids, group).any()]
             own = [tracks[i] for i in held]
             shapes, waves = parted(waves, group)
             span = movement(own, motion.start, motion.stop, shapes)
+            if self._plays_looks(motion):
+                if span is None or self.times is not None:  # the film, of which nothing may move
+                    span = (motion.start, motion.stop)
+                played, end = self._played(scene, own, group, span, spans)
+                stop = max(stop, end)
             if span is None:
                 residuals += shapes
                 continue
@@ -181,19 +194,30 @@ class Pace(TargetedOp):
                 continue
             if self._of_one_movement:
                 warp, end = self._in_movement(spans[0], movements, span)
-            elif self.change in ("part", "repeat", "back_and_forth"):
-                warp, end = self._again(scene, own, group, span, spans)
             else:
-                warp, end = self._warp(motion, own, span, spans)
+                warp, end = self._played(scene, own, group, span, spans)
             for i in held:
                 made[i] = playing(tracks[i], warp)
             residuals += [waving(shape, warp) for shape in shapes]
             stop = end if self._whole else max(stop, end)
         if not paced:
             raise InstructionError(f"{self.target.describe()} hardly moves: say what it is to do")
+        if played is not None and (self.change != "stop" or played.after):  # a film that stops for good keeps its looks
+            scene = scene.replace(motion=motion.replace(looks=shown(motion.looks, played)))
         after = with_tracks(scene, made, stop, (*residuals, *waves))
-        moving = torch.from_numpy(ids)
-        return Outcome(after, touched=moving, notes=self._notes(stop, motion))
+        return Outcome(after, touched=torch.from_numpy(every), notes=self._notes(stop, motion))
+
+    def _plays_looks(self, motion: Motion | None) -> bool:
+        """Whether the whole scene is played otherwise, with looks that follow it."""
+        played = self._whole and self.change in _PLAYED and not self._of_one_movement
+        return played and motion is not None and bool(motion.looks)
+
+    def _played(self, scene: Scene, own: list[Track], group: I64, span: Span, spans: list[Span]) -> tuple[Warp, float]:
+        """Which old time is shown when, and when the scene or the movement then ends."""
+        assert scene.motion is not None
+        if self.change in ("part", "repeat", "back_and_forth"):
+            return self._again(scene, own, group, span, spans)
+        return self._warp(scene.motion, own, span, spans)
 
     def _closing(self, scene: Scene, selection: Selection, context: Context) -> Articulate | None:
         """What is meant by "close the door 2 s later" of a door that opens and does not close yet: it closes 2 s after

@@ -11,7 +11,7 @@ import torch
 from numpy.typing import ArrayLike, NDArray
 
 from ...gaussians.errors import InstructionError
-from ...gaussians.motion.motion import Motion, Residual, Track, carried, poses
+from ...gaussians.motion.motion import Look, Motion, Residual, Track, carried, poses
 from ...gaussians.motion.runs import runs_of
 from ...gaussians.rows import rows_of_ids
 from ...gaussians.scene import Scene
@@ -28,6 +28,7 @@ _STEP = 1 / 30  # seconds between keys where a path is not played at one rate
 _SAMPLES = 100  # times a second at which a way is looked at
 _STILL = 2e-3  # units and radians between keys: less is no movement
 _SAME = 1e-9  # seconds
+_FLASH = 2e-3  # seconds: a look is not seen for less, as where what is played again jumps to its beginning
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,26 @@ def waving(residual: Residual, warp: Warp) -> Residual:
     """Displacements that are at each time what they were at the mapped time; at its start they may not be 0."""
     times, values = _keys(residual.times, warp, False)
     return replace(residual, times=times, basis=residual.at(values))
+
+
+def shown(looks: Iterable[Look], warp: Warp) -> tuple[Look, ...]:
+    """Looks at the times at which those are shown at which they were there: one of each time that they come."""
+    return tuple(replace(look, start=a, stop=b) for look in looks for a, b in _shown_in((look.start, look.stop), warp))
+
+
+def _shown_in(span: tuple[float, float], warp: Warp) -> list[tuple[float, float]]:
+    """The spans of new time, which may be open, in which old times of a span are shown."""
+    ends = np.array([t for t in span if np.isfinite(t)])
+    edges = np.unique(np.concatenate([np.array(warp.new), warp.when(ends)]))
+    bounds = [-np.inf, *(float(t) for t in edges), np.inf]
+    within = [edges[0] - 1.0, *((edges[1:] + edges[:-1]) / 2), edges[-1] + 1.0]
+    found = list[tuple[float, float]]()
+    for (a, b), old in zip(itertools.pairwise(bounds), warp(within), strict=True):
+        if span[0] <= old < span[1]:
+            if found and found[-1][1] == a:
+                a = found.pop()[0]
+            found.append((a, b))
+    return [(a, b) for a, b in found if b - a > _FLASH]
 
 
 def _keys(old: F64, warp: Warp, spins: bool) -> tuple[F64, F64]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -159,3 +160,32 @@ def test_what_closes_within_a_time_does_so_when_it_has_opened(opening: Scene, co
     assert float(course_of(made, CHAIR).boxes(np.array([0.0, 3.0])).centers[:, 0] @ [1, -1]) == pytest.approx(
         0, abs=1e-6
     )
+
+
+@pytest.mark.parametrize(
+    ("fields", "red", "end"),
+    [
+        ({"change": "speed", "factor": 2.0}, [(0.5, 1.0)], 1.5),
+        ({"change": "reverse"}, [(1.0, 2.0)], 3.0),
+        ({"change": "later", "seconds": 1.0}, [(2.0, 3.0)], 4.0),
+        ({"change": "repeat", "times": 2}, [(1.0, 2.0), (4.0, 5.0)], 6.0),
+        ({"change": "stop", "when": {"start": 1.5, "stop": 2.5}}, [(1.0, 3.0)], 4.0),
+        ({"change": "stop", "when": {"start": 0.5}}, [(1.0, 2.0)], 3.0),
+    ],
+)
+@pytest.mark.parametrize("moves", [True, False])
+def test_looks_follow_the_whole_film(
+    rolling: Scene, context: Context, fields: Json, red: list[tuple[float, float]], end: float, moves: bool
+) -> None:
+    """Also where nothing else changes with time."""
+    when = {"start": 1.0, "stop": 2.0}
+    scene = done(rolling, {"op": "recolor", "target": A_VASE, "color": "red", "when": when}, context).scene
+    assert scene.motion is not None
+    if not moves:
+        scene = scene.replace(motion=scene.motion.replace(tracks=()))
+    data = {"op": "pace", "target": {"text": "everything"}, **fields}
+    made = done(scene, data, replace(context, resolver=None)).scene
+    plain = made.replace(motion=made.motion.replace(looks=())) if made.motion is not None else made
+    assert last(made) == pytest.approx(end, abs=0.01)
+    for time in np.arange(0.05, end, 0.1):
+        assert (differs(plain, made, float(time)) == [VASE]) == any(a < time < b for a, b in red), time
