@@ -126,9 +126,10 @@ class Scored:
         return [int(i) for i in self._ordered() if self.holds[i]]
 
     def nearest(self) -> list[int]:
-        """Positions of all candidates, ordered by whether the name holds, how many terms hold, and the score."""
+        """Positions of all candidates, ordered by whether they are what is named, whether they are called so, how many
+        terms hold, and the score."""
         held = [values >= self.limits[name] for name, values in self.terms.items()]
-        name = self.terms["text"] >= self.limits["text"] if "text" in self.terms else np.zeros(len(self.groups), bool)
+        name = [(g.id in self.named) + (g.id in self.likely) for g in self.groups]
         count = np.sum(held, axis=0) if held else np.zeros(len(self.groups))
         return sorted((int(i) for i in self._ordered()), key=lambda i: (-int(name[i]), -int(count[i])))
 
