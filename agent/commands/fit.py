@@ -28,7 +28,8 @@ def command(
     capture: Annotated[
         Path,
         typer.Argument(
-            metavar="CAPTURE", help="A folder with transforms.json or COLMAP's sparse/0, or of photographs."
+            metavar="CAPTURE",
+            help="A folder with transforms.json (or _train and _test), COLMAP's sparse/0, or photographs.",
         ),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="File for the scene (.ply).")],
@@ -86,7 +87,8 @@ def command(
 ) -> None:
     """Train a scene on photographs, on the CPU or a GPU.
 
-    Every eighth photograph is held out to measure the quality. An interrupted training resumes from its last checkpoint
+    Every eighth photograph is held out to measure the quality; of a folder with transforms_train.json those of its test
+    (or val) file are. An interrupted training resumes from its last checkpoint
     (OUTPUT.checkpoint). If the photographs have no poses, these are estimated first (extra sfm) and kept in
     OUTPUT.poses; they are estimated again only if the photographs change. Frames with different times, from cameras
     that stand or one that moves, become a scene with motion if something moves in them, without checkpoints.
@@ -273,8 +275,7 @@ def _describe(photos: Photos) -> str:
             ", ..." if len(photos.missing) > MAX_NAMED else ""
         )
         text += f"\nwarning: {len(photos.missing)} photographs are listed, but not there, and are left out: {named}"
-    if photos.frame_note is not None:
-        text += f"\nnote: {photos.frame_note}"
+    text += "".join(f"\nnote: {note}" for note in photos.notes)
     return text if photos.warning is None else f"{text}\nwarning: {photos.warning}"
 
 

@@ -178,7 +178,7 @@ def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> t
             again = f"embedding again when words need it; `scenewright embed {options.path}` saves the new one"
             terminal.say(f"note: the language field beside {options.path} {why}: {again}")
         return scene, options.encoder
-    encoder = encoders.load(options.encoder)
+    encoder, table = encoders.load(options.encoder), embedded.language
     if options.saved_names:
         embedded = embedded.replace(frame=_scaled(embedded.frame, scene.frame))
     elif not _agrees(scene.frame, embedded.frame):
@@ -187,10 +187,10 @@ def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> t
         )
         terminal.say(f"note: the language field beside {options.path} was made with another up or scale: {again}")
         return scene, encoder
-    if embedded.language.encoder == encoder.fingerprint:
+    if table.encoder == encoder.fingerprint:
         return embedded, encoder
     again = "(--encoder chooses that one, `scenewright embed` saves the new names)"
-    terminal.say(f"note: {told_anew(embedded.language)} {again}")
+    terminal.say(f"note: {told_anew(table)} {again}")
     startup.end()  # this renders, and may take long
     return embedded_by(encoder, embedded, terminal.progress), encoder
 

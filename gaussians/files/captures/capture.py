@@ -1,4 +1,5 @@
-"""Reads captures: photographs with camera poses, from a `transforms.json` (nerfstudio, instant-ngp) or a COLMAP model.
+"""Reads captures: photographs with camera poses, from a `transforms.json` (nerfstudio, instant-ngp), from files for
+training and for testing (`transforms_train.json` and others: Blender's scenes of NeRF, D-NeRF), or from a COLMAP model.
 
 Poses in `transforms.json` are camera-to-world in OpenGL axes (+x right, +y up, +z backward), intrinsics are in pixels,
 given once for all frames or for each (https://docs.nerf.studio/quickstart/data_conventions.html); ours are
@@ -25,6 +26,8 @@ from ..foreign import read_json
 from . import colmap
 
 TRANSFORMS = "transforms.json"
+TRAIN = "transforms_train.json"  # of a capture that is divided by its makers
+TESTS = ("transforms_test.json", "transforms_val.json")  # what is held out of it: the first that is there
 _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "RADIAL", "SIMPLE_RADIAL", "PERSPECTIVE")
 _SUFFIXES = (".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG", ".webp")
 PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png")
@@ -59,12 +62,13 @@ class Capture:
 
 
 def read_capture(path: Path) -> Capture:
-    """The capture in a `transforms.json`, or in a folder with one or with a COLMAP model (photographs in `images`).
+    """The capture in a `transforms.json`, or in a folder with one, with a `transforms_train.json`, or with a COLMAP
+    model (photographs in `images`).
 
     Raises:
         FileError: the path is missing, is not such a file, or is a folder of photographs without poses.
     """
-    file = path / TRANSFORMS if path.is_dir() else path
+    file = _transforms(path) if path.is_dir() else path
     if found := unposed_photos(path):
         raise FileError(
             f"{path} has {len(found)} photographs but no poses; `scenewright fit {path} -o SCENE.ply` estimates them "
@@ -77,8 +81,10 @@ def read_capture(path: Path) -> Capture:
     try:
         data = read_json(file)
     except FileError as error:
-        raise FileError(f"{error}; a capture is a transforms.json, or a folder with one, with COLMAP's sparse/0, or, "
-                        f"for fit only, with photographs ({', '.join(PHOTO_SUFFIXES)})") from error  # fmt: skip
+        raise FileError(
+            f"{error}; a capture is a transforms.json, or a folder with one, with {TRAIN}, with COLMAP's sparse/0, or, "
+            f"for fit only, with photographs ({', '.join(PHOTO_SUFFIXES)})"
+        ) from error
     frames = data.get("frames") if isinstance(data, dict) else None
     if not isinstance(frames, list) or not frames:
         raise FileError(f"{file} lists no frames; give a transforms.json as nerfstudio writes it")
@@ -90,7 +96,7 @@ def read_capture(path: Path) -> Capture:
             if not isinstance(frame, dict):
                 raise ValueError("it is not an object with file_path and transform_matrix")
             photo = _photo(file.parent, frame["file_path"])
-            cameras.append(_camera({**data, **frame}, photo))
+            cameras.append(_camera(_with_size({**data, **frame}, photo, file.parent, frames), photo))
             lenses.append(_lens({**data, **frame}))
             check_lens(cameras[-1], lenses[-1])
         except (KeyError, TypeError, ValueError, ArithmeticError, UserError) as error:
@@ -98,6 +104,54 @@ def read_capture(path: Path) -> Capture:
             raise FileError(f"{file}: frame {i} {reason}") from error
         photos.append(photo)
     return replace(_capture(file, cameras, photos, lenses), times=_times(file, frames))
+
+
+def read_held_out(path: Path) -> Capture | None:
+    """The photographs that the makers of a capture hold out of its training: those of a `transforms_test.json`, or else
+    of a `transforms_val.json`, of which some are there. None if the folder is not divided so.
+
+    Raises:
+        FileError: such a file is damaged.
+    """
+    if not path.is_dir() or _transforms(path).name != TRAIN or not (path / TRAIN).exists():
+        return None
+    found = (path / name for name in TESTS if (path / name).is_file())
+    return next((read_capture(file) for file in found if _some_there(file)), None)
+
+
+def _some_there(file: Path) -> bool:
+    """Whether a file names photographs of which some are there; also if it is damaged, which `read_capture` tells."""
+    data = read_json(file)
+    frames = data.get("frames") if isinstance(data, dict) else None
+    return not isinstance(frames, list) or _first_there(file.parent, frames) is not None
+
+
+def _first_there(folder: Path, frames: Sequence[Any]) -> Path | None:
+    """The first photograph of some frames that is there."""
+    names = (frame.get("file_path") for frame in frames if isinstance(frame, dict))
+    photos = (_photo(folder, name) for name in names if isinstance(name, str) and name)
+    return next(filter(is_file, photos), None)
+
+
+def _with_size(data: dict[str, Any], photo: Path, folder: Path, frames: Sequence[Any]) -> dict[str, Any]:
+    """What is told of a frame whose photograph is not there, with the size of another one if none is told.
+
+    Raises:
+        ValueError: none is there.
+    """
+    if "w" in data or "h" in data or is_file(photo):
+        return data
+    other = _first_there(folder, frames)
+    if other is None:
+        raise ValueError(f"it has no w and h, and no photograph is there that has them; the first is {photo}")
+    width, height = _size(data, other)
+    return {**data, "w": width, "h": height}
+
+
+def _transforms(folder: Path) -> Path:
+    """The file in a folder that holds its poses, if they are not COLMAP's; it need not exist."""
+    divided = not (folder / TRANSFORMS).exists() and (folder / TRAIN).is_file()
+    return folder / (TRAIN if divided else TRANSFORMS)
 
 
 def _times(file: Path, frames: Sequence[Mapping[str, Any]]) -> tuple[float, ...] | None:
@@ -133,7 +187,7 @@ def unposed_photos(path: Path) -> list[Path]:
     Raises:
         FileError: the folder cannot be read.
     """
-    if not path.is_dir() or (path / TRANSFORMS).exists() or colmap.find(path) is not None:
+    if not path.is_dir() or _transforms(path).exists() or colmap.find(path) is not None:
         return []
     for folder in (path / "images", path):
         try:

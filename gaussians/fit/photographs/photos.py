@@ -1,4 +1,5 @@
-"""Load a capture for training: read, undistort and downscale its photographs, and hold out every eighth.
+"""Load a capture for training: read, undistort and downscale its photographs, and hold out every eighth, or those that
+its makers hold out.
 
 All errors of a capture are raised here, before training starts.
 """
@@ -14,7 +15,7 @@ import numpy as np
 from ...camera import Camera
 from ...errors import FileError, UserError
 from ...files.captures import colmap
-from ...files.captures.capture import Capture, is_file, read_capture, unposed_photos
+from ...files.captures.capture import TRAIN, Capture, is_file, read_capture, read_held_out, unposed_photos
 from ...files.captures.image_file import MIN_SIDE, read_photo
 from ...lens import Lens, undistort
 from ..train import Shot
@@ -42,7 +43,8 @@ class Photos:
         poses_folder: folder with the estimated poses; None if the capture has poses.
         unplaced: names of photographs left out because no pose was found for them.
         missing: names of photographs left out because they are listed, but not there.
-        frame_note: a sentence if the surveyed points were moved into the frame of the poses, or None.
+        notes: sentences on how the capture was read: points that were moved into the frame of the poses, photographs
+            that its makers hold out, what its times are taken for.
     """
 
     shots: tuple[Shot, ...]
@@ -53,7 +55,7 @@ class Photos:
     poses_folder: Path | None = None
     unplaced: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
-    frame_note: str | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def film(self) -> bool:
@@ -76,8 +78,8 @@ def load_photos(
     """Load the photographs of a capture.
 
     Args:
-        path: a `transforms.json`, or a folder with one or with a COLMAP model; or a folder with photographs without
-            poses, in `images` or directly.
+        path: a `transforms.json`, or a folder with one, with a `transforms_train.json` and one for testing, or with a
+            COLMAP model; or a folder with photographs without poses, in `images` or directly.
         scale: of the photographs' sides, in (0, 1]; None halves them until the longer side is at most `MAX_SIDE`.
         poses: a folder that stores estimated poses and is reused the next time; without it, photographs without poses
             are refused.
@@ -98,21 +100,45 @@ def load_photos(
 
         unplaced = estimate_poses(unposed, poses, progress)
         path = poses_folder = poses
-    capture = read_capture(path)
-    points, frame_note = _points(path if path.is_dir() else path.parent, capture)
+    capture, tested = read_capture(path), read_held_out(path)
+    points, moved = _points(path if path.is_dir() else path.parent, capture)
     if strict:
         _check_present(capture)
     capture, missing = _present(capture)
     extent = _extent(capture)
     check_views(capture.path, capture.cameras, points)
+    shots = _shots(capture, scale, progress)
+    if all(shot.photo.std(axis=(0, 1)).max() < MIN_STD for shot in shots):
+        raise FileError(f"every photograph of {capture.path} is of one plain colour; there is nothing to train on")
+    warning = check_colors(capture.path, shots, points)
+    divided: tuple[str, ...] = ()
+    if tested is None:
+        train, held_out = _eighth_apart(capture, shots)
+    else:
+        if strict:
+            _check_present(tested)
+        tested, also_missing = _present(tested)
+        missing += also_missing
+        train, held_out = shots, _named_apart(_shots(tested, scale, progress), shots, tested.path)
+        divided = (f"training on the photographs of {capture.path.name}; held out are those of {tested.path.name}",)
+    if len(train) < MIN_PHOTOS:
+        raise FileError(f"{capture.path} has {len(shots)} photographs; at least {MIN_PHOTOS + 1} are needed")
+    notes = (*moved, *divided, *_seconds_note(capture, train))
+    return Photos(tuple(train), tuple(held_out), points, extent, warning, poses_folder, unplaced, missing, notes)
+
+
+def _shots(capture: Capture, scale: float | None, progress: Progress) -> list[Shot]:
+    """The photographs of a capture, undistorted and scaled."""
     shots = []
     for i, (camera, photo, lens) in enumerate(zip(capture.cameras, capture.photos, capture.lenses, strict=True)):
         time = None if capture.times is None else capture.times[i]
         shots.append(replace(_shot(photo, camera, lens, scale), time=time))
         progress("reading photographs", (i + 1) / len(capture.photos))
-    if all(shot.photo.std(axis=(0, 1)).max() < MIN_STD for shot in shots):
-        raise FileError(f"every photograph of {capture.path} is of one plain colour; there is nothing to train on")
-    warning = check_colors(capture.path, shots, points)
+    return shots
+
+
+def _eighth_apart(capture: Capture, shots: Sequence[Shot]) -> tuple[list[Shot], list[Shot]]:
+    """The photographs to train on, and every eighth by name, which is held out."""
     order = sorted(range(len(shots)), key=lambda i: capture.photos[i].name)
     if _is_film(shots):  # the first frame of every camera shows the start, which all later ones are compared with
         first = min(shot.time for shot in shots if shot.time is not None)
@@ -120,10 +146,27 @@ def load_photos(
         apart = {i for k, i in enumerate(order) if k % TEST_EVERY == TEST_EVERY // 2 and shots[i].time != first}
     else:
         apart = {i for k, i in enumerate(order) if k % TEST_EVERY == 0}
-    held_out, train = [shots[i] for i in order if i in apart], [shots[i] for i in order if i not in apart]
-    if len(train) < MIN_PHOTOS:
-        raise FileError(f"{capture.path} has {len(shots)} photographs; at least {MIN_PHOTOS + 1} are needed")
-    return Photos(tuple(train), tuple(held_out), points, extent, warning, poses_folder, unplaced, missing, frame_note)
+    return [shots[i] for i in order if i not in apart], [shots[i] for i in order if i in apart]
+
+
+def _named_apart(held_out: Sequence[Shot], train: Sequence[Shot], file: Path) -> list[Shot]:
+    """The photographs of a file for testing; those called as one for training get the name of the file before."""
+    taken = {shot.camera.name for shot in train}
+    prefix = file.stem.rpartition("_")[2]  # transforms_test: both number their photographs from r_000 on
+    return [
+        replace(shot, camera=replace(shot.camera, name=f"{prefix}-{shot.camera.name}"))
+        if shot.camera.name in taken
+        else shot
+        for shot in held_out
+    ]
+
+
+def _seconds_note(capture: Capture, shots: Sequence[Shot]) -> tuple[str, ...]:
+    """A note that the times of a D-NeRF capture, which are shares of a film of unknown length, are taken as seconds."""
+    times = [shot.time for shot in shots if shot.time is not None]
+    if capture.path.name != TRAIN or not _is_film(shots) or not 0 <= min(times) <= max(times) <= 1:
+        return ()
+    return ("times run from 0 to 1: taken as seconds",)
 
 
 def _extent(capture: Capture) -> float:
@@ -161,22 +204,22 @@ def _present(capture: Capture) -> tuple[Capture, tuple[str, ...]]:
     return Capture(capture.path, cameras, photos, tuple(capture.lenses[i] for i in there), times), missing
 
 
-def _points(folder: Path, capture: Capture) -> tuple[colmap.Points, str | None]:
+def _points(folder: Path, capture: Capture) -> tuple[colmap.Points, tuple[str, ...]]:
     """The surveyed points in the frame of the capture's cameras, and a sentence if they had to be moved into it."""
     sparse = colmap.find(folder)
     if sparse is None:
-        return colmap.Points(np.zeros((0, 3)), np.zeros((0, 3))), None
+        return colmap.Points(np.zeros((0, 3)), np.zeros((0, 3))), ()
     points = colmap.read_points(sparse)
     if capture.path == sparse or not len(points.means):
-        return points, None
+        return points, ()
     found = similarity(
         _views(sparse), {photo.name: c for photo, c in zip(capture.photos, capture.cameras, strict=True)}
     )
     if found is None or found.is_identity():
-        return points, None
+        return points, ()
     return colmap.Points(found.apply(points.means), points.colors), (
         f"{capture.path.name} and {sparse.name or sparse} are in different frames; the surveyed points were moved: "
-        f"{found.describe()}"
+        f"{found.describe()}",
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -299,6 +299,50 @@ def test_photographs_are_read_and_one_in_eight_is_held_out(tmp_path: Path) -> No
     assert len(taken.points.means) == 300 and taken.shots[0].photo.shape == (40, 48, 3)
     half = load_photos(tmp_path, 0.5)
     assert half.shots[0].photo.shape == (20, 24, 3) and half.shots[0].camera.fx == taken.shots[0].camera.fx / 2
+
+
+def divided(folder: Path, tests: Sequence[str] = ("test", "val")) -> Path:
+    """The capture as D-NeRF and Blender's scenes are written: a file and a folder for each part, names from r_000 on,
+    one angle, no size, times from 0 to 1."""
+    cloud, cameras = world(), around(12)
+    parts = {"train": cameras[:8], **{name: cameras[8 + 2 * i : 10 + 2 * i] for i, name in enumerate(tests)}}
+    for name, taken in parts.items():
+        (folder / name).mkdir(parents=True)
+        frames = []
+        for i, camera in enumerate(taken):
+            Image.fromarray(render(cloud, camera).to_uint8()).save(folder / name / f"r_{i:03d}.png")
+            pose = np.linalg.inv(camera.world_to_camera) @ np.diag([1.0, -1.0, -1.0, 1.0])
+            place = {"file_path": f"./{name}/r_{i:03d}", "transform_matrix": pose.tolist()}
+            frames.append({**place, "time": i / max(len(taken) - 1, 1)})
+        told = {"camera_angle_x": 2 * math.atan(cameras[0].width / 2 / cameras[0].fx), "frames": frames}
+        (folder / f"transforms_{name}.json").write_text(json.dumps(told))
+    return folder
+
+
+@pytest.mark.parametrize("tests", [("test", "val"), ("val",), ()])
+def test_a_capture_that_is_divided_is_held_out_as_its_makers_say(tmp_path: Path, tests: tuple[str, ...]) -> None:
+    photos = load_photos(divided(tmp_path, tests))
+    if not tests:  # then as any other film
+        assert len(photos.shots) == 7 and len(photos.held_out) == 1
+    else:
+        assert len(photos.shots) == 8
+        assert [shot.camera.name for shot in photos.held_out] == [f"{tests[0]}-r_000", f"{tests[0]}-r_001"]
+        assert photos.notes[0].endswith(f"transforms_train.json; held out are those of transforms_{tests[0]}.json")
+    assert photos.film and photos.notes[-1] == "times run from 0 to 1: taken as seconds"
+    assert photos.shots[0].camera.fx == pytest.approx(around(12)[0].fx)
+    alone = load_photos(tmp_path / "transforms_train.json")
+    assert len(alone.shots) == 7 and len(alone.held_out) == 1
+
+
+def test_photographs_for_testing_that_are_not_there_are_not_asked_for(tmp_path: Path) -> None:
+    folder = divided(tmp_path)
+    (folder / "test" / "r_000.png").unlink()
+    with pytest.raises(FileError, match="r_000 is missing"):
+        load_photos(folder)
+    photos = load_photos(folder, strict=False)
+    assert photos.missing == ("r_000",) and [shot.camera.name for shot in photos.held_out] == ["test-r_001"]
+    (folder / "test" / "r_001.png").unlink()
+    assert [shot.camera.name for shot in load_photos(folder).held_out] == ["val-r_000", "val-r_001"]
 
 
 def _missing(told: dict[str, Any]) -> None:

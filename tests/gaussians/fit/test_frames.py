@@ -92,11 +92,8 @@ def test_points_follow_poses_that_a_converter_turned_and_scaled(tmp_path: Path) 
     told = to_transforms(moved, [Lens()] * len(moved), [f"images/{i}.png" for i in range(len(moved))])
     (tmp_path / "transforms.json").write_text(json.dumps(told))
     photos = load_photos(tmp_path)
-    assert (
-        photos.frame_note is not None
-        and "different frames" in photos.frame_note
-        and "scaled by 1.7" in photos.frame_note
-    )
+    assert len(photos.notes) == 1
+    assert "different frames" in photos.notes[0] and "scaled by 1.7" in photos.notes[0]
     np.testing.assert_allclose(photos.points.means, scale * points @ turn.T + offset, atol=1e-5)
 
 
