@@ -45,7 +45,7 @@ from .timing.judging import Judge, wording_of
 from .timing.keeping import Kept, held, without_kept
 from .timing.marked.kinds import SURE
 from .timing.reading import TimeReader, is_misread, may_be_timed
-from .timing.sending import sent
+from .timing.sending import behind, sent, without_then
 from .timing.spoken import written
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
@@ -181,10 +181,12 @@ def _understand(cleaned: str, previous: str | None, scene: Observation | None = 
 
     Args, raises: as `_read_whole`.
     """
-    outcome = _read_whole(cleaned, previous, scene)
+    said, then = without_then(cleaned)
+    outcome = _read_whole(said, previous, scene)
     if scene is None:
         return outcome
-    return replace(outcome, ops=sent(cleaned, tuple(named_there(outcome.ops, scene.lacks)), scene.moves))
+    ops = sent(said, tuple(named_there(outcome.ops, scene.lacks)), scene.moves)
+    return replace(outcome, ops=behind(ops, scene.moves) if then else ops)
 
 
 def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -> _Outcome:

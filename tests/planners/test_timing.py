@@ -26,6 +26,8 @@ UNDERSTOOD: list[tuple[str, str, dict[str, Any]]] = [
         "state": "falling", "of": {"text": "book", "moving": True, "pick": "nth", "ordinal": 1}, "part": "until"}}),
     ("close the door again after it has opened", "articulate", {"during": {"state": "opening", "part": "after"}}),
     ("paint the box white from 0 to 2.5 s, then back to normal", "recolor", {"stop": 2.5}),
+    ("the light should go out at 2 s", "relight", {"start": 2.0}),
+    ("turn the lamp off at 2 seconds", "relight", {"start": 2.0}),
     ("fade out the chair", "opacity", {"lasting": 2.0, "gradual": True}),
     ("a red ball appears on the table after 2 s", "insert", {"start": 2.0}),
     ("green book falls at t=3", "pace", {"start": 3.0}),
@@ -50,7 +52,6 @@ WITHOUT_TIME: list[tuple[str, dict[str, Any]]] = [
 REFUSED = (
     "frobnicate the ball at 2 s",
     "make the fan spin and stand still at the same time",
-    "the light should go out at 2 s",
     "the drawer should be open at the end",
     "the fan should run for two seconds only",
     "turn the robot by 180 degrees instead of 90 at 2 s",

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
+from ....gaussians import late_re as re
+from ....gaussians.world.lengths import in_metres
 from ....tools.when import Part, When
 from ..parsing import Refusal
 from .command import Fields
@@ -47,6 +50,20 @@ def followed(ops: Sequence[Fields], more: Sequence[Fields]) -> list[Fields]:
     if not isinstance(stop, When) or not isinstance(start, When) or start.start is None or stop.stop or stop.lasting:
         return [*ops, *more]
     return [*ops[:-1], {**last, "when": stop.model_copy(update={"stop": start.start})}]
+
+
+def dropped(part: str, ops: Sequence[Fields]) -> str:
+    """A command behind others: what was lifted and is dropped comes down as far, and is not deleted."""
+    last = ops[-1] if ops else {}
+    if last.get("op") != "move" or last.get("direction") != "up" or last.get("distance") is None:
+        return part
+    value, unit = last["distance"]["value"], last["distance"]["unit"]
+    fallen = _FALL * math.sqrt(in_metres(value, "m" if unit == "units" else unit))
+    return _DROPPED.sub(rf"move \g<np> {value:g} {unit} down in {fallen:.2g} s once it has stopped", part)
+
+
+_DROPPED = re.compile(r"^(?:then )?(?:drop|let (?=\w+ fall)) ?(?P<np>it|him|her|the \w+(?: \w+)?)(?: fall)?$")
+_FALL = (2 / 9.81) ** 0.5  # seconds in which something falls by a metre
 
 
 def goes_back(last: Fields, more: Sequence[Fields]) -> bool:

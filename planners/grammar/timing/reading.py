@@ -31,7 +31,7 @@ from .asides import told_of
 from .clauses import AUXILIARIES
 from .command import Command, Fields
 from .commands import commands, loose_commands
-from .following import followed, goes_back, says_again
+from .following import dropped, followed, goes_back, says_again
 from .happenings import IT, Happening
 from .manner import MOTION
 from .marked.lost import leaves_out
@@ -105,11 +105,12 @@ class TimeReader:
         return None
 
     def _each(self, said: str) -> tuple[Fields, ...] | None:
-        """What each part of an instruction asks for, where only the last tells a time: "delete the bed, and hide the
-        shelf from 1 to 2 s"; None for others."""
+        """What each part of an instruction asks for, where each or only the last tells a time: "delete the bed, and
+        hide the shelf from 1 to 2 s", "roll it to the sofa in 2 s and make it blue when it arrives"; None for others.
+        """
         parts = _parts(said)
         times = [self._tells_time(part) for part in parts]
-        if len(parts) < 2 or times != [False] * (len(parts) - 1) + [True]:
+        if len(parts) < 2 or (not all(times) and times != [False] * (len(parts) - 1) + [True]):
             return None
         with suppress(Refusal):
             found = self._joined(parts)
@@ -211,6 +212,7 @@ class TimeReader:
                 topic = self.thing(about)  # "the door opens too late, make it start at 0 s"
                 if topic is not None:
                     continue
+            part = dropped(part, ops)
             found = self._whole(part)
             again = ops[-1]["op"] in ("recolor", "restyle") if ops else topic is not None
             if found is None and again:  # "red at 1 s and blue at 3 s", "that fan is too wild, half as quick would do"
@@ -701,6 +703,8 @@ def is_misread(ops: Sequence[Fields]) -> bool:
     names += [str(op.get("asset", "")) for op in ops]
     if any(_TIME_NOUNS & set(str(op.get("asset", "")).split()) for op in ops):
         return True  # "put a pause of 1 s into it"
+    if any((held := _DEED.match(name)) and kinds.find(name) is None and kinds.find(held["thing"]) for name in names):
+        return True  # "let the ball roll to the sofa"
     last = [name.split()[-1] for name in names if name.split()]
     return any(word in _NO_NAMES or (_is_verb(word) and not is_known(word)) for word in last)
 
@@ -712,6 +716,10 @@ def _is_strange(ops: Sequence[Fields]) -> bool:
     return any(len(w) > 1 and (not is_known(w[-1]) or AUXILIARIES & set(w)) for w in words)
 
 
+_DEED = re.compile(
+    r"^(?P<thing>.+(?<!toilet)(?<!bread)(?<!paper)(?<!kitchen)) "
+    r"(?:roll|drive|walk|slide|fall|drop|spin|turn|swing|move|go|run|ride|drift)$"
+)
 _TIME_NOUNS = bag("pause break delay stop halt faster slower second seconds")
 _NO_NAMES = bag(
     "end start beginning motion slow once twice while finish closed falls walks opens stops moves appear flash blink "

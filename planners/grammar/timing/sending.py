@@ -1,7 +1,5 @@
-"""What moves by itself and is sent somewhere goes there in its time: "send the robot to the toy car".
-
-"Move the robot to the toy car" shifts all of its way.
-"""
+"""How what moves by itself goes on: where it is sent ("send the robot to the toy car"; "move the robot to the toy car"
+shifts all of its way), and what it does "then"."""
 
 from __future__ import annotations
 
@@ -9,7 +7,8 @@ from collections.abc import Callable, Sequence
 
 from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
-from ....tools.when import When
+from ....tools.when import During, When
+from .clauses import MOVING
 from .command import Fields
 
 _SENT = re.compile(
@@ -17,6 +16,39 @@ _SENT = re.compile(
     r"(?:(?:send|direct|steer|guide|route|dispatch) (?:the|my|our|this|that|him|her|it|them)\b|"
     r"(?:let|have|make) (?:the|my|our|this|that|him|her|it|them) (?:[a-z]+ ){0,3}?(?:go|come|head|travel|return)\b)"
 )
+
+
+_THEN = re.compile(
+    r"^(?:and )?(?:then|after that|after this|afterwards|subsequently|next)\b"
+    r"(?! (?:to|door|time|one|frame))[ ,]*(?=\w)",
+    re.IGNORECASE,
+)
+_GOES = ("move", "follow", "orbit", "spin", "tip", "sway", "articulate")
+
+
+def without_then(cleaned: str) -> tuple[str, bool]:
+    """An instruction without a word that puts it behind what was said before, and whether there was one."""
+    shorter = _THEN.sub("", cleaned)
+    return shorter, shorter != cleaned
+
+
+def behind(ops: Sequence[Fields], moves: Callable[[Query], bool | None]) -> tuple[Fields, ...]:
+    """Operations that begin when what they are about has moved; where that stands still, when all that moves has.
+
+    Those with a time of their own, and those about something else than a movement, stay as they are.
+
+    Args:
+        moves: as `sent`.
+    """
+    if len(ops) != 1 or ops[0]["op"] not in _GOES:
+        return tuple(ops)
+    when = ops[0].get("when")
+    timed = when is not None and (when.start, when.stop, when.during) != (None, None, None)
+    if timed or (when is None and ops[0]["op"] == "move") or not moves(MOVING):
+        return tuple(ops)
+    of = None if moves(ops[0]["target"]) else MOVING
+    after = During(state="moving", of=of, part="after")
+    return ({**ops[0], "when": (when or When()).model_copy(update={"during": after})},)
 
 
 def sent(cleaned: str, ops: Sequence[Fields], moves: Callable[[Query], bool | None]) -> tuple[Fields, ...]:

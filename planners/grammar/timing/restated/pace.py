@@ -20,10 +20,21 @@ from .wording import (
     with_unit,
 )
 
+_LIGHT = r"(?:the |my |that |this )?(?:[a-z]+ )?(?:lamp|light|lantern|candle|bulb|chandelier)s?"
+
 RULES: Rules = (
     # what is switched off
     (r"^(?:kill|cut) (?P<np>(?:the |that |this |my )?(?:[a-z]+ )?(?:fan|wheel|windmill|propeller|rotor|carousel|motor|"
      r"engine|machine))\b(?! (?:in|into|out|off)\b)", r"stop \g<np>"),
+    (rf"^(?P<v>turn|switch|put|shut) (?P<np>{_LIGHT}) (?P<how>off|on)\b", r"\g<v> \g<how> \g<np>"),
+    (rf"^(?P<np>{_LIGHT}) (?:(?:should|must|shall|is to|has to) )?(?:goes|go|turns?|switch(?:es)?) "
+     r"(?:dark|out|off|black)\b", r"turn off \g<np>"),
+    (rf"^(?P<np>{_LIGHT}) (?:(?:should|must|shall|is to|has to) )?(?:comes|come|goes|go|turns?|switch(?:es)?|lights?) "
+     r"(?:on|up)\b", r"turn on \g<np>"),
+    (r"^(?:remove|delete|drop|cancel|get rid of) (?:the|all|all the|any|every|its) (?:motion|movement|animation)s?$",
+     "everything should stand still"),
+    (r"^(?P<x>(?:let|have|make|send|roll|drive|walk|the) .* to (?:the|my) [a-z ]+?)(?: ,)?(?: and)?(?: then)? "
+     r"(?:(?:come|go|roll|walk|drive|return)s? )?back(?: again)?$", r"\g<x> , then let it go back the way it came"),
     # how fast
     (r"(?P<x>\b(?:stop|halt|freeze|end|pause)s? .+?)(?: ,)? and (?:go|walk|move|travel|roll|get|come) no (?:further|"
      r"farther|more)$", r"\g<x>"),
