@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -18,10 +19,11 @@ from ..alternatives import NOT_GIVEN, either, nonzero
 from ..carried_objects import rows_with_carried
 from ..checks import count_matches
 from ..operation import Context, Outcome, TargetedOp
-from ..placement.bodies import bodies_of
+from ..placement.bodies import Body, bodies_of, told_length
 from ..receipt import Check, at_most
 from ..timing.added import Start, with_movement
-from ..timing.spans import length_of
+from ..timing.circling import Circling
+from ..timing.spans import Span, length_of
 
 _MOST = 100.0  # rounds
 _ROUND = 4.0  # seconds of one round, where nothing is said
@@ -29,7 +31,8 @@ _LEAST = 0.05  # metres from the middle of what it goes round
 
 
 class Orbit(TargetedOp):
-    """Let the target go round another thing in a circle, as far from it as it is, and turn with its way.
+    """Let the target go round another thing in a circle, as far from it as it is, and turn with its way. Where that
+    goes through other things, it first goes straight to a circle that fits between them.
 
     `turns` is how many rounds, positive counter-clockwise seen from above; they take the time of `when`, else 4 s each.
     Without `turns` it goes round until the end of the scene. It stays on its level.
@@ -56,10 +59,10 @@ class Orbit(TargetedOp):
         return rows_with_carried(scene, selection)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        whole = length_of(scene)
+        whole, notes = length_of(scene), list[str]()
 
-        def round_it(start: Start) -> Track:
-            middle = self._middle(start, context)
+        def round_it(start: Start) -> tuple[Track, ...]:
+            goal = self._goal(start, context)
             (begin, stop), end = start.span, whole.stop if whole.known else start.span[0] + _ROUND
             turns = self.turns
             if turns is None:
@@ -67,13 +70,15 @@ class Orbit(TargetedOp):
                 turns = max(round((stop - begin) / _ROUND), 1)
             elif not math.isfinite(stop):
                 stop = begin + _ROUND * abs(turns)
-            up = scene.frame.up_vector
-            angles = (0.0, 2 * math.pi * turns)
-            return Track.hinge(start.ids, (begin, stop), angles, up, middle, smooth=False)
+            circling = Circling.of(start.scene, start.body, goal, 2 * math.pi * turns)
+            tracks, told = _tracks(circling, start, (begin, stop))
+            notes.extend(told)
+            return tracks
 
-        return with_movement(scene, selection, self.when, context, round_it)
+        made = with_movement(scene, selection, self.when, context, round_it)
+        return replace(made, notes=(*made.notes, *notes))
 
-    def _middle(self, start: Start, context: Context) -> np.ndarray:
+    def _goal(self, start: Start, context: Context) -> Body:
         """What it goes round, where that is when it begins."""
         goals = bodies_of(start.scene, context.resolve(start.scene, self.around).require())
         if len(goals) != 1:
@@ -83,7 +88,7 @@ class Orbit(TargetedOp):
         way = way - up * (way @ up)
         if float(np.linalg.norm(way)) * (start.scene.frame.metres_per_unit or 1.0) < _LEAST:
             raise InstructionError(f"it stands in the middle of {self.around.describe()}: let it spin")
-        return np.asarray(goals[0].center)
+        return goals[0]
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         motion = outcome.scene.motion
@@ -94,3 +99,32 @@ class Orbit(TargetedOp):
         return count_matches(before, outcome.scene, outcome), at_most(
             "keeps its level", rising, 1e-6, "", f"its circle is tilted by {rising:.2g}"
         )
+
+
+def _tracks(circling: Circling, start: Start, span: Span) -> tuple[tuple[Track, ...], tuple[str, ...]]:
+    """The circle of what goes round in a time, as far from its middle as it is; where that goes through something, a
+    straight way to a circle that goes through less, and that. And notes."""
+    begin, stop = span
+    radius, left = circling.best()
+    way, circle, tracks, notes = (
+        radius - circling.radius,
+        radius * abs(circling.angle),
+        tuple[Track, ...](),
+        list[str](),
+    )
+    if way:
+        there = begin + (stop - begin) * abs(way) / (abs(way) + circle)
+        tracks = (Track.slide(start.ids, (begin, there), (0.0, way), circling.out, smooth=False),)
+        begin, far = there, told_length(start.scene.frame, radius)
+        notes.append(
+            f"it goes round at {far} from the middle: where it is, it would go through {_listed(circling.hit())}"
+        )
+    if left:
+        notes.append(f"it goes through {_listed(left)}: no circle fits between what stands around")
+    angles = (0.0, circling.angle)
+    round_it = Track.hinge(start.ids, (begin, stop), angles, circling.up, circling.middle, smooth=False)
+    return (*tracks, round_it), tuple(notes)
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(name if name.startswith("the ") else f"the {name}" for name in names)

@@ -43,12 +43,16 @@ class Start:
 
 
 def with_movement(
-    scene: Scene, selection: Selection, when: When | None, context: Context, move: Callable[[Start], Track]
+    scene: Scene,
+    selection: Selection,
+    when: When | None,
+    context: Context,
+    move: Callable[[Start], Track | tuple[Track, ...]],
 ) -> Outcome:
     """The scene in which each body of a selection moves in addition to how it moves already.
 
     Args:
-        move: the track of one body, in the world of the time at which it begins.
+        move: the track of one body, in the world of the time at which it begins; or several, in their order.
     """
     whole = length_of(scene)
     spans = spans_of(when, scene, selection, context, onward=True) if when is not None else [(-math.inf, math.inf)]
@@ -60,7 +64,8 @@ def with_movement(
         ids = still.cloud.ids[body.rows]
         touched.append(ids)
         start = Start(still, body, np.sort(ids.cpu().numpy()), span, (whole.start, whole.stop))
-        tracks.append(move(start))
+        made = move(start)
+        tracks += made if isinstance(made, tuple) else (made,)
     stop = max([whole.stop, *(_end(t, span[1]) for t in tracks)])
     motion = composed(scene.motion, Motion(tuple(tracks), (), (), whole.start, stop))
     notes = (f"the scene lasts {stop:g} s now",) if stop > whole.stop + 1e-3 else ()

@@ -22,6 +22,7 @@ from scenewright.tools.execute import Done, carry_out
 from scenewright.tools.judging.changes import changes_between
 from scenewright.tools.operation import Context
 from scenewright.tools.registry import OPS, parse
+from scenewright.tools.timing.circling import Circling
 from scenewright.tools.timing.retiming import Warp, angles_at
 from scenewright.tools.timing.through_time import carry_through_time
 
@@ -325,7 +326,11 @@ def test_what_follows_goes_the_way_of_the_other(moving: Scene, context: Context)
         done(moving, {**along, "leader": {"groups": [TABLE]}}, context)
 
 
-def test_what_goes_round_another_thing_keeps_its_distance(moving: Scene, context: Context) -> None:
+def test_what_goes_round_another_thing_keeps_its_distance(
+    moving: Scene, context: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where nothing is in its way."""
+    monkeypatch.setattr(Circling, "best", lambda self: (self.radius, ()))
     data = {"op": "orbit", "target": {"groups": [VASE]}, "around": {"groups": [ARMCHAIR]}, "turns": 1,
             "when": {"start": 1, "stop": 3}}  # fmt: skip
     made = done(moving, data, context).scene
