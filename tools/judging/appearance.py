@@ -18,6 +18,7 @@ from ...gaussians.language.query.query import ALL, BACKGROUND, FLOATERS, Query
 from ...gaussians.language.query.terms import ANYTHING, STRUCTURE
 from ...gaussians.language.segmentation.group_renders import mean_vectors
 from ...gaussians.scene import Frame, Scene
+from ...gaussians.world.compounds import split
 from ..coloring.seen import middle_of, seen_pixels
 from ..receipt import Check, at_least, report
 
@@ -43,7 +44,7 @@ def is_looked_for(query: Query, encoder: Encoder) -> bool:
     has confirmed it, for one."""
     word = query.text.lower()
     fixed = query.last or query.groups or query.confirmed or query.invert or query.also or query.pick == "rest"
-    part = any(r.name == "part_of" for r in query.relations)
+    part = any(r.name == "part_of" for r in query.relations) or split(word) is not None  # "table top"
     unnamed = word in ANYTHING | ALL | BACKGROUND | FLOATERS or word in STRUCTURE
     return not (fixed or part or unnamed) and encoder.knows(word)
 

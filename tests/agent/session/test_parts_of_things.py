@@ -105,3 +105,8 @@ def test_legs_of_chairs_are_told_by_shape(living: Session) -> None:
     legs = living.select("the chair legs")
     assert legs.chosen and 0 < len(legs) < len(living.select("the chair"))
     assert living.select("the wardrobe door").verdict == "absent"
+
+
+def test_a_part_need_not_look_like_a_whole_thing(living: Session) -> None:
+    assert living.do("make the dresser top white").receipts[0].checks
+    living.undo()
