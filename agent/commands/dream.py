@@ -125,10 +125,13 @@ def command(
     if model.startswith(PREFIX):
         if seconds is None:
             raise UserError("--steps are for score distillation; a program gets --minutes")
-        scene, axis = from_command(model, prompt, image, seconds, up, height)
+        scene, axis, repaired = from_command(model, prompt, image, seconds, up, height)
         save(scene, output, force=force)
+        for note in repaired:
+            terminal.say(f"note: in what the program wrote, {note}")
         terminal.result(f"{output}: {len(scene.cloud):,} Gaussians, their {axis} axis was up",
-                        {"output": str(output), "gaussians": len(scene.cloud), "model": model, "up": axis})  # fmt: skip
+                        {"output": str(output), "gaussians": len(scene.cloud), "model": model, "up": axis,
+                         "notes": list(repaired)})  # fmt: skip
         return
     settings = Settings(seconds, steps, size, max_gaussians, seed=seed, device=resolve_device(device))
     first, told = start_for(start, prompt, max_gaussians, np.random.default_rng(seed), seed)

@@ -143,13 +143,17 @@ def _check_options(given: list[str], output: Path, film: bool, time: str | None)
     """Check that the given options fit together and fit the output. Raises UserError if they do not; the message names
     them."""
     from ...gaussians.errors import UserError
+    from ..pictures.times import check_times
 
+    if time is not None:
+        check_times(time)
     which = [option for option in given if option in ("--view", "--orbit", "--cameras", "--path")]
     if len(which) > 1 and which != ["--orbit", "--cameras"]:
         raise UserError(f"{' and '.join(which)} are different pictures; ask for one")
     if film and which in ([], ["--view"]) and (time is None or ":" not in time):
+        one = "" if time is None else f", and --time {time} is one"
         raise UserError(
-            f"{output} is for many pictures; say which: --orbit 75, --cameras CAPTURE, --path FILE, or --time 0:5"
+            f"{output} is for many pictures{one}; say which: --orbit 75, --cameras CAPTURE, --path FILE, or --time 0:5"
         )
     many = [option for option in given if option != "--view"]
     many += [f"--time {time}"] if time is not None and ":" in time else []

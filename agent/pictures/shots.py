@@ -123,11 +123,9 @@ def timed_shots(camera: Camera, span: tuple[float, float], seconds: float | None
 def cameras_of(source: Path) -> tuple[Camera, ...]:
     """The cameras of a capture (a transforms.json, its folder or a COLMAP folder) or of a scene."""
     from ...gaussians.files import load
-    from ...gaussians.files.captures import colmap
-    from ...gaussians.files.captures.capture import TRANSFORMS, read_capture
+    from ...gaussians.files.captures.capture import is_capture, read_capture
 
-    folder = source.is_dir() and ((source / TRANSFORMS).exists() or colmap.find(source) is not None)
-    if folder or source.suffix.lower() == ".json":
+    if is_capture(source) or source.suffix.lower() == ".json":
         return read_capture(source).cameras
     return load(source).cameras
 

@@ -23,19 +23,29 @@ def time_span(text: str, motion: Motion | None, what: str) -> tuple[float, float
     Raises:
         UserError: the text is no time, or nothing changes with time in the scene.
     """
+    check_times(text)
     if motion is None:
         raise UserError(f"nothing moves in {what}; leave out --time")
     start, colon, stop = text.partition(":")
     first = _seconds(start, motion.start, text)
     last = _seconds(stop, motion.stop, text) if colon else first
-    if not colon and not start.strip():
-        raise UserError("--time takes seconds as in 2.5 or 0:5")
     if last < first:
         raise UserError(f"--time {text} ends before it begins; write the earlier time first")
     if first < motion.start or last > motion.stop:
         lasts = f"{what} lasts from {motion.start:g} to {motion.stop:g} s"
-        terminal.say(f"note: {lasts}; before and after, it stays as it is")
+        spins = last > motion.stop and any(track.kind == "spin" for track in motion.tracks)
+        stays = "before and after, it stays as it is" + (", but what spins goes on" if spins else "")
+        terminal.say(f"note: {lasts}; {stays}")
     return first, last
+
+
+def check_times(text: str) -> None:
+    """Check that a text is a time or a span of times, of whatever scene. Raises UserError if it is not."""
+    start, colon, stop = text.partition(":")
+    for word in (start, stop):
+        _seconds(word, 0.0, text)
+    if not colon and not start.strip():
+        raise UserError("--time takes seconds as in 2.5 or 0:5")
 
 
 def one_time(text: str, motion: Motion | None, what: str) -> float:

@@ -70,15 +70,15 @@ def _run(command: list[str], seconds: float) -> subprocess.CompletedProcess[byte
     return subprocess.CompletedProcess(command, process.returncode, out, err)
 
 
-def run(spec: str, prompt: str, image: Path | None, seconds: float) -> GaussianCloud:
-    """The Gaussians that a program writes, in the program's own axes.
+def run(spec: str, prompt: str, image: Path | None, seconds: float) -> tuple[GaussianCloud, tuple[str, ...]]:
+    """The Gaussians that a program writes, in the program's own axes, and what was repaired in them, a sentence each.
 
     Raises:
         UserError: see `arguments`.
         BackendError: the program is not there, fails, takes longer than `seconds`, or writes no Gaussians that can be
             read.
     """
-    from ..files import load
+    from ..files import load_with_report
 
     with tempfile.TemporaryDirectory(prefix="scenewright-") as folder:
         output = Path(folder) / OUTPUT
@@ -98,9 +98,10 @@ def run(spec: str, prompt: str, image: Path | None, seconds: float) -> GaussianC
         if not written:
             raise BackendError(f"{command[0]} wrote nothing to {{output}} ({OUTPUT})")
         try:
-            cloud = load(output if output in written else written[0]).cloud
+            scene, report = load_with_report(output if output in written else written[0])
         except ScenewrightError as error:
             raise BackendError(f"what {command[0]} wrote cannot be used: {error}") from error
+    cloud = scene.cloud
     seen = int((cloud.opacities > FAINT).sum())
     if seen < LEAST:
         raise BackendError(
@@ -109,4 +110,4 @@ def run(spec: str, prompt: str, image: Path | None, seconds: float) -> GaussianC
         )
     if len(cloud) > MOST:
         raise BackendError(f"{command[0]} wrote {len(cloud):,} Gaussians; an object has {MOST:,} at most")
-    return cloud
+    return cloud, report.notes

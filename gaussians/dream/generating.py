@@ -68,14 +68,15 @@ class Generator:
 
 def from_command(
     spec: str, prompt: str, image: Path | None, seconds: float, up: Up = "auto", height: float | None = None
-) -> tuple[Scene, str]:
-    """What a program makes, upright, standing, in metres; and the axis that was up.
+) -> tuple[Scene, str, tuple[str, ...]]:
+    """What a program makes, upright, standing, in metres; the axis that was up; and what was repaired in it.
 
     Raises:
         UserError, BackendError: as `command.run`.
     """
-    cloud, axis = upright(command.run(spec, prompt, image, seconds), kind_of(prompt), up)
-    return standing(cloud, prompt, height), axis
+    made, repaired = command.run(spec, prompt, image, seconds)
+    cloud, axis = upright(made, kind_of(prompt), up)
+    return standing(cloud, prompt, height), axis, repaired
 
 
 def kept() -> Path:

@@ -148,6 +148,11 @@ def _with_size(data: dict[str, Any], photo: Path, folder: Path, frames: Sequence
     return {**data, "w": width, "h": height}
 
 
+def is_capture(folder: Path) -> bool:
+    """Whether a folder holds poses of photographs, in a file or as COLMAP writes them."""
+    return folder.is_dir() and (_transforms(folder).exists() or colmap.find(folder) is not None)
+
+
 def _transforms(folder: Path) -> Path:
     """The file in a folder that holds its poses, if they are not COLMAP's; it need not exist."""
     divided = not (folder / TRANSFORMS).exists() and (folder / TRAIN).is_file()
@@ -187,7 +192,7 @@ def unposed_photos(path: Path) -> list[Path]:
     Raises:
         FileError: the folder cannot be read.
     """
-    if not path.is_dir() or _transforms(path).exists() or colmap.find(path) is not None:
+    if not path.is_dir() or is_capture(path):
         return []
     for folder in (path / "images", path):
         try:

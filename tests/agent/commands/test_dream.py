@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import pytest
 
 from scenewright.agent.cli import main
-from scenewright.gaussians.files import load
+from scenewright.gaussians.assets import make
+from scenewright.gaussians.files import load, save
+from scenewright.gaussians.scene import Scene
 
 
 def _run(*arguments: object) -> int:
@@ -47,3 +50,13 @@ def test_the_library_stands_in(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_options_that_make_no_sense(tmp_path: Path, wrong: tuple[object, ...]) -> None:
     assert _run("a chair", "-o", tmp_path / "chair.ply", "--model", "library", *wrong) == 2
     assert not list(tmp_path.iterdir())
+
+
+def test_what_is_left_out_of_what_a_program_wrote_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lamp = make("floor lamp", 0).cloud
+    means = lamp.means.clone()
+    means[0] = float("nan")
+    save(Scene(lamp.replace(means=means)), tmp_path / "made.ply")
+    model = f"command:cp {shlex.quote(str(tmp_path / 'made.ply'))} {{output}}"
+    assert _run("a floor lamp", "-o", tmp_path / "lamp.ply", "--model", model) == 0
+    assert f"in what the program wrote, 1 of {len(lamp):,} Gaussians were dropped" in capsys.readouterr().err

@@ -69,6 +69,9 @@ def test_a_film_through_time_from_a_view_and_on_an_orbit(call: Any, room: Path, 
         (("--time", "2:1", "--fps", "2"), "ends before it begins"),
         (("--time", "0:1"), "is for many pictures"),
         (("--time", "nan"), "seconds as in 2.5 or 0:5"),
+        (("--time", "nan", "--fps", "2"), "seconds as in 2.5 or 0:5, not 'nan'"),
+        (("--time", "a:b"), "seconds as in 2.5 or 0:5, not 'a:b'"),
+        (("--time", "1", "--fps", "2"), "for many pictures, and --time 1 is one"),
         (("--time", ""), "seconds as in 2.5 or 0:5"),
     ],
 )
@@ -157,6 +160,13 @@ def test_what_is_hidden_for_a_while_stays_in_a_sequence(call: Any, slid: Scene, 
 def test_a_time_beyond_the_film_is_told(call: Any, room: Path) -> None:
     answer = call("render", room, "--time", "9", "-o", room.parent / "late.png", "--size", "32x24")
     assert answer.code == 0 and "lasts from 0 to 2 s" in answer.err
+    answer = call("render", room, "--time", "0:9", "--fps", "1", "-o", room.parent / "film", "--size", "32x24")
+    assert answer.code == 0 and "lasts from 0 to 2 s; before and after, it stays as it is\n" in answer.err
+    spun = files.load(room)
+    spin = Track.spin(spun.cloud.ids.numpy()[:5], 1.0, (0, 0, 1), (0, 0, 0))
+    files.save(spun.replace(motion=Motion((spin,), stop=2.0)), room, force=True)
+    answer = call("render", room, "--time", "9", "-o", room.parent / "spun.png", "--size", "32x24")
+    assert "but what spins goes on" in answer.err
 
 
 def test_one_time_is_one_file_and_other_formats_keep_the_motion(call: Any, slid: Scene, room: Path) -> None:

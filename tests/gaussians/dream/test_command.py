@@ -122,8 +122,8 @@ def test_what_a_program_makes_stands_in_metres_and_is_kept(tmp_path: Path) -> No
     made = tmp_path / "made.ply"
     body = f"open({str(count)!r}, 'a').write('x')\nshutil.copy({str(made)!r}, sys.argv[2])"
     spec = f"{_program(tmp_path, body)} {{prompt}} {{output}}"
-    scene, axis = from_command(spec, "a floor lamp", None, 20)
-    assert axis == "y" and scene.frame.metres_per_unit == 1.0
+    scene, axis, repaired = from_command(spec, "a floor lamp", None, 20)
+    assert axis == "y" and not repaired and scene.frame.metres_per_unit == 1.0
     tall = float(scene.cloud.means[:, 2].max() - scene.cloud.means[:, 2].min())
     assert 1.2 < tall < 2.2
     keeps = Generator(spec, 20, folder=tmp_path / "kept")
@@ -132,3 +132,15 @@ def test_what_a_program_makes_stands_in_metres_and_is_kept(tmp_path: Path) -> No
     assert count.read_text() == "xxx"  # once by hand, then once for each prompt
     with pytest.raises(BackendError, match="unknown model"):
         Generator("onnx:x")
+
+
+def test_rows_that_are_no_numbers_are_left_out_and_told(tmp_path: Path) -> None:
+    lamp = _turned("y", "floor lamp").cloud
+    broken = lamp.means.clone()
+    broken[:3, 0] = float("nan")
+    made = tmp_path / "made.ply"
+    save(Scene(lamp.replace(means=broken)), made)
+    spec = f"{_program(tmp_path, f'shutil.copy({str(made)!r}, sys.argv[1])')} {{output}}"
+    scene, _, repaired = from_command(spec, "a floor lamp", None, 20)
+    assert len(scene.cloud) == len(lamp) - 3
+    assert repaired == (f"3 of {len(lamp):,} Gaussians were dropped: NaN or infinite values",)

@@ -20,6 +20,7 @@ from scenewright.gaussians import rotations
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError, UserError
+from scenewright.gaussians.files.captures.capture import is_capture
 from scenewright.gaussians.files.captures.colmap import Points
 from scenewright.gaussians.fit import Photos, Settings, fit, load_photos
 from scenewright.gaussians.fit.densify import DefaultStrategy, MCMCStrategy, compute_relocation
@@ -330,6 +331,7 @@ def test_a_capture_that_is_divided_is_held_out_as_its_makers_say(tmp_path: Path,
         assert photos.notes[0].endswith(f"transforms_train.json; held out are those of transforms_{tests[0]}.json")
     assert photos.film and photos.notes[-1] == "times run from 0 to 1: taken as seconds"
     assert photos.shots[0].camera.fx == pytest.approx(around(12)[0].fx)
+    assert is_capture(tmp_path)
     alone = load_photos(tmp_path / "transforms_train.json")
     assert len(alone.shots) == 7 and len(alone.held_out) == 1
 
