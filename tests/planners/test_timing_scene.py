@@ -116,3 +116,74 @@ def test_what_moves_is_spoken_of_without_a_time() -> None:
     assert (op["op"], op["distance"]) == ("articulate", {"value": 0.15})
     (order,) = planned("Rather green, then red, then blue, so should the books fall.")
     assert [query["colors"] for query in order["first"]] == [["green"], ["red"], ["blue"]]
+
+
+@pytest.mark.parametrize(
+    ("text", "fields"),
+    [
+        ("Send the robot over to the sofa instead.", {"toward": {"text": "sofa"}}),
+        ("let the ball go to the tv stand", {"toward": {"text": "tv stand"}}),
+        (
+            "send the robot in front of the shelf",
+            {"place": {"relation": "in_front_of", "anchors": [{"text": "shelf"}]}},
+        ),
+    ],
+)
+def test_what_moves_by_itself_goes_where_it_is_sent(text: str, fields: dict[str, Any]) -> None:
+    (op,) = planned(text)
+    assert op.get("when") == {}
+    assert {key: op.get(key) for key in fields} == fields
+
+
+@pytest.mark.parametrize("text", ["send the bench to the wardrobe", "move the robot next to the sofa"])
+def test_what_stands_still_is_put_there_and_what_is_moved_is_shifted(text: str) -> None:
+    (op,) = planned(text)
+    assert "when" not in op
+
+
+@pytest.mark.parametrize(
+    ("text", "during"),
+    [
+        ("then the robot walks to the sofa", {"state": "moving", "part": "after"}),
+        ("After that the robot walks to the sofa in two seconds.", {"state": "moving", "part": "after"}),
+        ("then let the bench slide to the sofa in 2 s", {"state": "moving", "of": {"moving": True}, "part": "after"}),
+        ("then the robot walks to the sofa from 4 to 5 s", None),
+    ],
+)
+def test_what_is_done_then_begins_when_the_last_movement_is_over(text: str, during: dict[str, Any] | None) -> None:
+    (op,) = planned(text)
+    found = op["when"].get("during")
+    assert (None if found is None else {**found, **({"of": {"moving": True}} if "of" in found else {})}) == during
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Play the whole clip in reverse.",
+        "Reverse the footage so the ball rolls from the wall to the sofa.",
+    ],
+)
+def test_a_film_that_runs_backwards_is_all_of_it(text: str) -> None:
+    (op,) = planned(text)
+    assert (op["change"], op["target"]["text"]) == ("reverse", "everything")
+
+
+@pytest.mark.parametrize(
+    ("text", "change"), [("The fall of the green book should take three times as long.", ("speed", 0.3333))]
+)
+def test_so_many_times_as_long_is_slower(text: str, change: tuple[str, float]) -> None:
+    (op,) = planned(text)
+    assert (op["change"], op["factor"]) == change
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Robot never leaves its spot at the shelf, and it ends up next to the bed.",
+        "Kindly have the top drawer wide open for the whole film, and see to it that it is never open.",
+        "Robot: no corner, just keep going straight.",
+        "Drawer: start opening at 0.5, closed again at 2. Nothing after that.",
+    ],
+)
+def test_nothing_is_done_of_half_a_wish(text: str) -> None:
+    assert planned(text) == []

@@ -18,6 +18,7 @@ _SENT = re.compile(
 )
 
 
+_UP_TO = re.compile(r"\b(?:to|towards?|up to|over to) (?!the (?:top|left|right|front|back|other)\b)")
 _THEN = re.compile(
     r"^(?:and )?(?:then|after that|after this|afterwards|subsequently|next)\b"
     r"(?! (?:to|door|time|one|frame))[ ,]*(?=\w)",
@@ -62,6 +63,6 @@ def sent(cleaned: str, ops: Sequence[Fields], moves: Callable[[Query], bool | No
     place = ops[0].get("place")
     if place is None or not moves(ops[0]["target"]):
         return tuple(ops)
-    if place["relation"] != "next_to" or len(place["anchors"]) != 1:
+    if not _UP_TO.search(cleaned.lower()) or len(place["anchors"]) != 1:
         return ({**ops[0], "when": When()},)
     return ({"op": "move", "target": ops[0]["target"], "when": When(), "toward": place["anchors"][0]},)
