@@ -188,7 +188,6 @@ WHOLE = (  # half of them would be another edit
     "roll the ball to the wall and come back",
     "the drawer should come out twice as far at 2 s",
     "make the door creak open over 4 seconds",
-    "turn the lamp off at 2 s",
     "have the door open one second earlier and more slowly",
 )
 

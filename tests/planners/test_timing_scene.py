@@ -187,3 +187,15 @@ def test_so_many_times_as_long_is_slower(text: str, change: tuple[str, float]) -
 )
 def test_nothing_is_done_of_half_a_wish(text: str) -> None:
     assert planned(text) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "wrong way, the robot should turn right at the corner",
+        "Mirror it: the robot turns 90 degrees right instead of left.",
+    ],
+)
+def test_what_turns_the_wrong_way_is_mirrored(text: str) -> None:
+    (op,) = planned(text)
+    assert op["change"] == "mirror"

@@ -273,3 +273,22 @@ def test_what_is_hidden_then_has_no_place() -> None:
 @pytest.mark.parametrize("text", ["", "?", "..."])
 def test_a_question_without_words_is_not_understood(text: str) -> None:
     assert "not understood" in Session(moving()).ask(text).text
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("What pace did the ball average on that run, in metres per second, from kick-off to standstill?", 2.0),
+        ("What is the ball's mean speed between the kick and the moment it comes to rest?", 2.0),
+        ("What percentage of the four seconds does the ball spend in motion?", 50.0),
+        ("What percentage of the film shows the ball in motion?", 50.0),
+        ("How long does the ball just lie there before it gets going?", 1.0),
+        ("Through what angle has the clock turned after 2 s?", 360.0),
+    ],
+)
+def test_times_that_are_told_by_a_movement(session: Session, text: str, value: float) -> None:
+    assert said(session, text).answer == pytest.approx(value, rel=0.06)
+
+
+def test_a_number_is_no_answer_for_yes_or_no(session: Session) -> None:
+    assert not isinstance(said(session, "Does the clock turn a whole right angle, like 90 degrees?").answer, float)

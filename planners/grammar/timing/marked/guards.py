@@ -137,6 +137,9 @@ _TELLING = {  # words that say something by themselves, and the kinds of wishes 
     r"(?:to|into|onto|against|at) (?:the|a) (?:wall|floor|ground|ceiling)": "move reverse order duration",
 }
 _SAID_BY = tuple((re.compile(rf"\b(?:{words})\b"), kinds.split()) for words, kinds in _TELLING.items())
+_ONLY_SO_FAR = re.compile(  # "no turning, it just walks its first stretch"
+    r"\b(?:just|only) (?:walk|roll|go|drive|move|slide|fall)\w*|\bfirst (?:stretch|bit|part|leg)\b"
+)
 _OPENS = re.compile(r"\b(?:opens|starts? (?:to )?open(?:ing)?|let (?:it|\||the \w+) open)\b")  # before it closes
 _WHY_NOT = re.compile(r"\bwhy (?:not|do not we|do not you)\b")
 ASKED_AS_NOT = re.compile(  # "couldn't we see it fall again?"
@@ -222,6 +225,8 @@ def says_more(kind: str, slots: Slots) -> bool:
         left = _HALF_OF_IT.sub(" ", left)
         left = _AS_IT_DOES.sub(" ", NO_MORE.sub(" ", left))
     if any(kind not in kinds and words.search(left) for words, kinds in _SAID_BY):
+        return True
+    if kind in ("still", "halt") and not slots.told and _ONLY_SO_FAR.search(left):
         return True
     if kind == "close" and _OPENS.search(f"{left} {idle}"):
         return True

@@ -21,6 +21,7 @@ _OTHER_WAY = re.compile(
 _BACKWARDS = re.compile(
     r"\b(?:backwards?|in reverse|rewind|rewound|back to front|from (?:the )?(?:end|back) to|end to start)\b"
 )
+_REWINDS_IT = re.compile(r"^(?:please |just )?(?:rewind|reverse|play|run) (?:it|this|that|it all|all of it)\b")
 _THE_FILM = re.compile(  # "run the whole shot backwards, books fly up onto the board"
     r"\b(?:the|this|that|my|our) (?:(?:whole|entire|full|complete) )?"
     r"(?:film|clip|video|movie|shot|footage|recording|scene|take|animation)\b(?! (?:ends?|is over|stops))"
@@ -65,6 +66,7 @@ def reverse(slots: Slots) -> Iterator[Wanted]:
         yield now(slots, f"let {slots.whom} turn the other way round")
         return
     every = whose.text == "everything" or (not moment.told and slots.tell(_THE_FILM))
+    every |= not moment.told and slots.tell(_REWINDS_IT)
     reverse = Wanted(pace(ALL_OF_IT if every else whose_of(slots), "reverse"), Moment(), None)
     if (
         moves is not None

@@ -22,6 +22,18 @@ from .wording import (
 
 _LIGHT = r"(?:the |my |that |this )?(?:[a-z]+ )?(?:lamp|light|lantern|candle|bulb|chandelier)s?"
 
+
+def _turned(side: str, other: str) -> tuple[str, str]:
+    """The rule of what turns to the other side: "wrong way, the robot should turn right at the corner"."""
+    to, instead = "(?:to the )?", "(?:and not|not|instead of|rather than)"
+    told = rf"(?=.*\b(?:wrong way|mirror|{instead} {to}(?:left|right))\b)"
+    who = rf"(?:.*?(?:,|:|\.) )?(?:at the corner (?:, )?)?(?P<np>{NAMED}|he|she|it)"
+    wish = r"(?:(?:should|must|has to|is to|ought to) )?turns? (?:90 degrees |by a quarter turn )?"
+    corner = r"(?: at (?:the|its|that) (?:corner|turn|bend))?(?: by a quarter turn)?"
+    said = rf"^{told}{who} {wish}{to}{side}{corner}(?:(?: ,)? {instead} {to}{other})?$"
+    return said, rf"\g<np> turns {side} instead of {other}"
+
+
 RULES: Rules = (
     # what is switched off
     (r"^(?:kill|cut) (?P<np>(?:the |that |this |my )?(?:[a-z]+ )?(?:fan|wheel|windmill|propeller|rotor|carousel|motor|"
@@ -35,6 +47,8 @@ RULES: Rules = (
      "everything should stand still"),
     (r"^(?P<x>(?:let|have|make|send|roll|drive|walk|the) .* to (?:the|my) [a-z ]+?)(?: ,)?(?: and)?(?: then)? "
      r"(?:(?:come|go|roll|walk|drive|return)s? )?back(?: again)?$", r"\g<x> , then let it go back the way it came"),
+    _turned("right", "left"),
+    _turned("left", "right"),
     # how fast
     (r"(?P<x>\b(?:stop|halt|freeze|end|pause)s? .+?)(?: ,)? and (?:go|walk|move|travel|roll|get|come) no (?:further|"
      r"farther|more)$", r"\g<x>"),

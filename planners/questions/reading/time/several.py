@@ -46,8 +46,12 @@ _OPPOSED = re.compile(
 _SHARE = re.compile(
     r"^(?:for |during )?(?:(?:what|which)(?: is the)?|(?:what is )?the) "
     r"(?P<s>share|fraction|percentage|percent|proportion|portion) of "
-    r"(?:the |its )?(?:whole |total |entire )?(?:clip|video|film|movie|scene|time|shot|recording|running time)"
+    r"(?:the |its |these |those )?(?:whole |total |entire |full )?(?:(?:[a-z]+|\d+) (?:s |seconds? ?)(?:of )?)?"
+    r"(?:clip|video|film|movie|scene|time|shot|recording|record|footage|running time|(?<=seconds )|(?<=seconds))"
     r" ?(?:for |in |during )?(?:which |that )?(?P<x>.+)$"
+)
+_IN_MOTION = re.compile(  # "is the fan in motion", "does the drawer spend in motion", "shows the door in motion"
+    r"^(?:is|are|does|do|shows?|has|have) (?P<x>.+?) (?:spend |spent |spends )?(?:in motion|moving|on the move)$"
 )
 _WHICH_ONE = re.compile(
     r"^(?:so |and )?(?:which|what)(?: one| of them)?(?: is it| was it| exactly)?(?: ,? ?(?:dear|please|then))?$"
@@ -131,7 +135,7 @@ def share(said: str) -> tuple[str, bool] | None:
     """A question for a share of the scene's time as one for a time, and whether percent are asked; None: it is none."""
     if (found := _SHARE.match(said)) is None:
         return None
-    rest = re.sub(r" for$", "", found["x"])
+    rest = _IN_MOTION.sub(r"does \g<x> move", re.sub(r" for$", "", found["x"]))
     return f"how long {rest}", found["s"].startswith("percent")
 
 

@@ -147,7 +147,7 @@ _TOLD = 0.54  # probability of an event from which another one is counted
 def times_of(kind: str, said: tuple[str, ...]) -> Iterator[str]:
     """The words for a time, as they are said and by what happens at it; those that both are read agree in it."""
     both = f"from {_AFTER.sub('', said[0])} to {_BEFORE.sub('', said[1])}" if len(said) == 2 else ""
-    if kind in _OF_A_WAY and (all(_ON_ITS_WAY.match(one) for one in said) or _ALL_OF_IT.match(both)):
+    if kind in _OF_A_WAY and (all(map(_is_all_of_it, said)) or _ALL_OF_IT.match(both)):
         yield ""
         return
     plain = " ".join(filter(None, (_plain_time(kind, one) for one in said)))
@@ -160,12 +160,17 @@ def times_of(kind: str, said: tuple[str, ...]) -> Iterator[str]:
         yield told
 
 
+def _is_all_of_it(said: str) -> bool:
+    """Whether a time is that of all of a movement."""
+    return _ON_ITS_WAY.match(said) is not None or _ALL_OF_IT.match(said) is not None
+
+
 _OF_A_WAY = bag("fast fast_most far long_moves turns")
 _AFTER = re.compile(r"^(?:after|from|since|once|following) ")
 _BEFORE = re.compile(r"^(?:before|until|till|til|to|up to) ")
 _ON_ITS_WAY = re.compile(  # that says nothing more of a movement
-    r"^(?:on|during|along|over|in) (?:its|his|her|the) (?:whole |entire )?"
-    r"(?:way|trip|journey|roll|run|course|path|route)\b|"
+    r"^(?:on|during|along|over|in) (?:its|his|her|the|that|this) (?:whole |entire )?"
+    r"(?:way|trip|journey|roll|run|course|path|route)\b(?! (?:to|towards?|back|out|in|home|from)\b)|"
     r"^(?:while|whilst|when|as long as) (?:it|he|she) (?:is|'s) (?:actually )?"
     r"(?:moving|working|rolling|running|spinning|turning|going|in motion|on|under way)$"
 )
@@ -233,6 +238,10 @@ BEFORE_BACK = re.compile(
 )
 
 
+_BEFORE_IT_STARTS = re.compile(
+    r"^(?:before|until|till) (?:it|he|she) (?:first |finally )?(?:gets (?:going|moving|rolling|started)|"
+    r"(?:starts?|begins?)(?: (?:to )?(?:mov|roll|go|walk|fall|turn)\w*)?|sets off|moves(?! back)|rolls off|takes off)$"
+)
 UP_TO_THE_TURN = re.compile(
     r"^(?:before|until|till|up to|after|from) (?:(?:the |its |his |her )?(?:corner|turn|bend)(?: to the \w+)?|"
     r"(?:it|he|she) turns)$"
@@ -247,7 +256,7 @@ _EDGES = ("", "at the start", "at the end")
 _BEGUN = (  # of a movement
     r"(?:very )?(?:first |initial )?(?:start(?:ing)?(?: off| point| gate)?|beginning|push ?off|crack|shut|closed|"
     r"stirrings?|motion|movement|move|push|"
-    r"departure|release|launch|take ?off|kick(?: ?off)?|shove|nudge|"
+    r"departure|release|launch|take ?off|kick(?: ?off)?|(?:being|getting) kicked|shove|nudge|"
     r"setting (?:off|out)|set ?off|leaving(?: (?:the |its )?\w+){0,2}|"
     r"parting|go|opening)"
 )
@@ -289,6 +298,8 @@ def _plain_time(kind: str, said: str) -> str:
         return ""
     if _ALL_OF_IT.match(said) or (kind in ("far_opens", "far_turns") and _AT_MOST.match(said)):
         return ""
+    if kind == "long_still" and _BEFORE_IT_STARTS.match(said):
+        return "before it starts to move"
     if kind in ("long_still", "long_open") and (BEFORE_BACK.match(said) or STROKES.match(said)):
         return ""
     if kind == "long_on" and _WHILE_ON.match(said) is not None:
