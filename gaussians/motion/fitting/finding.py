@@ -21,7 +21,7 @@ from .budget import SEARCH_UNTIL, SEEDS_UNTIL, Budget, OutOfTime
 from .footage import Footage
 from .rolling import Ball
 from .seeds import LEAST, Flags, around, changing_partly, gone, halves, reach, seeds, together
-from .sharing import shared
+from .sharing import shared, without_ground
 from .smoothing import smoothed
 from .supposing import supposed
 from .tracking import Tracker
@@ -305,6 +305,7 @@ class Finder:
         """
         self._check()
         labels = shared(labelled.columns(), labelled.labels, bodies, self._footage, self._rng)
+        labels = without_ground(labelled.columns(), labels, self._footage)
         soft = [k for k, body in enumerate(bodies, 1) if body.bend is not None]
         kept = np.isin(labelled.labels, soft) | np.isin(labels, soft)
         labels = np.where(kept, labelled.labels, labels).astype(np.int32)

@@ -1,9 +1,8 @@
 """Which Gaussians belong to which body (`shared`): each that is near one is put both where it stands and where the body
 goes, and the frames tell what share of it goes along.
 
-Poses, colours and shapes stay as they are; only shares are trained. Shares of neighbours of like colours are drawn
-together, so that what no picture tells apart (the middle of a turntable's even top, and of the table under it) follows
-what looks as it does.
+Poses, colours and shapes stay as they are; only shares are trained. Shares of neighbours are drawn together, so that
+those that no picture tells apart (white before white) follow the others.
 """
 
 from __future__ import annotations
@@ -19,6 +18,7 @@ from ...harmonics import SH_C0
 from ...render.cpu import gradient
 from .bodies import Body, Columns, Labelled, placed
 from .footage import Footage
+from .seeds import gone, weights
 from .tracking import unlike
 
 F32 = NDArray[np.float32]
@@ -29,11 +29,14 @@ NEAR = 4.0  # pixels, at the distance of the cameras' radius: as near to a body 
 MEMBER, OTHER = 1.0, -1.0  # logits of the shares at the start: of what was taken for the body's, and of what is near
 STEPS = 160
 RATE = 0.12
-NEIGHBOURS = 12
-ALIKE = 0.1  # difference of colours from which neighbours hardly count
-_LEAST = 1e-3  # how much they count then
+NEIGHBOURS = 6
 DRAWN = 0.06  # how far a logit is drawn towards the mean of its neighbours at each step
 QUIET = 0.1  # of the typical gradient: smaller ones count less
+ALIKE = 0.1  # colours that differ by so much are as unlike as places that are `NEAR` apart
+SEEN = 1.0  # pixels: what the first pictures show less of is not told by them
+UNCHANGED = 0.3  # share of its pixels up to which something is as at first
+AROUND = 16  # neighbours in place and colour that are asked
+ROUNDS = 5  # from the edge of what looks alike inwards
 DENSEST = 0.98  # opacity beyond which a Gaussian is not divided more finely
 MOVED = 1.0  # pixels: frames in which no body has gone so far tell nothing
 
@@ -41,12 +44,11 @@ MOVED = 1.0  # pixels: frames in which no body has gone so far tell nothing
 @dataclass(frozen=True, eq=False)
 class _Shares:
     """Gaussians that may be of a body: `rows` of the columns, `body` number of each, `near` rows of their neighbours in
-    `rows`, `[n, NEIGHBOURS]`, `alike` how much each of these counts, by its colour; they sum to one."""
+    `rows`, `[n, NEIGHBOURS]`."""
 
     rows: I64
     body: NDArray[np.int32]
     near: I64
-    alike: F64
 
 
 def shared(
@@ -67,10 +69,37 @@ def shared(
         first, second = 0.9 * first + 0.1 * slope, 0.99 * second + 0.01 * slope**2
         size = np.sqrt(second / (1 - 0.99**k))
         logits = logits - RATE * first / (1 - 0.9**k) / (size + QUIET * np.sqrt((size**2).mean()) + 1e-30)
-        logits = logits + DRAWN * ((logits[candidates.near] * candidates.alike).sum(axis=1) - logits)
+        logits = logits + DRAWN * (logits[candidates.near].mean(axis=1) - logits)
     found = labels.copy()
     found[candidates.rows] = np.where(logits > 0, candidates.body, 0)
     return found
+
+
+def without_ground(columns: Columns, labels: NDArray[np.int32], footage: Footage) -> NDArray[np.int32]:
+    """`[N]` labels without what lies under a body or beside it, and looks the same whether it goes along or stands.
+
+    The even top of the table under a vase that turns: its pixels change at no time, and what is nearest to it, in place
+    and colour, stands still.
+    """
+    flags = ~gone(columns, footage, UNCHANGED).any(axis=1) & (labels > 0)
+    rows = np.flatnonzero(flags & (_weight(columns, footage) > SEEN))
+    if not len(rows):
+        return labels
+    reach = NEAR * footage.radius / footage.cameras[0].fx
+    alike = np.concatenate([columns[0] / reach, columns[4][:, 0] * SH_C0 / ALIKE], axis=1)
+    _, near = cKDTree(alike).query(alike[rows], k=min(AROUND + 1, len(alike)))
+    found = labels.copy()
+    for _ in range(ROUNDS):
+        found[rows] = np.where((found[near[:, 1:]] > 0).mean(axis=1) < 0.5, 0, found[rows])
+    return found
+
+
+def _weight(columns: Columns, footage: Footage) -> F64:
+    """`[N]` blending weight of each Gaussian in the pictures of the first time, pixels."""
+    total = np.zeros(len(columns[0]))
+    for camera in footage.cameras:
+        total += weights(columns, camera, [np.ones((camera.height, camera.width), bool)])[:, 0]
+    return total
 
 
 def shown_later(labelled: Labelled, bodies: list[Body], footage: Footage, rng: np.random.Generator) -> None:
@@ -120,16 +149,12 @@ def _candidates(columns: Columns, labels: NDArray[np.int32], footage: Footage) -
     """What belongs to a body, or is near it at the start."""
     members = np.flatnonzero(labels > 0)
     if not len(members):
-        return _Shares(members, np.zeros(0, np.int32), np.zeros((0, 1), np.int64), np.zeros((0, 1)))
+        return _Shares(members, np.zeros(0, np.int32), np.zeros((0, 1), np.int64))
     away, nearest = cKDTree(columns[0][members]).query(columns[0])
     rows = np.flatnonzero((labels > 0) | (away < NEAR * footage.radius / footage.cameras[0].fx))
     body = np.where(labels[rows] > 0, labels[rows], labels[members[nearest[rows]]]).astype(np.int32)
     _, near = cKDTree(columns[0][rows]).query(columns[0][rows], k=min(NEIGHBOURS + 1, len(rows)))
-    near = near.reshape(len(rows), -1)[:, 1:] if len(rows) > 1 else near.reshape(1, 1)
-    colors = columns[4][rows, 0].astype(np.float64) * SH_C0
-    apart = np.linalg.norm(colors[near] - colors[:, None], axis=2)
-    alike = np.exp(-((apart / ALIKE) ** 2)) + _LEAST
-    return _Shares(rows, body, near, alike / alike.sum(axis=1, keepdims=True))
+    return _Shares(rows, body, near.reshape(len(rows), -1)[:, 1:] if len(rows) > 1 else near.reshape(1, 1))
 
 
 def _slope(

@@ -33,7 +33,7 @@ from scenewright.gaussians.motion.fitting.finding import Finder
 from scenewright.gaussians.motion.fitting.footage import Footage
 from scenewright.gaussians.motion.fitting.rolling import Ball, rolling, sphere
 from scenewright.gaussians.motion.fitting.seeds import seeds
-from scenewright.gaussians.motion.fitting.sharing import shared, shown_later
+from scenewright.gaussians.motion.fitting.sharing import shared, shown_later, without_ground
 from scenewright.gaussians.motion.fitting.simplify import track_of
 from scenewright.gaussians.motion.fitting.start import changing, start_points
 from scenewright.gaussians.motion.fitting.stereo import Points, points_of, unprojected
@@ -139,6 +139,15 @@ def test_shares_tell_which_gaussians_go_along(swinging):
     found = shared(columns, rough, [body], footage, rng)
     assert (rough != labels).sum() > 70 and (found != labels).sum() <= 4  # those at its edge look alike
     assert (rough == kept).all()
+
+
+def test_what_looks_the_same_wherever_the_body_is_stays_if_what_is_around_it_does(swinging):
+    columns, labels, _, footage = swinging
+    x, z = columns[0][:, 0], columns[0][:, 2]
+    patch = (labels == 0) & (np.abs(x - 1.0) < 0.15) & (np.abs(z) < 0.15)  # of the wall beside the leaf
+    found = without_ground(columns, np.where(patch, 1, labels).astype(np.int32), footage)
+    assert patch.sum() >= 4 and (found[patch] == 0).all()
+    assert (found[labels > 0] == 1).mean() > 0.97
 
 
 def labelled_of(columns: Columns, labels: np.ndarray) -> Labelled:
