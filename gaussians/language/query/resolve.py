@@ -460,8 +460,7 @@ class Resolver:
             groups = tuple(a.group for a in self.anchors(owner) if a.group.id >= 0)
             return Whole(owner.anchors[0].text, query.text, groups, self._anchored_at(owner.anchors[0]))
         named = compounds.split(query.text)
-        known = self.encoder.vocabulary if self.encoder is not None else None
-        if named is None or (known is not None and len(known.head(query.text)[0]) > 1):
+        if named is None or (self.encoder is not None and len(self.encoder.vocabulary.head(query.text)[0]) > 1):
             return None
         found = self._anchored_at(Query(text=named.whole, pick="all"))
         if named.place and not found.chosen:
