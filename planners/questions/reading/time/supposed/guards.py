@@ -48,6 +48,8 @@ def _is_another(kind: str, said: Said, plain: str) -> bool:
         return True
     if kind == "when_reaches" and _CROSSED.search(plain):
         return True
+    if said.y and _GOES_ROUND.search(said.rest):
+        return True  # "does the car drive around the table" asks for no touch
     several = any(word in NUMBERS and word != "one" for word in said.x.split())
     until = kind != "when_stops" and _UNTIL_WHEN.search(plain) is not None  # "until what second does it turn"
     if kind.startswith("when_") and (until or (several and ALL_OF.match(said.x) is None)):
@@ -135,6 +137,7 @@ _EACH_SECOND = re.compile(r" (?:per|a|each|every) (?:second|minute)(?= )")
 _FROM_WHEN = re.compile(r"\b(?:from|since|until|till|to) (?:when|the moment)\b")  # a time without a mark
 _A_CLAUSE = re.compile(r"\b(?:while|whilst|once (?:it|the|has|have|had|is|are|was))\b")  # the same, of what happens
 _CROSSED = re.compile(r"\b(?:cross\w*|passed|past|through|over|across)\b")
+_GOES_ROUND = re.compile(r"\b(?:driv|go|walk|roll|run|mov|circl|orbit|travel|march)\w* (?:a?round)\b")
 _UNTIL_WHEN = re.compile(r"\b(?:until|till|up to) (?:what|which|when)\b")
 _WHICH_PLACE = re.compile(
     r"\b(?:(?:up)?on|in|at|against|by|to|onto|over|next to|beside|near|close to) (?:the )?(?:what|which) "
