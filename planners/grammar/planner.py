@@ -45,7 +45,7 @@ from .timing.judging import Judge, wording_of
 from .timing.keeping import Kept, held, without_kept
 from .timing.marked.kinds import SURE
 from .timing.reading import TimeReader, is_misread, may_be_timed
-from .timing.sending import behind, sent, without_then
+from .timing.sending import behind, in_its_place, sent, without_then
 from .timing.spoken import written
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
@@ -181,6 +181,8 @@ def _understand(cleaned: str, previous: str | None, scene: Observation | None = 
 
     Args, raises: as `_read_whole`.
     """
+    if scene is not None and (opened := in_its_place(cleaned, _thing, scene.movement)):
+        return _Outcome(opened, antecedent="", plainly=False)
     said, then = without_then(cleaned)
     outcome = _read_whole(said, previous, scene)
     if scene is None:

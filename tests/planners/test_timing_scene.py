@@ -199,3 +199,16 @@ def test_nothing_is_done_of_half_a_wish(text: str) -> None:
 def test_what_turns_the_wrong_way_is_mirrored(text: str) -> None:
     (op,) = planned(text)
     assert op["change"] == "mirror"
+
+
+def test_what_opens_in_the_place_of_another_does_so_in_its_time() -> None:
+    opened, closed, stopped = planned(
+        "The top one is too high for them, so pull out the bottom drawer instead of the top one."
+    )
+    assert (opened["change"] if "change" in opened else "open", closed["change"], stopped["change"]) == (
+        "open",
+        "close",
+        "stop",
+    )
+    assert [op["target"]["pick"] for op in (opened, closed, stopped)] == ["lowest", "lowest", "highest"]
+    assert [op["when"]["during"]["state"] for op in (opened, closed)] == ["opening", "closing"]

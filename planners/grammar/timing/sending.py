@@ -1,5 +1,5 @@
 """How what moves by itself goes on: where it is sent ("send the robot to the toy car"; "move the robot to the toy car"
-shifts all of its way), and what it does "then"."""
+shifts all of its way), what it does "then", and what opens in its place."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....tools.when import During, When
+from ...plan import Movement
 from .clauses import MOVING
 from .command import Fields
 
@@ -66,3 +67,36 @@ def sent(cleaned: str, ops: Sequence[Fields], moves: Callable[[Query], bool | No
     if not _UP_TO.search(cleaned.lower()) or len(place["anchors"]) != 1:
         return ({**ops[0], "when": When()},)
     return ({"op": "move", "target": ops[0]["target"], "when": When(), "toward": place["anchors"][0]},)
+
+
+_IN_ITS_PLACE = re.compile(  # "pull out the bottom drawer instead of the top one"
+    r"\b(?:open|pull|slide|draw|have|let|make)s? (?:out )?"
+    r"(?P<x>the (?:[a-z]+ )?(?P<noun>drawer|door|lid|hatch|flap))\b[^.;]*?"
+    r"\b(?:instead of|in place of|rather than|and not) the (?P<y>[a-z]+)(?: one| (?P=noun))?\b"
+)
+
+
+def in_its_place(
+    cleaned: str, thing: Callable[[str], Query | None], movement: Callable[[Query], Movement | None]
+) -> tuple[Fields, ...]:
+    """The operations of a wish that one thing opens, and closes, when another one does by itself, which stays shut.
+
+    None of other wishes.
+
+    Args:
+        thing: reads a phrase for things.
+        movement: how what a query names moves; None if it does not.
+    """
+    if (said := _IN_ITS_PLACE.search(cleaned.lower())) is None:
+        return ()
+    own, other = thing(said["x"]), thing(f"the {said['y']} {said['noun']}")
+    if own is None or other is None or own == other or movement(own) is not None:
+        return ()
+    if (moves := movement(other)) is None or moves.turns:
+        return ()
+    ways = {"open": "opening", "close": "closing"} if len(moves.edges) > 2 else {"open": "opening"}
+    opened = tuple(
+        {"op": "articulate", "target": own, "change": change, "when": When(during=During(state=state, of=other))}
+        for change, state in ways.items()
+    )
+    return (*opened, {"op": "pace", "target": other, "change": "stop"})
