@@ -205,7 +205,7 @@ def test_what_opens_in_the_place_of_another_does_so_in_its_time() -> None:
     opened, closed, stopped = planned(
         "The top one is too high for them, so pull out the bottom drawer instead of the top one."
     )
-    assert (opened["change"] if "change" in opened else "open", closed["change"], stopped["change"]) == (
+    assert (opened.get("change", "open"), closed["change"], stopped["change"]) == (
         "open",
         "close",
         "stop",
