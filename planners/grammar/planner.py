@@ -45,7 +45,7 @@ from .timing.judging import Judge, wording_of
 from .timing.keeping import Kept, held, without_kept
 from .timing.marked.kinds import SURE
 from .timing.reading import TimeReader, is_misread, may_be_timed
-from .timing.sending import behind, in_its_place, sent, without_then
+from .timing.sending import behind, in_its_place, require_no_loss, sent, without_then
 from .timing.spoken import written
 from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
@@ -185,10 +185,11 @@ def _understand(cleaned: str, previous: str | None, scene: Observation | None = 
         return _Outcome(opened, antecedent="", plainly=False)
     said, then = without_then(cleaned)
     outcome = _read_whole(said, previous, scene)
+    require_no_loss(said, outcome.ops)
     if scene is None:
         return outcome
     ops = sent(said, tuple(named_there(outcome.ops, scene.lacks)), scene.moves)
-    return replace(outcome, ops=behind(ops, scene.moves) if then else ops)
+    return replace(outcome, ops=behind(ops, scene.movement) if then else ops)
 
 
 def _read_whole(cleaned: str, previous: str | None, scene: Observation | None) -> _Outcome:

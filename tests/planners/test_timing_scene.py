@@ -212,3 +212,31 @@ def test_what_opens_in_the_place_of_another_does_so_in_its_time() -> None:
     )
     assert [op["target"]["pick"] for op in (opened, closed, stopped)] == ["lowest", "lowest", "highest"]
     assert [op["when"]["during"]["state"] for op in (opened, closed)] == ["opening", "closing"]
+
+
+@pytest.mark.parametrize(
+    ("text", "relation"),
+    [("send the ball to a corner", "corner"), ("send the robot to the middle of the room", "center")],
+)
+def test_what_is_sent_to_a_place_without_a_thing_goes_there(text: str, relation: str) -> None:
+    (op,) = planned(text)
+    assert (op["when"], op["place"]["relation"]) == ({}, relation)
+
+
+@pytest.mark.parametrize(
+    ("text", "operation"),
+    [
+        ("Make the bottom drawer blue, and not the top one.", "recolor"),
+        ("put the candle on the table at 2 s", "move"),
+        ("turn the lamp on the table red at 2 s", "recolor"),
+    ],
+)
+def test_words_for_openings_and_lamps_are_no_other_edits(text: str, operation: str) -> None:
+    (op,) = planned(text)
+    assert op["op"] == operation and op["target"]["text"] in ("drawer", "candle", "lamp")
+
+
+def test_what_is_raised_and_dropped_is_not_deleted() -> None:
+    assert planned("lift the ball by 1 m and then drop it") == []
+    raised, dropped = planned("raise the ball by 1 m at 1 s, then drop it")
+    assert (raised["direction"], dropped["direction"], dropped["distance"]) == ("up", "down", raised["distance"])

@@ -41,22 +41,23 @@ def save(scene: Scene, path: str | Path, force: bool = False) -> Path | None:
 
 
 def _check_motion(scene: Scene) -> None:
-    """Check that each part of the motion holds some Gaussian of the scene. Ids of Gaussians that were removed are left
-    out when it is written.
+    """Check that the motion holds some Gaussian of the scene.
+
+    Parts of it whose Gaussians were removed are left out when it is written.
 
     Raises:
-        UserError: a part holds none, so that it would be lost.
+        UserError: it holds none, so that all of it would be lost.
     """
     motion = scene.motion
     if motion is None or not len(scene.cloud):
         return
     there = np.sort(scene.cloud.ids.cpu().numpy())
-    parts = [(f"the track {track.name or i}", track.runs) for i, track in enumerate(motion.tracks)]
-    parts += [(f"the look {i}", runs_of(look.ids)) for i, look in enumerate(motion.looks)]
-    parts += [(f"the residual {i}", runs_of(residual.ids)) for i, residual in enumerate(motion.residuals)]
-    for what, runs in parts:
-        if not (np.searchsorted(there, runs[:, 1]) > np.searchsorted(there, runs[:, 0])).any():
-            raise UserError(
-                f"{what} of the motion holds no Gaussian of this scene (its ids go from {there[0]} to {there[-1]}), so "
-                "that it would be lost; make it of ids of scene.cloud.ids, or leave it out of the motion"
-            )
+    parts = [track.runs for track in motion.tracks]
+    parts += [runs_of(part.ids) for part in (*motion.looks, *motion.residuals)]
+    if parts and not any(
+        (np.searchsorted(there, runs[:, 1]) > np.searchsorted(there, runs[:, 0])).any() for runs in parts
+    ):
+        raise UserError(
+            "the motion holds no Gaussian of this scene, so that it would be lost; make it of ids of scene.cloud.ids, "
+            "or leave it out: scene.replace(motion=None)"
+        )

@@ -289,6 +289,8 @@ class TimeReader:
 
     def _is_plain(self, cleaned: str) -> bool:
         """Whether the rest of the grammar understands an instruction."""
+        if _LETS.match(cleaned.lower()):
+            return False  # "let the ball roll to the sofa" moves no ball roll
         with suppress(Refusal, UserError):
             return not is_misread(self._understand(cleaned))
         return False
@@ -703,8 +705,6 @@ def is_misread(ops: Sequence[Fields]) -> bool:
     names += [str(op.get("asset", "")) for op in ops]
     if any(_TIME_NOUNS & set(str(op.get("asset", "")).split()) for op in ops):
         return True  # "put a pause of 1 s into it"
-    if any((held := _DEED.match(name)) and kinds.find(name) is None and kinds.find(held["thing"]) for name in names):
-        return True  # "let the ball roll to the sofa"
     last = [name.split()[-1] for name in names if name.split()]
     return any(word in _NO_NAMES or (_is_verb(word) and not is_known(word)) for word in last)
 
@@ -716,9 +716,8 @@ def _is_strange(ops: Sequence[Fields]) -> bool:
     return any(len(w) > 1 and (not is_known(w[-1]) or AUXILIARIES & set(w)) for w in words)
 
 
-_DEED = re.compile(
-    r"^(?P<thing>.+(?<!toilet)(?<!bread)(?<!paper)(?<!kitchen)) "
-    r"(?:roll|drive|walk|slide|fall|drop|spin|turn|swing|move|go|run|ride|drift)$"
+_LETS = re.compile(
+    r"^(?:please )?(?:let|have) .*\b(?:roll|drive|walk|slide|fall|drop|spin|turn|swing|move|go|run|ride|drift)\b"
 )
 _TIME_NOUNS = bag("pause break delay stop halt faster slower second seconds")
 _NO_NAMES = bag(

@@ -9,6 +9,7 @@ from ....gaussians import late_re as re
 from ....gaussians.language.query.query import Query
 from ....tools.when import During, When
 from ...plan import Movement
+from ..parsing import Refusal
 from .clauses import MOVING
 from .command import Fields
 
@@ -17,14 +18,13 @@ _SENT = re.compile(
     r"(?:(?:send|direct|steer|guide|route|dispatch) (?:the|my|our|this|that|him|her|it|them)\b|"
     r"(?:let|have|make) (?:the|my|our|this|that|him|her|it|them) (?:[a-z]+ ){0,3}?(?:go|come|head|travel|return)\b)"
 )
-
-
 _UP_TO = re.compile(r"\b(?:to|towards?|up to|over to) (?!the (?:top|left|right|front|back|other)\b)")
 _THEN = re.compile(
     r"^(?:and )?(?:then|after that|after this|afterwards|subsequently|next)\b"
     r"(?! (?:to|door|time|one|frame))[ ,]*(?=\w)",
     re.IGNORECASE,
 )
+_NEAR = 0.05  # seconds before the end up to which something goes on to it
 _GOES = ("move", "follow", "orbit", "spin", "tip", "sway", "articulate")
 
 
@@ -34,23 +34,40 @@ def without_then(cleaned: str) -> tuple[str, bool]:
     return shorter, shorter != cleaned
 
 
-def behind(ops: Sequence[Fields], moves: Callable[[Query], bool | None]) -> tuple[Fields, ...]:
+def behind(ops: Sequence[Fields], movement: Callable[[Query], Movement | None]) -> tuple[Fields, ...]:
     """Operations that begin when what they are about has moved; where that stands still, when all that moves has.
 
-    Those with a time of their own, and those about something else than a movement, stay as they are.
+    Those with a time of their own, those about something else than a movement, and those behind what goes on to the end
+    of the scene stay as they are.
 
     Args:
-        moves: as `sent`.
+        movement: how what a query names moves; None if it does not.
     """
     if len(ops) != 1 or ops[0]["op"] not in _GOES:
         return tuple(ops)
     when = ops[0].get("when")
     timed = when is not None and (when.start, when.stop, when.during) != (None, None, None)
-    if timed or (when is None and ops[0]["op"] == "move") or not moves(MOVING):
+    if timed or (when is None and ops[0]["op"] == "move"):
         return tuple(ops)
-    of = None if moves(ops[0]["target"]) else MOVING
-    after = During(state="moving", of=of, part="after")
+    own = movement(ops[0]["target"])
+    moves = own or movement(MOVING)
+    if moves is None or (moves.stop > moves.end - _NEAR and (own is None or own.turns)):
+        return tuple(ops)
+    after = During(state="moving", of=None if own else MOVING, part="after")
     return ({**ops[0], "when": (when or When()).model_copy(update={"during": after})},)
+
+
+def require_no_loss(cleaned: str, ops: Sequence[Fields]) -> None:
+    """Nothing, unless what is raised is to be dropped and would be deleted.
+
+    Raises:
+        Refusal: it would; with what to say.
+    """
+    lifted = any(op["op"] == "move" and op.get("direction") == "up" for op in ops[:-1])
+    if lifted and ops[-1]["op"] == "delete" and re.search(r"\bdrop", cleaned.lower()):
+        raise Refusal(
+            "what is raised is dropped in its time: say when it is raised, as in 'raise it by 1 m at 1 s, then drop it'"
+        )
 
 
 def sent(cleaned: str, ops: Sequence[Fields], moves: Callable[[Query], bool | None]) -> tuple[Fields, ...]:
@@ -64,15 +81,15 @@ def sent(cleaned: str, ops: Sequence[Fields], moves: Callable[[Query], bool | No
     place = ops[0].get("place")
     if place is None or not moves(ops[0]["target"]):
         return tuple(ops)
-    if not _UP_TO.search(cleaned.lower()) or len(place["anchors"]) != 1:
+    if not _UP_TO.search(cleaned.lower()) or len(place.get("anchors", ())) != 1:
         return ({**ops[0], "when": When()},)
     return ({"op": "move", "target": ops[0]["target"], "when": When(), "toward": place["anchors"][0]},)
 
 
 _IN_ITS_PLACE = re.compile(  # "pull out the bottom drawer instead of the top one"
-    r"\b(?:open|pull|slide|draw|have|let|make)s? (?:out )?"
-    r"(?P<x>the (?:[a-z]+ )?(?P<noun>drawer|door|lid|hatch|flap))\b[^.;]*?"
-    r"\b(?:instead of|in place of|rather than|and not) the (?P<y>[a-z]+)(?: one| (?P=noun))?\b"
+    r"\b(?:open|pull|slide|draw)(?: out| open)? "
+    r"(?P<x>the (?:[a-z]+ )?(?P<noun>drawer|door|lid|hatch|flap))(?: out| open)? "
+    r"(?:instead of|in place of|rather than|and not) the (?P<y>[a-z]+)(?: one| (?P=noun))?[ .!]*$"
 )
 
 

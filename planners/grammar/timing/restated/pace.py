@@ -38,7 +38,8 @@ RULES: Rules = (
     # what is switched off
     (r"^(?:kill|cut) (?P<np>(?:the |that |this |my )?(?:[a-z]+ )?(?:fan|wheel|windmill|propeller|rotor|carousel|motor|"
      r"engine|machine))\b(?! (?:in|into|out|off)\b)", r"stop \g<np>"),
-    (rf"^(?P<v>turn|switch|put|shut) (?P<np>{_LIGHT}) (?P<how>off|on)\b", r"\g<v> \g<how> \g<np>"),
+    (rf"^(?P<v>turn|switch|shut) (?P<np>{_LIGHT}) (?P<how>off|on)\b(?! (?:the|a|an|its|my|our|that|this|top)\b)",
+     r"\g<v> \g<how> \g<np>"),
     (rf"^(?P<np>{_LIGHT}) (?:(?:should|must|shall|is to|has to) )?(?:goes|go|turns?|switch(?:es)?) "
      r"(?:dark|out|off|black)\b", r"turn off \g<np>"),
     (rf"^(?P<np>{_LIGHT}) (?:(?:should|must|shall|is to|has to) )?(?:comes|come|goes|go|turns?|switch(?:es)?|lights?) "
