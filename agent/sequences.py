@@ -12,12 +12,12 @@ from ..gaussians.errors import FileError, UserError
 from .pictures.film import PATTERN
 from .pictures.times import times_within
 
-MOST_RATE = 10_000  # files a second
-
 if TYPE_CHECKING:
     from ..gaussians.files import Report
     from ..gaussians.motion.sequence import Found
     from ..gaussians.scene import Scene
+
+MOST_RATE = 10_000  # files a second
 
 
 def is_pattern(path: Path) -> bool:

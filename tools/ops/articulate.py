@@ -141,9 +141,7 @@ class Articulate(TargetedOp):
             return replace(own, angles=own.angles * (goal / most)), told
         return replace(own, times=np.array([scene.motion.start]), angles=np.array([goal])), "it does not move any more"
 
-    def _timed(
-        self, scene: Scene, own: Track, selection: Selection, context: Context
-    ) -> tuple[Track, str, float]:  # fmt: skip
+    def _timed(self, scene: Scene, own: Track, selection: Selection, context: Context) -> tuple[Track, str, float]:
         """The track of what opens by itself that moves otherwise from a time on, a note, and when that ends.
 
         Raises:

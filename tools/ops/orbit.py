@@ -106,12 +106,8 @@ def _tracks(circling: Circling, start: Start, span: Span) -> tuple[tuple[Track, 
     straight way to a circle that goes through less, and that. And notes."""
     begin, stop = span
     radius, left = circling.best()
-    way, circle, tracks, notes = (
-        radius - circling.radius,
-        radius * abs(circling.angle),
-        tuple[Track, ...](),
-        list[str](),
-    )
+    way, circle = radius - circling.radius, radius * abs(circling.angle)
+    tracks, notes = tuple[Track, ...](), list[str]()
     if way:
         there = begin + (stop - begin) * abs(way) / (abs(way) + circle)
         tracks = (Track.slide(start.ids, (begin, there), (0.0, way), circling.out, smooth=False),)

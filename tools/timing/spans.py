@@ -52,9 +52,7 @@ def longer_notes(whole: Length, stop: float) -> tuple[str, ...]:
     return (f"the scene lasts {stop - whole.start:g} s now",) if longer else ()
 
 
-def spans_of(
-    when: When | None, scene: Scene, target: Selection, context: Context, onward: bool = False
-) -> list[Span]:  # fmt: skip
+def spans_of(when: When | None, scene: Scene, target: Selection, context: Context, onward: bool = False) -> list[Span]:
     """The spans that are meant, in order, seconds; open ends are infinite. At all times without a `When`.
 
     Args:
