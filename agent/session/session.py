@@ -792,14 +792,20 @@ class Session:
             UserError: the file exists, or its suffix is of no format that can be written.
             FileError: it cannot be written.
         """
+        field = self._written(self.scene, path, force, names)
+        self._record("save", session_log.save_fields, path, self._history.present)
+        return field
+
+    @staticmethod
+    def _written(scene: Scene, path: str | Path, force: bool, names: bool) -> Path | None:
+        """Write a scene to a file, with its language field if it has one and `names`; the path of that, or None."""
         from ...gaussians import files
         from ...gaussians.language.field import saving
 
-        field = saving.save(self.scene, path, force=force) if names else None
-        if not names:
-            files.save(self.scene, path, force=force)
-        self._record("save", session_log.save_fields, path, self._history.present)
-        return field
+        if names:
+            return saving.save(scene, path, force=force)
+        files.save(scene, path, force=force)
+        return None
 
     def close(self) -> None:
         """Close the log; closing twice is harmless."""

@@ -187,18 +187,12 @@ class TiledSession(Session):
             UserError: it does not fit, or as `Session.save`.
             FileError: as `Session.save`.
         """
-        from ...gaussians import files
-        from ...gaussians.language.field import saving
         from ...gaussians.tiles.exporting import is_streamed, write_field, write_ply
 
         if is_streamed(Path(path)):
             write_ply(self.tiles, Path(path), force)
             return write_field(self.tiles, Path(path)) if names else None
-        whole = window.everything(self.tiles, self.memory).scene
-        if names:
-            return saving.save(whole, path, force=force)
-        files.save(whole, path, force=force)
-        return None
+        return self._written(window.everything(self.tiles, self.memory).scene, path, force, names)
 
     def undo(self) -> Result:
         """Undo the last edit of the folder.

@@ -185,7 +185,7 @@ class Articulate(TargetedOp):
         return late, late + end - start  # what is shut closes when it has opened
 
     def _require_movable(self, now: float, goal: float, most: float, start: float) -> None:
-        """Nothing, if what opens by itself can be opened or closed from a time on.
+        """Refuse to open or close what opens by itself from a time at which it cannot be.
 
         Args:
             now, goal: how far it is open then, and is to be; radians or scene units.

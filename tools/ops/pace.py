@@ -302,10 +302,7 @@ class Pace(TargetedOp):
         """Which old time is shown when, where one movement gets another time; those behind it keep theirs if they
         can."""
         assert self.when is not None
-        low, high = (
-            max(part[0], span[0]),
-            min(part[1], span[1]),
-        )  # an end may be open
+        low, high = max(part[0], span[0]), min(part[1], span[1])  # an end may be open
         before = max((b for _, b in movements if b <= low + _BESIDE), default=-math.inf)
         behind = min((a for a, b in movements if b > high + _BESIDE), default=math.inf)
         begin, lasting = low, high - low

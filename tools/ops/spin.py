@@ -100,8 +100,8 @@ class Spin(TargetedOp):
             lasts = _LASTS if not whole.known or begin >= whole.stop - SHORTEST else 0.0
             end = max(end, float(made.times[-1]) if made.kind == "hinge" else begin + lasts)
         after = with_tracks(scene, tracks, end)
-        told = longer_notes(whole, end) if whole.known else (f"the scene lasts {end:g} s now",)
-        return Outcome(after, touched=torch.cat(touched).sort().values, notes=told)
+        notes = longer_notes(whole, end, anyway=True)
+        return Outcome(after, touched=torch.cat(touched).sort().values, notes=notes)
 
     def _rate(self, lasting: float) -> float:
         """Turns a second."""

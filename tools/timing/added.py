@@ -18,7 +18,7 @@ from ..carried_objects import with_carried
 from ..operation import Context, Outcome
 from ..placement.bodies import Body, bodies_of
 from ..when import When
-from .spans import Span, length_of, spans_of
+from .spans import Span, length_of, longer_notes, spans_of
 
 I64 = NDArray[np.int64]
 
@@ -68,7 +68,7 @@ def with_movement(
         tracks += made if isinstance(made, tuple) else (made,)
     stop = max([whole.stop, *(_end(t, span[1]) for t in tracks)])
     motion = composed(scene.motion, Motion(tuple(tracks), (), (), whole.start, stop))
-    notes = (f"the scene lasts {stop:g} s now",) if stop > whole.stop + 1e-3 else ()
+    notes = longer_notes(whole, stop, anyway=True)
     return Outcome(scene.replace(motion=motion), touched=torch.cat(touched).sort().values, notes=notes)
 
 

@@ -41,14 +41,15 @@ def length_of(scene: Scene) -> Length:
     return Length(0.0, 0.0, False) if motion is None else Length(motion.start, motion.stop, True)
 
 
-def longer_notes(whole: Length, stop: float) -> tuple[str, ...]:
+def longer_notes(whole: Length, stop: float, anyway: bool = False) -> tuple[str, ...]:
     """A note that a scene with motion has become longer, if it has.
 
     Args:
         whole: its time before.
         stop: its end now, seconds.
+        anyway: whether a scene that stood still before is told of, too.
     """
-    longer = whole.known and stop > whole.stop + SHORTEST
+    longer = (whole.known or anyway) and stop > whole.stop + SHORTEST
     return (f"the scene lasts {stop - whole.start:g} s now",) if longer else ()
 
 
@@ -87,10 +88,10 @@ def spans_of(when: When | None, scene: Scene, target: Selection, context: Contex
 
 
 def require_within(spans: list[Span], scene: Scene) -> None:
-    """Nothing, if the first span begins before a scene with motion ends, or as it does.
+    """Refuse spans of which the first begins later than a scene with motion ends.
 
     Raises:
-        InstructionError: it begins later.
+        InstructionError: it does.
     """
     whole, first = length_of(scene), spans[0][0]
     if whole.known and first > whole.stop:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...errors import UserError
 from ...files import save as save_file
-from ...motion.runs import runs_of
+from ...motion.motion import mentioned_ids
 from ...scene import Scene
 from .store import column_fits, save_field
 
@@ -51,12 +51,8 @@ def _check_motion(scene: Scene) -> None:
     motion = scene.motion
     if motion is None or not len(scene.cloud):
         return
-    there = np.sort(scene.cloud.ids.cpu().numpy())
-    parts = [track.runs for track in motion.tracks]
-    parts += [runs_of(part.ids) for part in (*motion.looks, *motion.residuals)]
-    if parts and not any(
-        (np.searchsorted(there, runs[:, 1]) > np.searchsorted(there, runs[:, 0])).any() for runs in parts
-    ):
+    parts = (*motion.tracks, *motion.looks, *motion.residuals)
+    if parts and not np.isin(mentioned_ids(motion), scene.cloud.ids.cpu().numpy()).any():
         raise UserError(
             "the motion holds no Gaussian of this scene, so that it would be lost; make it of ids of scene.cloud.ids, "
             "or leave it out: scene.replace(motion=None)"

@@ -68,9 +68,8 @@ def belongs(field: LanguageField, group: Group, whole: Whole) -> bool:
     """Whether a group, which may have the name of the part, is a part of one of the things."""
     if group.id in whole.ids:
         return False
-    said = compounds.split(group.label) if group.label_score >= MIN_LABEL_SCORE else None
-    if said is not None and said.part == whole.part:
-        return compounds.same_thing(said.whole, whole.name)
+    if (said := _said_of(group, whole.part)) is not None:
+        return compounds.same_thing(said, whole.name)
     if not whole.groups or _is_another(group, whole.part):
         return False
     if _descends(field, group, whole.ids):
@@ -83,8 +82,14 @@ def belongs(field: LanguageField, group: Group, whole: Whole) -> bool:
 
 def _is_called(group: Group, whole: Whole) -> bool:
     """Whether the label of a group names the part of the thing, as "refrigerator door" does for "fridge door"."""
+    said = _said_of(group, whole.part)
+    return said is not None and compounds.same_thing(said, whole.name)
+
+
+def _said_of(group: Group, part: str) -> str | None:
+    """The thing whose part the label of a group names: "wardrobe" of a "wardrobe door"; None if it names none."""
     said = compounds.split(group.label) if group.label_score >= MIN_LABEL_SCORE else None
-    return said is not None and said.part == whole.part and compounds.same_thing(said.whole, whole.name)
+    return said.whole if said is not None and said.part == part else None
 
 
 def _is_another(group: Group, part: str) -> bool:

@@ -85,13 +85,17 @@ def without_ground(columns: Columns, labels: NDArray[np.int32], footage: Footage
     rows = np.flatnonzero(flags & (_weight(columns, footage) > SEEN))
     if not len(rows):
         return labels
-    reach = NEAR * footage.radius / footage.cameras[0].fx
-    alike = np.concatenate([columns[0] / reach, columns[4][:, 0] * SH_C0 / ALIKE], axis=1)
+    alike = np.concatenate([columns[0] / _across(footage, NEAR), columns[4][:, 0] * SH_C0 / ALIKE], axis=1)
     _, near = cKDTree(alike).query(alike[rows], k=min(AROUND + 1, len(alike)))
     found = labels.copy()
     for _ in range(ROUNDS):
         found[rows] = np.where((found[near[:, 1:]] > 0).mean(axis=1) < 0.5, 0, found[rows])
     return found
+
+
+def _across(footage: Footage, pixels: float) -> float:
+    """How far some pixels are across at the distance of the cameras' radius, scene units."""
+    return pixels * footage.radius / footage.cameras[0].fx
 
 
 def _weight(columns: Columns, footage: Footage) -> F64:
@@ -131,7 +135,7 @@ def _rest(own: F32, body: Body, footage: Footage) -> int | None:
 
 def _away(own: F32, body: Body, footage: Footage) -> NDArray[np.bool_]:
     """`[T]` whether Gaussians of a body with means `[N, 3]` at first are then elsewhere."""
-    least = MOVED * footage.radius / footage.cameras[0].fx
+    least = _across(footage, MOVED)
     away = np.zeros(len(footage.times), bool)
     for t in range(len(away) if len(own) else 0):
         means, _ = body.placed(t, own, np.ones((len(own), 4), np.float32))
@@ -151,7 +155,7 @@ def _candidates(columns: Columns, labels: NDArray[np.int32], footage: Footage) -
     if not len(members):
         return _Shares(members, np.zeros(0, np.int32), np.zeros((0, 1), np.int64))
     away, nearest = cKDTree(columns[0][members]).query(columns[0])
-    rows = np.flatnonzero((labels > 0) | (away < NEAR * footage.radius / footage.cameras[0].fx))
+    rows = np.flatnonzero((labels > 0) | (away < _across(footage, NEAR)))
     body = np.where(labels[rows] > 0, labels[rows], labels[members[nearest[rows]]]).astype(np.int32)
     _, near = cKDTree(columns[0][rows]).query(columns[0][rows], k=min(NEIGHBOURS + 1, len(rows)))
     return _Shares(rows, body, near.reshape(len(rows), -1)[:, 1:] if len(rows) > 1 else near.reshape(1, 1))

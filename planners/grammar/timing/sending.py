@@ -16,9 +16,11 @@ from .command import Fields
 _SENT = re.compile(
     r"(?:^|[.!?;:,] |\b(?:please|then|and|just|could you|can you) )"
     r"(?:(?:send|direct|steer|guide|route|dispatch) (?:the|my|our|this|that|him|her|it|them)\b|"
-    r"(?:let|have|make) (?:the|my|our|this|that|him|her|it|them) (?:[a-z]+ ){0,3}?(?:go|come|head|travel|return)\b)"
+    r"(?:let|have|make) (?:the|my|our|this|that|him|her|it|them) (?:[a-z]+ ){0,3}?(?:go|come|head|travel|return)\b)",
+    re.IGNORECASE,
 )
-_UP_TO = re.compile(r"\b(?:to|towards?|up to|over to) (?!the (?:top|left|right|front|back|other)\b)")
+_UP_TO = re.compile(r"\b(?:to|towards?) (?!the (?:top|left|right|front|back|other)\b)", re.IGNORECASE)
+_DROPS = re.compile(r"\bdrop", re.IGNORECASE)
 _THEN = re.compile(
     r"^(?:and )?(?:then|after that|after this|afterwards|subsequently|next)\b"
     r"(?! (?:to|door|time|one|frame))[ ,]*(?=\w)",
@@ -58,13 +60,13 @@ def behind(ops: Sequence[Fields], movement: Callable[[Query], Movement | None]) 
 
 
 def require_no_loss(cleaned: str, ops: Sequence[Fields]) -> None:
-    """Nothing, unless what is raised is to be dropped and would be deleted.
+    """Refuse operations that delete what is raised and dropped.
 
     Raises:
-        Refusal: it would; with what to say.
+        Refusal: they do; with what to say instead.
     """
     lifted = any(op["op"] == "move" and op.get("direction") == "up" for op in ops[:-1])
-    if lifted and ops[-1]["op"] == "delete" and re.search(r"\bdrop", cleaned.lower()):
+    if lifted and ops[-1]["op"] == "delete" and _DROPS.search(cleaned):
         raise Refusal(
             "what is raised is dropped in its time: say when it is raised, as in 'raise it by 1 m at 1 s, then drop it'"
         )
@@ -76,12 +78,12 @@ def sent(cleaned: str, ops: Sequence[Fields], moves: Callable[[Query], bool | No
     Args:
         moves: whether what a query names moves; None if that cannot be told.
     """
-    if len(ops) != 1 or ops[0]["op"] != "move" or ops[0].get("when") is not None or not _SENT.search(cleaned.lower()):
+    if len(ops) != 1 or ops[0]["op"] != "move" or ops[0].get("when") is not None or not _SENT.search(cleaned):
         return tuple(ops)
     place = ops[0].get("place")
     if place is None or not moves(ops[0]["target"]):
         return tuple(ops)
-    if not _UP_TO.search(cleaned.lower()) or len(place.get("anchors", ())) != 1:
+    if not _UP_TO.search(cleaned) or len(place.get("anchors", ())) != 1:
         return ({**ops[0], "when": When()},)
     return ({"op": "move", "target": ops[0]["target"], "when": When(), "toward": place["anchors"][0]},)
 

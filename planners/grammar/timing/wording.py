@@ -11,6 +11,7 @@ from ..tagging.words import bag, split
 from ..vocabulary.quantities import NUMBERS
 from . import phrases
 from .asides import without_comparisons
+from .marked.names import with_ranked_noun
 from .restated.restating import restated
 from .sentences import folded
 from .verbs import SENSES, forms, has_form
@@ -158,7 +159,7 @@ def tidy(said: str) -> str:
     for _ in range(3):
         said = phrases.NOISE.sub("", said).strip(" ,.!?\n")
     said = _MANY_COMMAS.sub(" ,", said)
-    said = restated(without_comparisons(said))
+    said = restated(with_ranked_noun(without_comparisons(said)))
     for pattern, plain in phrases.RESTATED:
         said = pattern.sub(plain, said)
     said = folded(said)

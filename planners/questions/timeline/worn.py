@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ....gaussians.language.field.group_index import index_groups
 from ....gaussians.motion.motion import Look
@@ -26,14 +27,18 @@ def hiding(timeline: Timeline, group: int) -> list[Look]:
     return [look for look, _, gone in _shares(timeline, group) if gone > _MOST]
 
 
+def ids_of(timeline: Timeline, group: int) -> NDArray[np.int64]:
+    """The ids `[M]` of a group's Gaussians."""
+    table = timeline.scene.language
+    assert table is not None
+    return np.asarray(index_groups(timeline.scene.cloud).ids_of(table.leaves(group)).cpu().numpy())
+
+
 def _shares(timeline: Timeline, group: int) -> list[tuple[Look, float, float]]:
     """Each look with the share of a group's Gaussians that have it, and that are left out by it."""
-    motion, table = timeline.scene.motion, timeline.scene.language
-    assert motion is not None and table is not None
-    if not motion.looks:
-        return []
-    ids = index_groups(timeline.scene.cloud).ids_of(table.leaves(group)).cpu().numpy()
-    if not len(ids):
+    motion = timeline.scene.motion
+    assert motion is not None
+    if not motion.looks or not len(ids := ids_of(timeline, group)):
         return []
     found = []
     for look in motion.looks:

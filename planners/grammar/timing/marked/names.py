@@ -67,10 +67,15 @@ def with_nouns(text: str) -> str:
         unnamed = "drawer" if found[0].split()[-2] in _OF_DRAWERS else "one"
         return f"{found[0].removesuffix(' one')} {singular((before[-1:] or after[:1] or [unnamed])[0])}"
 
+    return _RANKED_ALONE.sub(noun, _ONE.sub(noun, with_ranked_noun(text)))
+
+
+def with_ranked_noun(text: str) -> str:
+    """A text with the noun of a ranked "one": "when the first book falls until the last one lands"."""
     ranked = _RANKED.search(text)
-    if ranked is not None and is_known(ranked["noun"]):
-        text = f"{text[: ranked.start('one')]}{ranked['noun']}{text[ranked.end('one') :]}"
-    return _RANKED_ALONE.sub(noun, _ONE.sub(noun, text))
+    if ranked is None or not is_known(ranked["noun"]):
+        return text
+    return f"{text[: ranked.start('one')]}{ranked['noun']}{text[ranked.end('one') :]}"
 
 
 def named(text: str, thing: Thing) -> tuple[str, ...]:

@@ -65,8 +65,8 @@ def reverse(slots: Slots) -> Iterator[Wanted]:
     if not back and slots.tell(_OTHER_WAY) and not slots.tell(_BACKWARDS):
         yield now(slots, f"let {slots.whom} turn the other way round")
         return
-    every = whose.text == "everything" or (not moment.told and slots.tell(_THE_FILM))
-    every |= not moment.told and slots.tell(_REWINDS_IT)
+    film = not moment.told and (slots.tell(_THE_FILM) or slots.tell(_REWINDS_IT))
+    every = whose.text == "everything" or film
     reverse = Wanted(pace(ALL_OF_IT if every else whose_of(slots), "reverse"), Moment(), None)
     if (
         moves is not None

@@ -5,8 +5,6 @@ from __future__ import annotations
 from .wording import EVENT, ING, PLAIN, Rules, S
 
 RULES: Rules = (
-    (r"(?P<x>\bthe (?:first|last|second|third) (?P<noun>book|ball|drawer|door|box|car|toy|cup|vase|bottle)\b.*"
-     r"\bthe (?:first|last|second|third)) one\b", r"\g<x> \g<noun>"),
     # where
     (r"(?: (?:across|over|along))? so (?:that )?(?:it|he|she|they) (?:ends? up|stands?|is|lands?|sits?) (?=(?:next "
      r"to|beside|by|near|at|in front of|behind|on|under) the )", " "),

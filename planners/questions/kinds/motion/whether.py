@@ -15,7 +15,7 @@ from ...survey import listed
 from ...timeline.asked import PLACES, Told, Untold, at, cap, during, kind, spoken, verb, within, yes_no
 from ...timeline.bodies import Body
 from ...timeline.happening import is_near, spans_of
-from .lamps import asks_of_light, is_lit
+from .lamps import is_lit, state_asked
 from .when import moment
 
 _SOME_TIME = re.compile(r"\b(?:finally|eventually|ultimately|afterwards?|at last|in the end)\b")
@@ -34,8 +34,8 @@ def _whether(told: Told) -> Answer | None:
         return None  # "is the vase gone": the scene at that time tells it
     if told.frame.other is not None and told.frame.asks == "yesno":
         return _before(told)
-    if deed.kind in ("still", "move") and asks_of_light(told):
-        return is_lit(told)
+    if deed.kind in ("still", "move") and (state := state_asked(told)):
+        return is_lit(told, state)
     if (
         deed.kind == "related"
         and deed.way != "stay"

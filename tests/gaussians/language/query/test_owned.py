@@ -6,27 +6,23 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import torch
+from boxed_things import Thing, box_of, cloud_of
 
-from scenewright.gaussians.camera import Camera, Vec3
-from scenewright.gaussians.cloud import GaussianCloud
+from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.language.encoders.backends.vectors import wrap
 from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.language.query.query import Query, Relation
 from scenewright.gaussians.language.query.resolve import resolve
 from scenewright.gaussians.language.query.selection import Selection
 from scenewright.gaussians.scene import Frame, Scene
-from scenewright.gaussians.world.box import Box
 from scenewright.gaussians.world.compounds import same_thing, split
 
-AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 EYE = Camera.look_at((0, -7, 1.6), (0, 0, 0.5), (0, 0, 1))
 NAMES = ("wall", "door", "wardrobe", "fridge", "dresser", "drawer", "nightstand", "cabinet", "car", "wheel", "sofa",
          "cushion", "tv stand", "desk lamp", "bookshelf", "bin", "lid")  # fmt: skip
 ENCODER = wrap([["fridge", "refrigerator"] if n == "fridge" else [n] for n in NAMES], np.eye(len(NAMES)))
 EACH = 60
 
-Thing = tuple[str, Vec3, Vec3]  # label, middle of its underside, size
 WALL: Thing = ("wall", (0, 2.0, 0), (4, 0.1, 2.6))
 ROOM_DOOR: Thing = ("door", (-1.2, 1.95, 0), (0.9, 0.08, 2.0))
 WARDROBE: Thing = ("wardrobe", (0, 1.6, 0), (1.2, 0.6, 2.0))  # 15 cm beside the door of the room
@@ -42,26 +38,17 @@ ITS_LID: Thing = ("lid", (3, -1, 0.5), (0.3, 0.3, 0.05))
 
 
 def scene_of(*things: Thing, named_by: str = "", parents: dict[int, int] | None = None) -> Scene:
-    groups, means = [], []
-    rng = np.random.default_rng(0)
-    for i, (label, (x, y, z), size) in enumerate(things):
-        middle, parent = (x, y, z + size[2] / 2), (parents or {}).get(i, -1)
+    groups = []
+    for i, thing in enumerate(things):
+        label, parent = thing[0], (parents or {}).get(i, -1)
         level = "structure" if label == "wall" else "part" if parent >= 0 else "object"
-        box = Box(middle, AXES, size)
-        groups.append(Group(i, level, parent, label, 0.9, box, (50, 0, 0), EACH, 3, 1.0, named_by=named_by))
-        means.append(rng.uniform(-0.5, 0.5, (EACH, 3)) * np.array(size) + np.array(middle))
-    count = len(groups) * EACH
-    cloud = GaussianCloud.create(
-        torch.from_numpy(np.concatenate(means)).float(), torch.tensor([[1.0, 0, 0, 0]]).repeat(count, 1),
-        torch.full((count, 3), 0.02), torch.full((count,), 0.9), torch.zeros(count, 1, 3),
-        torch.arange(len(groups), dtype=torch.int32).repeat_interleave(EACH),
-    )  # fmt: skip
+        groups.append(Group(i, level, parent, label, 0.9, box_of(thing), (50, 0, 0), EACH, 3, 1.0, named_by=named_by))
     vectors = np.zeros((len(things), len(NAMES)), dtype=np.float32)
     for i, (label, *_) in enumerate(things):
         if label in NAMES:
             vectors[i, NAMES.index(label)] = 1
     field = LanguageField(tuple(groups), vectors, ENCODER.fingerprint)
-    return Scene(cloud, Frame((0, 0, 1), 0.0, 1.0, "given", "given"), language=field)
+    return Scene(cloud_of(things, EACH), Frame((0, 0, 1), 0.0, 1.0, "given", "given"), language=field)
 
 
 def found(scene: Scene, query: Query | str, pick: str = "one") -> Selection:

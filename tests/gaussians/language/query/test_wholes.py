@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import torch
+from boxed_things import Thing, box_of, cloud_of
 
-from scenewright.gaussians.camera import Camera, Vec3
-from scenewright.gaussians.cloud import GaussianCloud
+from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.language.encoders.backends.vectors import wrap
 from scenewright.gaussians.language.field.language_field import Group, LanguageField, Names
 from scenewright.gaussians.language.query.query import Query, Relation
@@ -19,14 +18,12 @@ from scenewright.gaussians.language.query.wholes import means_both, names_plant,
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.gaussians.world.box import Box
 
-AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 UP = np.array([0.0, 0.0, 1.0])
 EYE = Camera.look_at((0, -7, 1.6), (0, 0, 0.5), (0, 0, 1))
 NAMES = ("potted plant", "flower pot", "cooking pot", "vase", "stool", "floor lamp")
 ENCODER = wrap([["potted plant", "plant"], *([n] for n in NAMES[1:])], np.eye(len(NAMES)))
 EACH = 60
 
-Thing = tuple[str, Vec3, Vec3]  # name, middle of its underside, size
 CROWN: Thing = ("potted plant", (0, 0, 0.35), (0.5, 0.5, 0.9))
 POT: Thing = ("flower pot", (0.03, 0, 0), (0.35, 0.35, 0.4))
 OTHER_POT: Thing = ("flower pot", (2, 0, 0), (0.3, 0.3, 0.3))
@@ -34,25 +31,14 @@ STOOL: Thing = ("stool", (0, 0, 0), (0.4, 0.4, 0.35))
 
 
 def scene_of(*things: Thing, names: dict[int, Names] | None = None) -> Scene:
-    groups, means = [], []
-    rng = np.random.default_rng(0)
-    for i, (name, (x, y, z), size) in enumerate(things):
-        middle = (x, y, z + size[2] / 2)
-        own = (names or {}).get(i, ((name, 0.9),))
+    groups = []
+    for i, thing in enumerate(things):
+        own = (names or {}).get(i, ((thing[0], 0.9),))
         label, score = own[0]
-        groups.append(
-            Group(i, "object", -1, label, score, Box(middle, AXES, size), (50, 0, 0), EACH, 3, 1.0, names=own)
-        )
-        means.append(rng.uniform(-0.5, 0.5, (EACH, 3)) * np.array(size) + np.array(middle))
-    count = len(groups) * EACH
-    cloud = GaussianCloud.create(
-        torch.from_numpy(np.concatenate(means)).float(), torch.tensor([[1.0, 0, 0, 0]]).repeat(count, 1),
-        torch.full((count, 3), 0.02), torch.full((count,), 0.9), torch.zeros(count, 1, 3),
-        torch.arange(len(groups), dtype=torch.int32).repeat_interleave(EACH),
-    )  # fmt: skip
+        groups.append(Group(i, "object", -1, label, score, box_of(thing), (50, 0, 0), EACH, 3, 1.0, names=own))
     vectors = np.eye(len(NAMES), dtype=np.float32)[[NAMES.index(t[0]) for t in things]]
     field = LanguageField(tuple(groups), vectors, ENCODER.fingerprint)
-    return Scene(cloud, Frame((0, 0, 1), 0.0, 1.0, "given", "given"), language=field)
+    return Scene(cloud_of(things, EACH), Frame((0, 0, 1), 0.0, 1.0, "given", "given"), language=field)
 
 
 def its(text: str, owner: str) -> Query:
